@@ -1,6 +1,20 @@
-"""``python -m flankfilm``, such as under ``mpiexec -n 8 python -m mpi4py.futures -m flankfilm study ...``."""
+"""Entry of the program: ``flankfilm``, and ``python -m flankfilm``, as under ``mpiexec -n 8``."""
 
-from flankfilm.cli import main
+import os
+
+
+def main() -> None:
+    """Run the command line with one thread of linear algebra, unless the environment says otherwise."""
+    os.environ["MPLBACKEND"] = (
+        "agg"  # pictures go to files; a notebook's shell names a backend of its kernel alone
+    )
+    # Before numpy is loaded, which reads it once. The matrices are small: two threads take up to ten times the time
+    # of one where another program works beside them.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    from flankfilm.cli import main as commands
+
+    commands()
+
 
 if __name__ == "__main__":
     main()

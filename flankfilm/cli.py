@@ -65,11 +65,9 @@ RowsFolder = Annotated[Folder, Parameter(help="Folder for the rows and what is m
 
 
 def _prepare() -> None:
-    """Say what must be said before numpy and numba are loaded."""
+    """Say what must be said before numba is loaded."""
     from flankfilm.cache import keep_compiled_code
 
-    # the matrices are small: threads cost more than they bring
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     keep_compiled_code()
 
 
@@ -297,6 +295,11 @@ for _name, _where, _help in (
     ),
     ("export-rexs", "exchange.commands:export_rexs", "Write the pair of SCENE as a REXS file."),
     ("export-table", "exchange.commands:export_table", "Write the mesh of SCENE as a table over angle."),
+    (
+        "export-traction",
+        "exchange.commands:export_traction",
+        "Write friction of the oil of SCENE over sliding.",
+    ),
     ("completion", "exchange.commands:completion", "Print the script that completes commands in SHELL."),
     ("view", "figures.commands:view", "Show the fields in RESULTS on the deformed teeth."),
     ("animate", "figures.commands:animate", "Draw the mesh cycle in RESULTS, deformed."),
@@ -309,15 +312,21 @@ SETTINGS_OF_NUMBA = ".numba_config.yaml"
 """File of the current folder that numba obeys, whoever has put it there, each time that it compiles."""
 
 
+DATE = "SOURCE_DATE_EPOCH"
+"""Variable by which libraries date what they write, as soon as they are loaded."""
+
+
 def _commands() -> int:
     if Path(SETTINGS_OF_NUMBA).is_file():
         why = "must not lie in the current folder: it changes how results are computed"
         raise InputError.at(SETTINGS_OF_NUMBA, "", why, "Move it away, or work in another folder")
+    if not (date := os.environ.get(DATE, "0")).isdecimal():
+        raise InputError.at(DATE, date, "must be whole seconds since 1970", f"unset {DATE}")
     return int(app(exit_on_error=True, print_error=True) or 0)
 
 
 def main() -> None:
-    """Entry point of the ``flankfilm`` script."""
+    """Commands of the ``flankfilm`` script, whose entry is ``flankfilm.__main__``."""
     open_streams()
     warnings.showwarning = say
     status = guarded(_commands)

@@ -2,7 +2,7 @@
 
 A content is a JSON head, in which every list, mapping, record and array stands once, and the arrays' bytes behind it.
 A record is named by its class, which must be a dataclass of one of our packages; its fields are set without its own
-checks, as they were when it was written.
+checks, as they were when it was written. Cached properties go along where they hold data.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import json
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
@@ -128,7 +129,14 @@ class _Writer:
         state = {} if (found := value.__getstate__()) is None else found
         if not isinstance(state, dict):
             raise NotPlainDataError(f"{cls.__qualname__} has no fields to keep")
-        values = {key: self.node(one) for key, one in state.items()}
+        values: dict[str, Any] = {}
+        for key, one in state.items():
+            try:
+                values[key] = self.node(one)
+            except NotPlainDataError:
+                # a fit of a library, say, found again when it is asked for
+                if not isinstance(getattr(cls, key, None), cached_property):
+                    raise
         return ["record", cls.__module__, cls.__qualname__, values]
 
     def _array(self, value: np.ndarray[Any, Any] | np.generic) -> list[Any]:

@@ -20,6 +20,7 @@ PICTURES: Mapping[str, str] = {
     "ehl.mixed_thermal:MixedThermalFilm": "mixed_film",
     "ehl.frequency:FilmResponse": "film_response",
     "ehl.transient:TransientFilm": "curves",
+    "ehl.traction:TractionCurve": "curves",
     "dynamics.motions:Trajectory": "portrait",
     "dynamics.shooting:Orbit": "orbit",
     "dynamics.branch:Branch": "branch",

@@ -48,9 +48,7 @@ class FilmAlongPath:
         "m", "layer of oil at ambient pressure that passes the contact", "point", shown="um"
     )
     starvation: Array | None = quantity("1", "central film over that of the smooth flooded contact", "point")
-    film_ratio: Array | None = quantity(
-        "1", "film ratio Lambda, least distance of the mean planes over sigma", "point"
-    )
+    film_ratio: Array | None = quantity("1", "film ratio Lambda, least mean gap over sigma", "point")
     asperity_share: Array | None = quantity("1", "asperities' share of the load", "point")
     at_pitch: tuple[ehl.StiffnessRow, ...] = part(
         "film stiffness by every definition at the contact nearest to C, in series with the stiffness of its teeth"

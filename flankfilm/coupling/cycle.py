@@ -129,7 +129,8 @@ class MeshCycle(MeshFigures):
     def model_error(self) -> float | None:
         """Estimated relative error of transmission error and secant stiffness by the model of the contacts.
 
-        Large strain and second order; None of closed forms, of which it is not known.
+        Large strain, second order, the width of contacts, and motion of contacts that stay; None of closed forms,
+        of which it is not known.
         """
         return None if self.contact is None else self.contact.model_error
 

@@ -45,14 +45,15 @@ def _with_asperities(
 ) -> tuple[ehl.StiffnessRow, ...]:
     """Put the asperities parallel to each film, and the whole derivative below."""
     parallel = face_width * film.asperity_stiffness
+    between = [film.gap_slope * row.stiffness + parallel for row in table]  # mean planes
     rows = [
         replace(
             row,
             meaning=f"{row.meaning}; asperities in parallel",
-            stiffness=row.stiffness + parallel,
-            loss=bodies / (bodies + row.stiffness + parallel),
+            stiffness=both,
+            loss=bodies / (bodies + both),
         )
-        for row in table
+        for row, both in zip(table, between, strict=True)
     ]
     whole = -face_width / film.separation_slope
     meaning = "-1/(ds/dw) of film and asperities, the contact widening with the load"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from dataclasses import dataclass, replace
 from typing import TypeAlias
@@ -19,6 +20,7 @@ Solved: TypeAlias = "ehl.Film | ehl.MixedFilm | ehl.FormulaFilm"
 Supply: TypeAlias = "ehl.Meniscus | ehl.OilLayer | None"
 
 LEAST_SHARE = 1e-3
+_LEAST_PLANES = 0.5  # sigma: least distance of mean planes from which a power law of the load goes on
 """Pairs with less than this part of the force get no film: they hardly touch, and what their film
 separates them by moves the load share by less than their own part."""
 
@@ -310,7 +312,7 @@ def law_of(path: PathFilms, face_width: float, definition: str) -> FilmLaw:
         Where a film separates the flanks by less than its error.
     """
     force = np.array([face_width * film.contact.load for film in path.films])
-    separations = np.array([film.separation for film in path.films])
+    separations = np.array([_separation(film) for film in path.films])
     if np.any(separations <= 0.0):
         where = 1e3 * path.rho1[int(np.argmin(separations))]
         raise SolverError(
@@ -356,4 +358,13 @@ def _exponent(film: Solved, definition: str) -> float:
     slope = getattr(film, "separation_slope", None)
     if definition != "approach" or slope is None:
         slope = -1.0 / film.stiffness(definition)
-    return max(-slope * film.contact.load / film.separation, 0.0)
+    return max(-slope * film.contact.load / _separation(film), 0.0)
+
+
+def _separation(film: Solved) -> float:
+    """Separation that a power law of the load continues: between rough flanks at least half a sigma.
+
+    Mean planes that overlap have no power law. Their distance is off by less than a sigma then, its slope stays.
+    """
+    least = _LEAST_PLANES * film.roughness.deviation if isinstance(film, ehl.MixedFilm) else -math.inf
+    return max(film.separation, least)

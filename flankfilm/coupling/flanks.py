@@ -25,7 +25,7 @@ class Flanks:
     base_pitch_difference : float
         Base pitch of the pinion less that of the wheel, by unequal temperatures [m].
     moving_contact : bool, optional
-        Whether contacts on the path move under load; unless given those of plastics do (`contacts_move`).
+        Whether contacts on the path move under load; unless given those of plastics do, as of `fem.mesh_cycle`.
     alignment : gears.Alignment, optional
         How the axes are out of parallel.
     cells : int, optional
@@ -50,29 +50,3 @@ class Flanks:
 
 PLAIN_FLANKS = Flanks()
 """Sharp edges without deviations or friction; they may touch outside the path."""
-
-COMPLIANT = 30e9
-"""Young's modulus below which contacts move unless it is said [Pa]: plastics, not metals."""
-
-
-def contacts_move(pair: gears.GearPair, asked: bool | None) -> bool:
-    """Whether contacts on the path move under load.
-
-    With metals their motion changes the stiffness by 0.1 %, no more than the law of the material leaves open, and what
-    corners of the tips do just inside the path counts for more, which only contacts that stay have; with a plastic
-    gear it is 1 to 5 %.
-
-    Parameters
-    ----------
-    pair : gears.GearPair
-    asked : bool or None
-        What was asked for; None decides by the softer material.
-
-    Examples
-    --------
-    >>> from gears import Gear, GearPair
-    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
-    >>> contacts_move(pair, None), contacts_move(pair, True)
-    (False, True)
-    """
-    return min(one.youngs_modulus for one in pair.materials) < COMPLIANT if asked is None else asked

@@ -11,7 +11,7 @@ from base import Faults
 from flankfilm.coupling.believed import believed
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw
-from flankfilm.coupling.flanks import PLAIN_FLANKS, Flanks, contacts_move
+from flankfilm.coupling.flanks import PLAIN_FLANKS, Flanks
 from flankfilm.coupling.references import MEANINGS
 from flankfilm.coupling.sharing_pairs import SharingPairs
 from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS
@@ -91,9 +91,7 @@ class LoadedTeeth:
     @property
     def setting(self) -> dict[str, Any]:
         """What `fem.mesh_cycle` takes beside pair, torque and positions."""
-        moves = contacts_move(self.pair, self.flanks.moving_contact)
-        given = {**vars(self.flanks), "moving_contact": moves}
-        return {"compliance": self.compliance, "reference": self.reference, **given}
+        return {"compliance": self.compliance, "reference": self.reference, **vars(self.flanks)}
 
     @property
     def force(self) -> float:

@@ -6,8 +6,8 @@ import numpy as np
 
 import ehl
 from base import Faults, Limit
+from fem.moving_contact import COMPLIANT
 from flankfilm.coupling.films import Held, PlacedMeniscus
-from flankfilm.coupling.flanks import COMPLIANT
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
 
 BALANCE = Limit.above(0.0, 1e6, "W/K", "heat transfer coefficient times area; 1 to 100 W/K are usual")

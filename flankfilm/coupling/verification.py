@@ -156,6 +156,7 @@ def compare_closed_forms(
     tolerance: float = 0.005,
     compliance: fem.Compliance | None = None,
     beyond_path: bool = True,
+    moving_contact: bool | None = None,
 ) -> Verification:
     """Compare every closed form of tooth stiffness with finite elements on a pair under a torque.
 
@@ -169,8 +170,10 @@ def compare_closed_forms(
     compliance : fem.Compliance, optional
         Computed unless given.
     beyond_path : bool
-        Whether tip edges may touch outside the path in the first of the references. Contacts stay where undeformed
-        teeth touch in all of them, as closed forms have it.
+        Whether tip edges may touch outside the path in the first of the references.
+    moving_contact : bool, optional
+        Whether contacts move in references with all parts, as of `fem.mesh_cycle`. In the others they stay where
+        undeformed teeth touch, as closed forms have it.
 
     Raises
     ------
@@ -187,11 +190,15 @@ def compare_closed_forms(
     """
     teeth, _ = resolved(LoadedTeeth(pair, torque, compliance=compliance), tolerance)
     assert teeth.compliance is not None
-    return verification_of(pair, torque, teeth.compliance, beyond_path)
+    return verification_of(pair, torque, teeth.compliance, beyond_path, moving_contact)
 
 
 def verification_of(
-    pair: gears.GearPair, torque: float, compliance: fem.Compliance, beyond_path: bool = True
+    pair: gears.GearPair,
+    torque: float,
+    compliance: fem.Compliance,
+    beyond_path: bool = True,
+    moving_contact: bool | None = None,
 ) -> Verification:
     """Compare from a compliance; arguments as of `compare_closed_forms`.
 
@@ -204,7 +211,7 @@ def verification_of(
     >>> verification_of(pair, 600.0, bodies).like_for_like.label
     'without hub wind-up and coupling'
     """
-    references = tuple(_reference_curves(pair, torque, compliance, beyond_path))
+    references = tuple(_reference_curves(pair, torque, compliance, beyond_path, moving_contact))
     models = tuple(_closed_form_curves(pair, torque))
     return Verification(
         pair=pair,
@@ -240,16 +247,20 @@ def _closed_form_curves(pair: gears.GearPair, torque: float) -> Iterator[Curves]
 
 
 def _reference_curves(
-    pair: gears.GearPair, torque: float, compliance: fem.Compliance, beyond_path: bool
+    pair: gears.GearPair,
+    torque: float,
+    compliance: fem.Compliance,
+    beyond_path: bool,
+    moving_contact: bool | None,
 ) -> Iterator[Curves]:
     """Evaluate finite elements with all parts, and with the parts left out that closed forms lack."""
     for label, (whole, left_out) in REFERENCES.items():
         if whole and not beyond_path:
             continue  # the next one is the same
         parts = compliance.without(*left_out)
-        teeth = LoadedTeeth(
-            pair, torque, compliance=parts, flanks=Flanks(beyond_path=whole, moving_contact=False)
-        )
+        # those of gears without parts stay, as closed forms have them
+        flanks = Flanks(beyond_path=whole, moving_contact=False if left_out else moving_contact)
+        teeth = LoadedTeeth(pair, torque, compliance=parts, flanks=flanks)
         yield replace(_curves(label, teeth, compliance.error), left_out=left_out)
 
 

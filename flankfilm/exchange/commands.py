@@ -206,6 +206,57 @@ def export_table(scene: Path, /, *, out: Path | None = None) -> int:
     return 0
 
 
+def export_traction(
+    scene: Path,
+    /,
+    *,
+    pressure_gpa: float | None = None,
+    speed_m_per_s: float | None = None,
+    temperature_C: float | None = None,
+    ratios: str = "0,0.005,0.01,0.02,0.05,0.1,0.2,0.5,1",
+    tolerance: float = 0.01,
+    out: Path | None = None,
+) -> int:
+    """Write friction over the slide-roll ratio of the oil of SCENE, as a disc machine measures it.
+
+    Parameters
+    ----------
+    scene : Path
+        The scene file (TOML); its sections pair, material, operating and lubricant count.
+    pressure_gpa : float, optional
+        Hertz pressure; that at the pitch point if left out.
+    speed_m_per_s : float, optional
+        Mean speed of both surfaces; that at the pitch point if left out.
+    temperature_C : float, optional
+        Of the bulk; that of the oil's numbers if left out.
+    ratios : str
+        Slide-roll ratios (u1 - u2)/u, with commas between.
+    tolerance : float
+        Relative, of films and friction.
+    out : Path, optional
+        The table (.csv); SCENE-traction.csv beside you if left out.
+    """
+    from flankfilm.exchange.traction_files import traction_of, write_traction
+    from flankfilm.scene import read_scene
+
+    try:
+        places = [float(one) for one in ratios.split(",")]
+    except ValueError:
+        raise InputError.at(
+            "--ratios", ratios, "must be numbers with commas between", "Such as 0,0.01,0.1"
+        ) from None
+    given = (
+        None if pressure_gpa is None else 1e9 * pressure_gpa,
+        speed_m_per_s,
+        None if temperature_C is None else temperature_C + 273.15,
+    )
+    curve = traction_of(read_scene(scene), places, *given, tolerance=tolerance)
+    target = out if out is not None else Path(f"{scene.stem}-traction.csv")
+    write_traction(target, curve)
+    print(f"{target} is written: {printable(repr(curve))}")
+    return 0 if curve.converged else 1
+
+
 def completion(shell: Literal["bash", "zsh", "fish"], /) -> int:
     """Print the script that completes commands and options in SHELL.
 

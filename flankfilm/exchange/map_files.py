@@ -52,18 +52,15 @@ def read_map(path: Path, where: str) -> dict[str, Any]:
     with Faults() as found:
         heights = _heights(found, where, path.name, rows[1:], columns)
         along, over = (sorted({place[k] for place in heights}) for k in (0, 1))
-        lacking = [(z, at) for z in along for at in over if (z, at) not in heights]
+        # every combination is a place of the map, so that none is listed: scattered points have millions of them
+        lacking = len(along) * len(over) - len(heights)
         if lacking or len(along) < 2 or len(over) < 2:
-            z, at = lacking[0] if lacking else (math.nan, math.nan)
-            value_ = (
-                f"no value at {ALONG} = {z:g}, {by[0]} = {at:g}, and {len(lacking) - 1} more"
-                if lacking
-                else ""
-            )
+            value_ = "a single row or column"
+            if lacking:
+                z, at = next((z, at) for z in along for at in over if (z, at) not in heights)
+                value_ = f"no value at {ALONG} = {z:g}, {by[0]} = {at:g}, and {lacking - 1} more"
             allowed = f"must have every {ALONG} with every {by[0]}, at least 2 of each"
-            found.add(
-                where, f"{path.name}: {value_ or 'a single row or column'}", allowed, "Give a full grid"
-            )
+            found.add(where, f"{path.name}: {value_}", allowed, "Give a full grid")
     return {ALONG: along, by[0]: over, "material_um": [[heights[z, at] for z in along] for at in over]}
 
 

@@ -34,6 +34,10 @@ CURVES: Mapping[str, tuple[str, tuple[tuple[str, ...], ...]]] = {
     "FilmAlongPath": ("rho1", (("central_thickness", "minimum_thickness"), ("hertz_pressure",))),
     "Film": ("x", (("pressure",), ("thickness",))),
     "TransientFilm": ("time", (("load",), ("central", "least"), ("greatest_pressure",))),
+    "TractionCurve": (
+        "slide_roll",
+        (("traction_coefficient",), ("oil_temperature_rise", "surface_temperature_rise")),
+    ),
     "PassageFilm": ("rho1", (("load",), ("least", "steady_least"), ("central", "steady_central"))),
     "FaceTolerance": ("in_plane", (("face_load_factor",),)),
     "FilmDamping": ("position", (("damping_curve",),)),

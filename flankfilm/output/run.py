@@ -109,6 +109,20 @@ TABLES: Mapping[str, Table] = {
         "line_load",
         ("travel", "face_position", "line_load", "hertz_pressure", "face_load_factor"),
     ),
+    "shafts_under_face": Table(
+        "dry_face",
+        "shaft_deflection",
+        (
+            "travel",
+            *(
+                "shaft_transmission_error",
+                "tilt_transmission_error",
+                "shaft_deflection",
+                "shaft_misalignment",
+            ),
+            *("moment_stiffness", "tilt_stiffness"),
+        ),
+    ),
     "face_models": Table("face_models", "line_load", ("face_position", "model", "line_load")),
     **{
         f"root_face_{gear}": Table(
@@ -140,7 +154,17 @@ TABLES: Mapping[str, Table] = {
     "losses_along_path": Table("losses_path", "rho1", axis="point"),
     "losses_by_eyring_stress": Table("losses_band", "eyring_stress", STRESSES),
     **{f"sweep_{d}": Table("sweep", d, ("speed", "frequency", d, f"{d}_label")) for d in ("up", "down")},
-    "drive_modes": Table("drive", "natural_frequencies", ("natural_frequencies", "mesh_share")),
+    "drive_modes": Table(
+        "drive", "natural_frequencies", ("natural_frequencies", "frequency_error", "retained", "mesh_share")
+    ),
+    **{
+        f"drive_peaks_{part}s": Table(
+            "drive_sweep",
+            f"{figure}_peak",
+            (f"{part}s", *(f"{figure}_peak{end}" for end in ("", "_speed", "_error"))),
+        )
+        for part, (figure, _) in PARTS.items()
+    },
     "drive_sweep": Table("drive_sweep", "force_factor_up", axis="frequency"),
     "excitation": Table("excitation", "amplitude", axis="harmonic"),
     "spectrum": Table("spectrum", "force", axis="line"),

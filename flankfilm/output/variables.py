@@ -46,6 +46,7 @@ PLACES = (
 
 
 NAME, PLACE = "a name", "a place"
+OPEN = "not known: the estimate has no bound in this result"
 """Why variables that are no results have no error."""
 
 NAMES = ("Dowson", "Fourier", "Hertz", "Ishikawa", "Lambda", "Moes", "Poisson")
@@ -263,9 +264,11 @@ def _errors(record: object, known: Mapping[str, Quantity]) -> dict[str, Any]:
         error: Any = getattr(record, holds, None) if holds else None
         if isinstance(error, Mapping):
             error = error.get(name, error)
+        if isinstance(error, Mapping) and any(map(np.ndim, error.values())) and holds in known:
+            error = {key: f"{holds}_{identifier(key)}" for key in error}
         if np.ndim(error) and holds in known:
             error = holds
-        if isinstance(error, str | Mapping) or _finite(error):
+        if isinstance(error, str | Mapping | float):
             found[name] = error
     return found
 
@@ -282,7 +285,7 @@ def _error(prefix: str, name: str, figure: Figure, known: float | str | None) ->
         return {"error_variable": joined(prefix, known)}
     if known is not None and _finite(known):
         return {"error": float(known)}
-    why = PLACE if name in PLACES else figure.no_error
+    why = PLACE if name in PLACES else figure.no_error or ("" if known is None else OPEN)
     return {"error_note": why} if why else {}
 
 

@@ -69,6 +69,11 @@ def _made_of(found: fem.FaceLoads) -> str:
     for plane, value in (("in", setting.alignment.in_plane), ("across", setting.alignment.out_of_plane)):
         if value:
             parts.append(f"axes {number(1e6 * value)} µm out of parallel {plane} the plane of action")
+    bent = [name for name, one in zip(("pinion", "wheel"), setting.shafts, strict=True) if one is not None]
+    if bent:
+        parts.append(
+            f"bending and twist of the shaft of {' and '.join(f'the {name}' for name in bent)} under the load"
+        )
     made = "; ".join(parts) or "straight leads and parallel axes: what varies is by the ends alone"
     return said("face_made_of", made=made, cells=setting.cells, model=LABELS[setting.model])
 
@@ -90,6 +95,27 @@ def _rows(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
     pressure = read_figure(found, "hertz_pressure")
     yield f"greatest {pressure.meaning}", f"{number(float(np.nanmax(pressure.values)))} {pressure.unit}"
     yield "contact pattern: part of the face that is touched", percent(found.contact_pattern, 3)
+    yield from _of_shafts(found)
+
+
+def _of_shafts(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
+    """How far shafts give way and tilt, and their parts of the transmission error; nothing of rigid ones."""
+    if found.shaft_deflection is None or found.shaft_error is None or found.tilt_error is None:
+        return
+    errors = plus_minus(found.shaft_error), plus_minus(found.tilt_error)
+    for gear, name in enumerate(("pinion", "wheel")):
+        for what, values, off in (
+            ("deflection along the line of action", found.shaft_deflection[gear], errors[0]),
+            ("misalignment over the face", found.shaft_misalignment[gear], errors[1]),
+        ):
+            if np.any(values):
+                size = number(1e6 * float(values[np.argmax(np.abs(values))]))
+                yield f"greatest {what} by the shaft of the {name}", f"{size} µm {off}"
+    parts = found.shaft_transmission_error, found.tilt_transmission_error
+    for name, part, off in zip(("shafts", "shafts' tilt"), parts, errors, strict=True):
+        if part is not None:
+            ends = " to ".join(number(1e6 * float(end)) for end in (part.min(), part.max()))
+            yield f"part of the transmission error by the {name}", f"{ends} µm {off}"
 
 
 def models_table(models: FaceLoadModels) -> Table:

@@ -21,7 +21,7 @@ from flankfilm.report import face_parts
 from flankfilm.report.page import Fact, Headline, Part, Table, picture, pictures, said, write_page
 from flankfilm.report.run_parts import inputs
 from flankfilm.report.text import counted, number, percent, plus_minus, seconds
-from flankfilm.scene import Scene
+from flankfilm.scene import Scene, parse_tolerance
 from flankfilm.studies.output_errors import ERROR_OF, exact
 
 if TYPE_CHECKING:
@@ -232,7 +232,7 @@ def _tolerance(data: xr.Dataset) -> Fact:
     if "tolerance" in data.coords:
         return Fact("tolerances of the rows beside them", "rows")
     asked = json.loads(data.attrs["scene_json"]).get("tolerance", Scene.model_fields["tolerance"].default)
-    return Fact(f"tolerance of each row {percent(float(asked))}")
+    return Fact(f"tolerance of each row {percent(parse_tolerance(asked))}")
 
 
 def _range(data: xr.Dataset, name: str) -> Headline:

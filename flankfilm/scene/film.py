@@ -194,8 +194,11 @@ class RoughnessSection(Section):
     tip_radius_um: float | None = key(
         "radius of the asperities' tips; a thousand times sigma if left out", None, such_as=700
     )
-    law: Literal["greenwood-tripp", "greenwood-williamson"] = key(
-        "law of the asperities, for two rough flanks or for one", "greenwood-tripp"
+    law: Literal["greenwood-tripp", "greenwood-williamson", "zhu-hu"] | None = key(
+        "what shares the load: elastic asperities of two rough flanks or of one, or the film ratio; "
+        "zhu-hu unless given, greenwood-tripp beside density_per_mm2 or tip_radius_um",
+        None,
+        such_as="greenwood-tripp",
     )
     mean_plane_offset: float = key(
         "from the mean plane of heights to that of the asperities, times sigma", 1.15, of="offset"

@@ -29,12 +29,12 @@ LONGEST_LIST = 10_000
 """Entries of a list in a scene: the pitches of a gear with the most teeth."""
 
 
-def read_scene(path: Path) -> Scene:
+def read_scene(path: Path | str) -> Scene:
     """Read and check a scene file.
 
     Parameters
     ----------
-    path : Path
+    path : Path or str
         The TOML file.
 
     Returns
@@ -51,9 +51,10 @@ def read_scene(path: Path) -> Scene:
     --------
     >>> from flankfilm.scene import template
     >>> _ = Path("pair.toml").write_text(template(), encoding="utf-8")
-    >>> read_scene(Path("pair.toml")).tolerance
+    >>> read_scene("pair.toml").tolerance
     0.005
     """
+    path = Path(path)
     return parse_scene(read_text(path), name=str(path), folder=path.parent)
 
 

@@ -12,13 +12,13 @@ from typing import Any, TypeVar
 import fem
 import gears
 from fem.face_setting import FREE_ENDS
+from fem.moving_contact import contacts_move
 from flankfilm import coupling
 from flankfilm.build import gear_pair, pinion_speed, pinion_torque, supports, tip_roundings, warm_pair
 from flankfilm.build_face import even_along_face, face, varies_by
 from flankfilm.build_film import film_model, lubricant
 from flankfilm.build_flanks import deviations
 from flankfilm.coupling.believed import believed
-from flankfilm.coupling.flanks import contacts_move
 from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.film_choice import foreseen_change
 from flankfilm.plan.options import FilmChange
@@ -157,14 +157,15 @@ def CLOSED_FORMS(run: Engine) -> coupling.SinglePairs:
 @stage(
     "verification",
     "closed forms against finite elements",
-    "stiffness.contact_beyond_path operating",
+    "stiffness.contact_beyond_path stiffness.moving_contact operating",
     COMPLIANCE,
 )
 def VERIFICATION(run: Engine) -> coupling.Verification:
     """Every closed form beside finite elements, of loads that are even along the face."""
-    beyond, pair = run.scene.stiffness.contact_beyond_path, even_along_face(run[PAIR])
+    stiffness, pair = run.scene.stiffness, even_along_face(run[PAIR])
+    asked = stiffness.contact_beyond_path, stiffness.moving_contact
     compliance = replace(run[COMPLIANCE], pair=pair)
-    return coupling.verification_of(pair, pinion_torque(run.scene), compliance, beyond)
+    return coupling.verification_of(pair, pinion_torque(run.scene), compliance, *asked)
 
 
 @stage("dry cycle", "mesh cycle without film", TEETH, COMPLIANCE, FACE_GEARS, settings=_TEETH_DECIDED)

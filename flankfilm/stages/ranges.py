@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 from flankfilm import coupling
 from flankfilm.build import pinion_torque
 from flankfilm.scene.dynamics import DynamicsSection
+from flankfilm.scene.section import required
 from flankfilm.stages.catalogue import MESH, PAIR
 from flankfilm.stages.engine import Engine
 
@@ -31,6 +34,20 @@ def frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, float
         scales = coupling.pair_scales(run[PAIR], pinion_torque(run.scene), mean, extra, length)
         ends += [scales.frequency_from_rpm(end) for ranged in asked for end in ranged.speed_rpm or ()]
     return min(ends), max(ends)
+
+
+def speeds_looked_at(run: Engine, series: coupling.MeshSeries, speed: float) -> tuple[float, float] | None:
+    """Least and greatest pinion speed of sweep, diagram, run-up and operation [rad/s]; None without a range."""
+    section = required(run.scene.dynamics, "[dynamics]", "a range of speed")
+    asked = [one for one in (section.sweep, section.diagram, section.run_up) if one is not None]
+    if not asked:
+        return None
+    extra, length = section.extra_inertia_kg_m2.each, section.value("length_scale_um")
+    mean = series.stiffness.mean
+    scales = coupling.pair_scales(run[PAIR], pinion_torque(run.scene), mean, extra, length)
+    ends = [scales.speed(end) for one in asked for end in one.frequency or ()]
+    ends += [end * math.pi / 30.0 for one in asked for end in one.speed_rpm or ()]
+    return min(*ends, speed), max(*ends, speed)
 
 
 def deflection(run: Engine, section: DynamicsSection) -> float:

@@ -30,8 +30,8 @@ def _of_face(name: str, figure: str, take: Take = float, said: str = EVEN) -> Na
 
     def value(engine: Engine) -> Any:
         contact = engine[DRY_CYCLE].contact
-        found = None if contact is None else contact.face
-        return None if found is None else take(getattr(found, figure))
+        found = None if contact is None or contact.face is None else getattr(contact.face, figure)
+        return None if found is None else take(found)
 
     return output_of(name, figures(fem.FaceLoads)[figure], "stiffness", value, said)
 
@@ -93,6 +93,26 @@ def _of_roots() -> Iterator[Named]:
     yield _of_root("iso_root_face_factor", about, lambda found: found.iso_face and found.iso_face.K_Fbeta)
 
 
+STRAIGHT = "{}; nan where the load is even along the face, or shafts are rigid"
+
+
+def _of_shafts() -> Iterator[Named]:
+    """How far shafts give way under the face, and tilt, at most over the cycle."""
+    for gear, name in enumerate(GEARS):
+
+        def at_most(values: np.ndarray, gear: int = gear) -> float:
+            return float(np.max(np.abs(values[gear])))
+
+        for figure, what in (
+            ("shaft_deflection", "greatest deflection along the line of action of the shaft of the"),
+            ("shaft_misalignment", "greatest misalignment over the face by the shaft of the"),
+        ):
+            yield _of_face(f"{figure}_{name}", figure, at_most, f"{what} {name}; nan where the load is even")
+    yield _of_face("mean_tilt_stiffness", "tilt_stiffness", np.mean, STRAIGHT)
+    for figure in ("shaft_error", "tilt_error", "matrix_error"):
+        yield _of_face("tilt_stiffness_error" if figure == "matrix_error" else figure, figure, said=STRAIGHT)
+
+
 _AT_C = figures(FaceLoadModels)["pitch_point_factor"].meaning
 
 FACE_OUTPUTS: tuple[Named, ...] = (
@@ -133,5 +153,6 @@ FACE_OUTPUTS: tuple[Named, ...] = (
         lambda found: found.pitch_point_factor[-1],
     ),
     *_of_roots(),
+    *_of_shafts(),
 )
 """Outputs by name."""

@@ -184,12 +184,32 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
     _drive("mesh_frequency", name="drive_mesh_frequency"),
     output_of(
         "drive_frequency_error",
-        Figure("1", "estimated relative error of these frequencies, by the mean stiffness"),
+        Figure(
+            "1",
+            "estimated relative error of these frequencies, the greater, by reduction, elements and mean stiffness; "
+            "nan for a given series",
+        ),
         "sweep",
-        in_result(DRIVE, attrgetter("error")),
+        in_result(DRIVE, lambda found: max(found.lowest_frequency_error, found.mesh_frequency_error)),
     ),
+    _drive("valid_to", name="drive_valid_to"),
     _carried("greatest_bearing_force"),
     _carried("greatest_shaft_torque"),
+    output_of(
+        "greatest_bearing_force_error",
+        Figure(
+            "1",
+            "estimated relative error of that force by search, samples and the band of the shafts' damping",
+        ),
+        "sweep",
+        in_result(DRIVE_SWEEP, attrgetter("greatest_bearing_error")),
+    ),
+    output_of(
+        "greatest_shaft_torque_error",
+        Figure("1", "estimated relative error of that torque, likewise"),
+        "sweep",
+        in_result(DRIVE_SWEEP, attrgetter("greatest_shaft_error")),
+    ),
     output_of(
         "drive_sweep_error",
         Figure(
@@ -232,10 +252,12 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
     output_of(
         "run_up_error",
         Figure(
-            "1", "estimated relative error of forces and torques of the run-up, by steps of the frequency"
+            "1",
+            "estimated relative error of the greatest forces and torques of the run-up, by steps of the frequency and "
+            "by samples",
         ),
         "run-up",
-        in_result(RUN_UP, attrgetter("error")),
+        in_result(RUN_UP, attrgetter("greatest_error")),
     ),
     *_jumps(),
     output_of(

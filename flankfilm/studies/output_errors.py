@@ -15,6 +15,9 @@ _HELD: Mapping[str, tuple[str, ...]] = {
     "transmission_error_error": ("transmission_error_um",),
     "face_load_factor_error": ("face_load_factor",),
     "greatest_line_load_error": ("greatest_line_load_N_per_mm",),
+    "shaft_error": tuple(f"shaft_deflection_{gear}_um" for gear in ("pinion", "wheel")),
+    "tilt_error": tuple(f"shaft_misalignment_{gear}_um" for gear in ("pinion", "wheel")),
+    "tilt_stiffness_error": ("mean_tilt_stiffness_Nm_per_rad",),
     "robust_face_load_factor_error": ("robust_face_load_factor",),
     "root_stress_error": tuple(
         f"root_{kind}_{gear}_MPa" for kind in ("tension", "compression") for gear in ("pinion", "wheel")

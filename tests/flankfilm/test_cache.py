@@ -8,15 +8,18 @@ import json
 import os
 import pickle
 import stat
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
+from scipy.interpolate import RectBivariateSpline
 
 from base.files import replacing
 from flankfilm.cache import PACKAGES, Cache, CacheWarning, code_digest, results_cache
+from flankfilm.coupling.heated_table import HeatedTable
 from flankfilm.output.files import write_text
 from flankfilm.plain_data import NotPlainDataError, read, written
 
@@ -191,6 +194,18 @@ def test_records_arrays_and_shared_parts_come_back_as_they_were(article_pair):
         written(article_pair, ("ehl",))
     with pytest.raises(NotPlainDataError, match="no data"):
         written(np.array([object()]), PACKAGES)
+
+
+def test_a_fit_that_a_record_has_cached_does_not_keep_it_from_being_kept():
+    """Losses of a misaligned pair were computed anew in every run, for a spline through their films."""
+    x = np.linspace(0.0, 1.0, 4)
+    table = HeatedTable(x, x, (), (343.0, 343.0))
+    vars(table)["_splines"] = {"friction": RectBivariateSpline(x, x, np.outer(x, x))}
+    back = read(written(table, PACKAGES), PACKAGES)
+    np.testing.assert_array_equal(back.rho1, x)
+    assert "_splines" not in vars(back)
+    with pytest.raises(NotPlainDataError):
+        written(replace(table, rows=vars(table)["_splines"]), PACKAGES)
 
 
 def test_a_record_without_fields_comes_back():

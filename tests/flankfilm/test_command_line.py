@@ -91,6 +91,36 @@ def test_a_senseless_tolerance_is_refused(tmp_path, tolerance):
     assert "--tolerance" in output
 
 
+def test_variables_of_notebooks_and_builds_end_in_no_traceback(tmp_path):
+    scene = EXAMPLES / "oscillator.toml"
+    flankfilm(
+        "run", scene, "--out", "out", cwd=tmp_path, MPLBACKEND="module://matplotlib_inline.backend_inline"
+    )
+    assert "<svg" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    output = flankfilm("check", scene, cwd=tmp_path, status=2, SOURCE_DATE_EPOCH="yesterday").stderr
+    assert "SOURCE_DATE_EPOCH = yesterday: must be whole seconds" in output
+
+
+def test_the_program_asks_for_one_thread_before_numpy_is_loaded():
+    """OpenBLAS reads the number once; with two threads on a busy machine a misaligned scene took nine times as long."""
+    code = (
+        "import os, sys\n"
+        "class Watch:\n"
+        "    def find_spec(name, path=None, target=None):\n"
+        "        if name == 'numpy': print('numpy sees', os.environ.get('OPENBLAS_NUM_THREADS'))\n"
+        "sys.meta_path.insert(0, Watch)\n"
+        "from flankfilm.__main__ import main\n"
+        "sys.argv = ['flankfilm', '--version']\n"
+        "main()\n"
+    )
+    given = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
+    for more, seen in ({}, "1"), ({"OPENBLAS_NUM_THREADS": "2"}, "2"):
+        done = subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, check=True, env={**given, **more}
+        )
+        assert done.stdout.startswith(f"numpy sees {seen}\n")
+
+
 def test_a_full_disk_ends_with_a_message_and_no_half_written_file(tmp_path):
     code = (
         "import sys, os, flankfilm.cli as cli\n"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -144,6 +146,19 @@ def test_faults_of_a_map_s_file(tmp_path, text, allowed):
     with pytest.raises(InputError, match=allowed) as raised:
         scene_of('map = { file = "map.csv" }', tmp_path)
     assert raised.value.faults[0].where == "pair.pinion.deviations.map.file"
+
+
+def test_scattered_points_are_refused_in_little_memory(tmp_path):
+    """2000 places and 2000 positions: what lacks is counted, not listed (1 kB a row at most)."""
+    rows = "".join(f"{-10 + 0.01 * i},{5 + 0.017 * (i * 7919 % 2000)},1\n" for i in range(2000))
+    (tmp_path / "map.csv").write_text("z_mm,roll_deg,material_um\n" + rows, encoding="utf-8")
+    tracemalloc.start()
+    with pytest.raises(InputError) as raised:
+        scene_of('map = { file = "map.csv" }', tmp_path)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert "and 3997999 more" in str(raised.value.faults[0])
+    assert most < 2000 * 1024
 
 
 def test_ends_are_held_where_that_is_asked_for():

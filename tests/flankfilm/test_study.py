@@ -299,6 +299,19 @@ class TestCommand:
         path = study_file(tmp_path, '"pair.pinion.tip_alteration" = [0.0, 0.9]')
         assert "row 1 failed" in run(path, "--out", tmp_path / "out", status=4).stdout
 
+    def test_a_tolerance_in_percent_stands_on_the_page(self, tmp_path):
+        scene = (EXAMPLES / "article.toml").read_text(encoding="utf-8")
+        assert "tolerance = 0.005" in scene
+        percent = scene.replace("tolerance = 0.005", 'tolerance = "0.5%"')
+        (tmp_path / "scene.toml").write_text(percent, encoding="utf-8")
+        path = study_file(tmp_path, '"pair.pinion.profile_shift" = [0.0, 0.1]')
+        path.write_text(
+            path.read_text(encoding="utf-8").replace((EXAMPLES / "article.toml").as_posix(), "scene.toml"),
+            encoding="utf-8",
+        )
+        run(path, "--out", tmp_path / "out")
+        assert "tolerance of each row 0.5" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
     @pytest.mark.slow
     def test_the_study_of_sliding_is_written_and_drawn(self, tmp_path):
         done = run(study_file(tmp_path, SHIFTS), "--out", tmp_path / "out", "--workers", "1")

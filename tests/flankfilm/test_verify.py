@@ -11,7 +11,7 @@ from flankfilm.coupling.verification import POINTS, UNITS, mesh_figures, single_
 from flankfilm.scene import parse_scene, read_scene
 from flankfilm.verification.run import unknown_over_face, verify_scene
 from flankfilm.verification.tables import face_table, write_verification
-from gears import closed_form
+from gears import BasicRack, Gear, GearPair, closed_form
 from gears.events import Sampled, arcs_between_events
 from gears.mesh_figures import CURVES, MeshArcs
 from tests.flankfilm.program import EXAMPLES, flankfilm
@@ -65,6 +65,18 @@ def test_figures_are_those_of_the_curves(pair):
     assert set(found) == set(UNITS)
     for name, one in found.items():
         assert one.relative == pytest.approx(1e-3, rel=1e-3), name
+
+
+def test_two_pairs_bear_over_what_a_contact_ratio_above_two_leaves_them():
+    """Three pairs over the first part of the base pitch; the mean of two is that of the rest, and no more."""
+    rack = BasicRack(h_aP=1.3, h_fP=1.55, rho_fP=0.2)
+    pair = GearPair(Gear(60), Gear(70), module=2e-3, face_width=40e-3, rack=rack)
+    low = pair.contact_ratio - 2.0
+    assert 0.05 < low < 0.5
+    found = mesh_figures(pair, MeshArcs(made_up(pair), None, 1.0, 1e-3))["mesh, two pairs, mean"]
+    ends = 2 * np.pi * np.array([low, 1.0])
+    waves = 3 * np.sin(ends) + np.sin(2 * ends + 1) + np.sin(3 * ends + 2) / 3
+    assert found.value == pytest.approx(20 + np.diff(waves)[0] / np.diff(ends)[0], rel=1e-9)
 
 
 def test_errors_are_what_the_mesh_before_differs_by(pair):

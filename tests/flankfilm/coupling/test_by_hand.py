@@ -14,12 +14,14 @@ import ehl
 import fem
 import flankfilm as ff
 from ehl import Lubricant
+from flankfilm import coupling
 from flankfilm.coupling import given_series, jumps
 from flankfilm.coupling.film_points import stiffness_rows
 from flankfilm.coupling.films import PathFilms, contacts_of
 from flankfilm.coupling.flanks import Flanks
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
 from flankfilm.coupling.loads import torque_curves
+from flankfilm.coupling.oscillator import pair_inertias
 from gears import Gear, GearPair
 
 PAIR = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
@@ -60,9 +62,21 @@ def test_every_scale_of_a_pair_s_oscillator():
     assert back.oscillator.mean_force == pytest.approx(force / (8e8 * 1e-4), rel=1e-12)
 
 
+def test_what_turns_with_a_gear_is_given():
+    assert pair_inertias(PAIR) == PAIR.moments_of_inertia
+    assert pair_inertias(PAIR, (1e-3, 2e-3)) == tuple(np.add(PAIR.moments_of_inertia, (1e-3, 2e-3)))
+
+
 @pytest.fixture(scope="module")
 def bodies() -> fem.Compliance:
     return fem.compliance(PAIR, tolerance=0.05)
+
+
+def test_independent_pairs_err_as_their_teeth_do(bodies: fem.Compliance):
+    by_elements = coupling.mesh_cycle(PAIR, 600.0, model="fem", pairs="independent", compliance=bodies)
+    closed = coupling.mesh_cycle(PAIR, 600.0, model="potential-energy", pairs="independent")
+    assert by_elements.error == bodies.error > 0.0
+    assert closed.error is None
 
 
 def test_curves_over_torque_are_those_of_many_positions(bodies: fem.Compliance):

@@ -54,6 +54,15 @@ def test_a_triangle_has_its_known_harmonics_and_its_order_the_known_remainder():
     assert left(found.order) <= 0.02 < left(found.order - 1)
 
 
+def test_half_of_the_samples_say_the_same_of_a_smooth_curve():
+    """Errors are those of harmonics that half of the samples miss: none here, half the amplitude of the 170th there."""
+    theta = 2 * np.pi * (np.arange(400) + 0.5) / 400
+    smooth = 3e-6 * np.cos(theta - 0.7)
+    assert error_series(smooth, order=1).error == pytest.approx(0.0, abs=1e-12)
+    rough = error_series(smooth + 3e-8 * np.cos(170 * theta), order=1)
+    assert rough.error == pytest.approx(0.01, rel=0.02)
+
+
 def test_samples_at_midpoints_and_points_from_elsewhere_agree():
     theta = 2 * np.pi * (np.arange(400) + 0.5) / 400
     curve = 3e-6 * np.cos(theta - 0.7) + 1e-6 * np.cos(5 * theta + 0.2)
@@ -95,7 +104,8 @@ def test_a_slow_harmonic_of_a_revolution_is_the_linear_oscillator_s_response():
 
 def test_a_revolution_without_deviations_moves_like_one_mesh():
     still = error_series(np.zeros(20), meshes=20, order=1)
-    driven = motion(error_amplitude=(5e-6, 1e-6), error_phase=(0.0, 1.0))
+    series = given_series(4e8, [0.2, 0.05], [0.3, 1.1])
+    driven = motion(series, error_amplitude=(5e-6, 1e-6), error_phase=(0.0, 1.0))
     whole, mesh = ff.mesh_spectrum(driven, still, highest=3.0), ff.mesh_spectrum(driven, highest=3.0)
     kept = np.abs(whole.order - np.round(whole.order)) < 1e-9
     assert whole.displacement[kept] == pytest.approx(mesh.displacement, rel=1e-6, abs=1e-9)

@@ -24,6 +24,7 @@ from flankfilm.coupling import (
 )
 from flankfilm.coupling.film_table import HEAVIEST, LIGHTEST
 from flankfilm.coupling.films import contacts_of
+from flankfilm.coupling.least_film import least_of
 from flankfilm.coupling.resolution import resolution_of
 from gears import Alignment, Gear, GearPair, Lead
 
@@ -110,6 +111,19 @@ def test_the_law_slopes_as_it_falls_at_all_loads(solved):
     assert table(np.array([np.nan]), forces[:1]) == (0.0, 0.0)
 
 
+def test_the_error_of_a_table_is_that_of_its_places_and_that_of_its_loads(solved):
+    """Films that change along the path alone, and by the load alone: every second row of either misses them."""
+    table = solved.over_face.table
+    wave = np.cos(np.pi * np.arange(len(table.rho1)))[:, None], np.cos(np.pi * np.arange(len(table.load)))
+    for along in wave:
+        film = 1e-6 * (1.0 + 0.01 * along) * np.ones_like(table.separation)
+        found = replace(table, central_thickness=film)
+        assert found.central_error > 0.001
+    assert replace(table, central_thickness=np.full_like(film, 1e-6)).central_error == pytest.approx(
+        0.0, abs=1e-9
+    )
+
+
 def test_an_even_load_has_the_films_of_the_plane(cycles, bodies):
     """Cells between walls without alignment bear alike: mesh and films are those of a plane pair."""
     even = cycles(alignment=Alignment())
@@ -148,6 +162,36 @@ def test_films_are_thinnest_where_most_is_borne(solved):
     assert 0.0 < over.side_flow < 0.05
     mean = coupling.FilmModel().stiffness
     assert film.stiffness[mean].min() > 10.0 * solved.stiffness.max()
+
+
+def test_widths_and_pressures_of_cells_are_those_of_hertz(solved):
+    """b = (8 w R/(pi E'))^1/2 and p_H = (w E'/(2 pi R))^1/2, from loads and places of the cells."""
+    over = solved.over_face
+    bear, whole = np.isfinite(over.half_width), PAIR.points.E - PAIR.points.A
+    on_path = (over.travel > 0.0) & (over.travel < whole)  # beyond it a tip edge bears
+    assert np.array_equal(bear, on_path[..., None] & (over.line_load > 0.0))
+    rho1 = np.broadcast_to(PAIR.points.A + over.travel[..., None], bear.shape)[bear]
+    radius = rho1 * (1.0 - rho1 / (PAIR.path_of_contact().rho1 + PAIR.path_of_contact().rho2)[0])
+    modulus, load = PAIR.reduced_modulus, over.line_load[bear]
+    np.testing.assert_allclose(over.half_width[bear] ** 2, 8.0 * load * radius / (np.pi * modulus), rtol=1e-9)
+    np.testing.assert_allclose(
+        over.hertz_pressure[bear] ** 2, load * modulus / (2.0 * np.pi * radius), rtol=1e-9
+    )
+    assert over.end_zone == np.nanmax(over.half_width[..., 0])  # the alignment closes this end
+
+
+def test_films_add_their_error_by_what_they_change_of_the_stiffness(solved):
+    changed = np.abs(solved.secant_stiffness / solved.dry.secant_stiffness - 1.0).max()
+    assert changed > 0.001
+    own = solved.contact.error
+    assert solved.error == pytest.approx(own + solved.over_face.error * changed, rel=1e-9)
+
+
+def test_the_least_film_errs_as_films_do_and_by_what_lies_between_them(solved):
+    film = solved.film
+    value, off = least_of(film.minimum_thickness, film.load)
+    assert off / value > 1e-3
+    assert film.least_film_error == pytest.approx(np.hypot(film.error, off / value), rel=1e-12)
 
 
 def test_an_alignment_turned_round_mirrors_the_films(cycles):

@@ -9,6 +9,7 @@ import pytest
 import ehl
 from base import InputError
 from flankfilm.coupling import FilmModel, PlacedMeniscus, film_damping, mesh_cycle
+from flankfilm.coupling.film_damping import POSITIONS
 from tests.ehl.films import quiet
 from tests.validation.article import FACE, OIL, PAIR, PITCH
 
@@ -53,6 +54,15 @@ def test_the_mean_over_the_path_is_that_of_the_films_by_hand():
     assert found.damping == pytest.approx(np.mean(found.damping_curve))
     critical = 2.0 * found.equivalent_mass * found.natural_frequency
     assert found.damping_ratio == pytest.approx(found.damping / critical)
+
+
+def test_of_many_positions_few_are_solved_evenly_about_the_middle():
+    cycle = mesh_cycle(LOOSE, 60.0, model="ishikawa", positions=6 * POSITIONS)
+    found = film_damping(cycle, LOOSE, 60.0, SPEED, OIL, frequency=3e4, tolerance=0.05)
+    assert found.position == pytest.approx(
+        (np.arange(POSITIONS) + 0.5) / POSITIONS, abs=0.6 / cycle.position.size
+    )
+    assert found.damping == pytest.approx(np.mean(found.damping_curve))
 
 
 def test_films_damp_light_loads_and_slow_oscillations_most():

@@ -57,6 +57,15 @@ def test_tip_edges_outside_the_path_lose_power_too():
     assert found.heat.sum() == pytest.approx(found.mesh_loss, rel=1e-12)
 
 
+@pytest.mark.parametrize("first", [0.0, 0.3, 1.0])
+def test_edges_heat_both_gears_alike_whatever_films_do(first):
+    bodies = fem.compliance(PAIR, tolerance=0.05)
+    free = LoadedTeeth(PAIR, TORQUE, compliance=bodies, flanks=Flanks(friction=0.05)).cycle(12)
+    found = means_of(PAIR, free, SPEED, POWER, constant(0.05, first=first))
+    films = found.sliding_loss * np.array([first, 1.0 - first])
+    assert found.heat == pytest.approx(films + 0.5 * found.edge_loss, rel=1e-12)
+
+
 @pytest.mark.parametrize("teeth_", [(36, 40), (20, 60), (25, 25)])
 def test_ohlendorf_is_the_mean_over_two_pairs_that_share_evenly(teeth_):
     pair = GearPair(*(Gear(one) for one in teeth_), module=2e-3, face_width=20e-3)

@@ -164,8 +164,9 @@ def test_thinner_and_hotter_oil_has_thinner_films_and_less_friction():
 @pytest.mark.parametrize("torque", [2.0, 60.0])
 def test_light_loads_slide_on_thick_films(torque):
     found = losses(torque)
-    # a Newtonian oil in the whole: friction grows with the load towards that of Eyring's
-    assert found.mean_friction < 0.012
+    # a Newtonian oil in the whole: friction grows with the load towards that of Eyring's; behind light contacts the
+    # oil between the streaks of gas is sheared too
+    assert found.mean_friction < 0.0125
     assert found.least_film > 0.5e-6
     assert found.rolling_loss > found.sliding_loss
 

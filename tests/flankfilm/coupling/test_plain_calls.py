@@ -10,14 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import fem
 import flankfilm as ff
 from base import InputError
 from ehl import Meniscus, OilLayer, Roughness
 from flankfilm.build import gear_pair, pinion_speed
 from flankfilm.build_film import lubricant
 from flankfilm.cache import Cache
-from flankfilm.coupling import Flanks, LubricatedCycle, MeshCycle
-from flankfilm.stages.catalogue import DRY_CYCLE, FILM, VERIFICATION
+from flankfilm.coupling import FilmModel, Flanks, LoadedTeeth, LubricatedCycle, MeshCycle, torque_curves
+from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FILM, VERIFICATION
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.motion import SCALING, SWEEP
 from flankfilm.stages.speeds import DIAGRAM
@@ -191,6 +192,26 @@ def test_contacts_of_plastics_move_unless_they_are_told_to_stay():
         assert cycle.contact is not None
         assert cycle.contact.moving_contact is moves
         assert cycle.model_error == cycle.contact.model_error
+        bodies, asked = run[COMPLIANCE], None if moves else False
+        given = {"compliance": bodies, "moving_contact": asked}
+        pair, count = gear_pair(run.scene), len(cycle.position)
+        one = fem.mesh_cycle(pair, 50.0, count, **given)
+        _, among = fem.mesh_cycle(pair, (20.0, 50.0), count, **given)
+        teeth = LoadedTeeth(pair, 50.0, compliance=bodies, flanks=flanks)
+        curves = torque_curves(teeth, (20.0,), count)
+        whole = run[VERIFICATION].references[0]
+        assert whole.label == "finite elements"
+        for found in (one, among):
+            assert found.moving_contact is moves
+            np.testing.assert_allclose(found.stiffness, cycle.stiffness, rtol=1e-9)
+        figures = curves.secant_stiffness[1], 1e9 * pair.face_width * whole.figures["mesh, mean"].value
+        np.testing.assert_allclose(figures, cycle.mean_secant_stiffness, rtol=1e-3)
+        oil = lubricant(scene_of("ishikawa", "ehl"))
+        wet = ff.lubricated_cycle(
+            pair, 50.0, 20.0, oil, tolerance=0.05, film=FilmModel("dowson"), compliance=bodies, flanks=flanks
+        )
+        assert wet.contact is not None
+        assert wet.contact.moving_contact is moves
     secant = {moves: cycle.secant_stiffness for moves, cycle in cycles.items()}
     # near A and E the corners count too, whose law takes contacts that stay
     change = np.median(np.abs(secant[True] / secant[False] - 1))

@@ -132,6 +132,20 @@ def test_a_sweep_says_what_its_series_leaves_out(cycle):
     assert judged >= 3
 
 
+def test_small_motions_far_above_resonance_are_judged_too(cycle):
+    """The force is the mean's there and hardly moves; the change of its small spread is told."""
+    values = np.array([4.0, 4.5])
+    found, finer = (
+        speed_sweep(pair_oscillator(PAIR, mesh_series(cycle, order=n), 600.0, 800.0), frequency=values)
+        for n in (1, TRUE)
+    )
+    for way, spread in found.spread.items():
+        assert np.all(spread < 0.01)
+        assert found.spread_change[way] == pytest.approx(
+            abs(spread / finer.spread[way] - 1.0), rel=0.1, abs=1e-6
+        )
+
+
 @pytest.mark.slow
 def test_the_order_is_raised_until_the_jumps_are_as_exact_as_asked(cycle, whole):
     first = mesh_series(cycle, order=1)

@@ -1,7 +1,7 @@
 """Numbers of docs/validation/losses.md: the article's pair, warmer gears, FZG type C, and friction beside Schlenk's.
 
 Run from the root with ``PYTHONPATH=. python tests/validation/studies/mesh_losses.py article`` (or ``bulk``, ``share``,
-``fzg``, ``cost``, ``friction``; the last draws docs/images/mesh_friction.png).
+``fzg``, ``cost``, ``friction``, ``rough``; the last two draw docs/images/mesh_friction.png and rough_friction.png).
 """
 
 from __future__ import annotations
@@ -18,14 +18,15 @@ import numpy as np
 
 import flankfilm as ff
 from base import RangeWarning, SolverError
-from ehl import Lubricant
+from ehl import Lubricant, Roughness
 from flankfilm.coupling import Flanks, LoadedTeeth, MeshLosses
 from flankfilm.coupling.mean_losses import Carried, means_of
 from gears import BasicRack, Gear, GearPair, Material, TipRelief
 from gears.closed_form import ohlendorf_loss_factor, schlenk_friction
 from tests.validation.article import PAIR, TORQUE
 
-IMAGE = Path(__file__).parents[3] / "docs" / "images" / "mesh_friction.png"
+IMAGES = Path(__file__).parents[3] / "docs" / "images"
+IMAGE = IMAGES / "mesh_friction.png"
 RPM = math.pi / 30.0
 SPEED = 2000.0 * RPM
 OIL = Lubricant(0.075, 19.6e-9, 860.0, temperature=353.15, viscosity_slope=0.04, eyring_stress=5e6)
@@ -33,6 +34,9 @@ HELD = Flanks(beyond_path=False)
 ROUGHNESS = 0.4e-6
 RELIEF_LENGTHS = (2e-3, 3e-3, 4e-3, 5e-3)
 FZG_TORQUES = (13.0, 61.0, 94.0, 135.0, 183.0, 239.0, 302.0)
+ROUGH_TORQUES = (35.0, 61.0, 94.0, 135.0, 183.0, 239.0, 302.0)
+RIG_SPEED = 1500.0 * RPM * 24 / 16  # of the pinion: 8.3 m/s at the pitch circle
+RIG_OIL = replace(Lubricant.from_iso_vg(100, 363.15), eyring_stress=7e6)
 SPEEDS = (250.0, 500.0, 1000.0, 2000.0, 3000.0, 4000.0, 6000.0)
 TORQUES = (30.0, 60.0, 100.0, 150.0, 300.0, 600.0, 900.0)
 
@@ -166,6 +170,42 @@ def friction() -> None:
     draw((over_speed, over_torque), formula)
 
 
+def rig_friction(torque: float, roughness: Roughness | None, **options) -> float:
+    """Mean friction of type C of the FZG rig at 8.3 m/s and 90 degC, mineral oil ISO VG 100."""
+    held = {"model": "potential-energy", "positions": 8, "tolerance": 0.02} | options
+    return ff.mesh_losses(
+        fzg_pair(None), torque, RIG_SPEED, RIG_OIL, roughness=roughness, **held
+    ).mean_friction
+
+
+def rough() -> None:
+    """Draw friction of rough gears over torque beside Schlenk's formula, by the laws that share the load."""
+    from flankfilm.figures.style import colours, sheet
+
+    drawn = Roughness.from_drawing(mean=ROUGHNESS)
+    flanks = {
+        "film ratio (Zhu, Hu)": drawn,
+        "elastic asperities (Greenwood, Tripp)": replace(drawn, law="greenwood-tripp"),
+        "smooth": None,
+    }
+    formula = [
+        schlenk_friction(fzg_pair(None), torque, RIG_SPEED, RIG_OIL.viscosity, ROUGHNESS)
+        for torque in ROUGH_TORQUES
+    ]
+    print("Schlenk", *(f"{one:.4f}" for one in formula))
+    with sheet(None, 1, 1, height=3.2) as (figure, (axes,)):
+        for colour, (name, roughness) in zip(colours(3), flanks.items(), strict=True):
+            row = [rig_friction(torque, roughness) for torque in ROUGH_TORQUES]
+            print(name, *(f"{one:.4f}" for one in row))
+            axes.plot(ROUGH_TORQUES, row, color=colour, label=name)
+        axes.plot(ROUGH_TORQUES, formula, color="black", linestyle="--", label="Schlenk, measured")
+        axes.set(
+            xlabel="torque of the pinion [N m]", ylabel="mean coefficient of friction [-]", ylim=(0.0, 0.07)
+        )
+        axes.legend(fontsize="small")
+    figure.savefig(IMAGES / "rough_friction.png", dpi=150)
+
+
 def draw(ours: Sequence[list[list[float]]], theirs: list[list[float]]) -> None:
     """Write the picture."""
     from flankfilm.figures.style import colours, sheet
@@ -192,6 +232,12 @@ def draw(ours: Sequence[list[list[float]]], theirs: list[list[float]]) -> None:
 if __name__ == "__main__":
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RangeWarning)
-        {"article": article, "bulk": bulk, "share": share, "fzg": fzg, "cost": cost, "friction": friction}[
-            sys.argv[1]
-        ]()
+        {
+            "article": article,
+            "bulk": bulk,
+            "share": share,
+            "fzg": fzg,
+            "cost": cost,
+            "friction": friction,
+            "rough": rough,
+        }[sys.argv[1]]()
