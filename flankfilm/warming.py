@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import as_completed
+from concurrent.futures import Future
 from dataclasses import dataclass
+from queue import SimpleQueue
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -59,8 +60,12 @@ def warm_up(workers: int, report: Callable[[Warmed], None]) -> list[Warmed]:
     if workers == 0:
         return ready
     with executor("processes", min(workers, len(PARTS))) as pool:
-        for part in as_completed([pool.executor.submit(warmed, name) for name in PARTS]):
-            ready.append(part.result())
+        # as in the rows of a study: concurrent.futures.as_completed does not survive a signal
+        done: SimpleQueue[Future[Warmed]] = SimpleQueue()
+        for name in PARTS:
+            pool.executor.submit(warmed, name).add_done_callback(done.put)
+        for _ in PARTS:
+            ready.append(done.get().result())
             report(ready[-1])
     return ready
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
+from concurrent.futures import BrokenExecutor, Future
 from contextlib import ExitStack
+from queue import SimpleQueue
 from types import TracebackType
 
+from flankfilm.children import ends_later
 from flankfilm.studies.executors import Kind, Pool, executor
 from flankfilm.studies.row import NOT_COMPUTED, Row, RowResult, compute_row, failed
 
@@ -68,16 +70,21 @@ class Workers:
         if self._pool is None:
             self._pool = self._open.enter_context(executor(self.kind, self.count))
         ahead = iter(rows)
+        # concurrent.futures.wait holds locks of all futures: a signal within it would leave them locked for ever
+        done: SimpleQueue[Future[RowResult]] = SimpleQueue()
         while True:
             room = AHEAD * max(1, self._pool.size())
             while len(waiting) < room and (row := next(ahead, None)) is not None:
-                waiting[self._pool.executor.submit(compute_row, row)] = row
+                with ends_later():
+                    future = self._pool.executor.submit(compute_row, row)
+                    waiting[future] = row
+                    future.add_done_callback(done.put)
             if not waiting:
                 return
-            for future in wait(waiting, return_when=FIRST_COMPLETED).done:
-                result = _result(waiting[future], future)
-                del waiting[future]
-                yield result
+            future = done.get()
+            result = _result(waiting[future], future)
+            del waiting[future]
+            yield result
 
 
 def _result(row: Row, future: Future[RowResult]) -> RowResult:

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import signal
+import threading
+import time
+from collections import deque
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
+
+import pytest
 
 from flankfilm.studies.executors import Pool
 from flankfilm.studies.row import Row, RowResult
@@ -35,13 +41,15 @@ def test_a_cluster_larger_than_this_machine_is_kept_busy_and_one_that_grows_too(
     def executor(kind, workers):
         yield Pool(cluster, lambda: size[0])
 
-    def wait(futures, return_when):
-        cluster.work()
-        done = {future for future in futures if future.done()}
-        return type("Waited", (), {"done": done})
+    class Queue(deque):
+        put = deque.append
+
+        def get(self):
+            cluster.work()
+            return self.popleft()
 
     monkeypatch.setattr("flankfilm.studies.workers.executor", executor)
-    monkeypatch.setattr("flankfilm.studies.workers.wait", wait)
+    monkeypatch.setattr("flankfilm.studies.workers.SimpleQueue", Queue)
     rows = [Row(index, {}, ("contact_ratio",)) for index in range(100)]
     seen = []
     with Workers("mpi", 2) as workers:
@@ -52,3 +60,58 @@ def test_a_cluster_larger_than_this_machine_is_kept_busy_and_one_that_grows_too(
                 size[0] = 20
     assert sorted(seen) == list(range(100))
     assert cluster.most == AHEAD * 20
+
+
+class Busy(Executor):
+    """A thread that ends rows, which it cannot where the lock of one of them is held for ever."""
+
+    def __init__(self) -> None:
+        self.waiting: list[tuple[Future[RowResult], Row]] = []
+        self.ended = False
+        self.thread = threading.Thread(target=self.work, daemon=True)
+        self.thread.start()
+
+    def submit(self, fn, /, *args, **kwargs):
+        future: Future[RowResult] = Future()
+        self.waiting.append((future, args[0]))
+        return future
+
+    def work(self) -> None:
+        while not self.ended or self.waiting:
+            if self.waiting:
+                time.sleep(2e-5)
+                future, row = self.waiting.pop(0)
+                future.set_result(RowResult(row.index, (0.0,), 0.0))
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="the system has no timer that sends a signal")
+def test_a_signal_while_rows_are_waited_for_leaves_no_lock_behind(monkeypatch):
+    """Inside concurrent.futures.wait it does: the pool could then not be ended, nor the study."""
+    pools: list[Busy] = []
+
+    @contextmanager
+    def executor(kind, workers):
+        pools.append(Busy())
+        signal.setitimer(signal.ITIMER_REAL, 0.001 + 1e-5 * len(pools))
+        yield Pool(pools[-1], lambda: 2)
+
+    monkeypatch.setattr("flankfilm.studies.workers.executor", executor)
+
+    def compute() -> None:
+        with Workers("processes", 2) as workers:
+            for _ in workers.computed(rows):
+                pass
+            time.sleep(1.0)
+
+    before = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+    rows = [Row(index, {}, ("contact_ratio",)) for index in range(2_000)]
+    try:
+        for _ in range(300):
+            with pytest.raises(KeyboardInterrupt):
+                compute()
+            pools[-1].ended = True
+            pools[-1].thread.join(2.0)
+            assert not pools[-1].thread.is_alive()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
