@@ -28,7 +28,7 @@ def draw() -> Figure:
     pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3, material=STEEL)
     smooth = ff.film_along_path(pair, TORQUE, 2000 * RPM, OIL, tolerance=0.01)
     least = f"{1e6 * smooth.least_film:.3f} um ± {100 * smooth.least_film_error:.1g} %"
-    print(f"smooth flanks, 2000 rpm: least film of the path {least}")
+    print(f"smooth flanks, 2000 rpm: minimum film of the path {least}")
 
     at_c = pair.path_at(pair.points.C)
     contacts = [
@@ -57,7 +57,7 @@ def draw() -> Figure:
     with sheet(columns=2, height=3.4, legend=0) as (drawn, (path, stribeck)):
         travel = 1e3 * (smooth.rho1 - pair.points.A)
         path.plot(travel, 1e6 * smooth.central_thickness, label="central film")
-        path.plot(travel, 1e6 * smooth.minimum_thickness, label="least film")
+        path.plot(travel, 1e6 * smooth.minimum_thickness, label="minimum film")
         path.axvline(1e3 * (pair.points.C - pair.points.A), color=MARK, linewidth=0.8)
         path.set(xlabel="distance from A on the path [mm]", ylabel="film thickness at 2000 rpm [µm]")
         from_zero(path)

@@ -1,0 +1,77 @@
+"""Words that no page, docstring or message may use: engineers' English, subject first, the field's own terms.
+
+Pages are read without their code; of Python every string literal with more than one word is read. Names stay: those of
+the public interface (``least_film``) are no words of a sentence.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import tokenize
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
+PACKAGES = ("base", "gears", "meshes", "ehl", "fem", "dynamics", "flankfilm")
+
+REFUSED = {  # pattern: what to write instead
+    r"\bmend(s|ed|ing)?\b": "correct, repair",
+    r"\bfor who\b": "for users who",
+}
+WORDS = {re.compile(pattern, re.IGNORECASE): instead for pattern, instead in REFUSED.items()}
+ONE_WORD = re.compile(r"""[a-zA-Z]*(['"])[^\s]*\1""")
+
+
+def prose_of_page(text: str) -> Iterator[tuple[int, str]]:
+    """Numbered lines of a page without blocks of code, what a program printed, and inline code."""
+    fenced = False
+    for number, line in enumerate(text.split("\n"), 1):
+        if line.startswith("```"):
+            fenced = not fenced
+        elif not fenced:
+            yield number, re.sub(r"`[^`]*`", "``", line)
+
+
+def prose_of_code(text: str) -> Iterator[tuple[int, str]]:
+    """Numbered lines of all docstrings, messages and labels of a module, without inline code and examples."""
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type != tokenize.STRING or ONE_WORD.fullmatch(token.string):
+            continue
+        for number, line in enumerate(token.string.split("\n"), token.start[0]):
+            if not line.lstrip().startswith((">>>", "...")):
+                yield number, re.sub(r"`[^`]*`", "``", line)
+
+
+def refused(path: Path) -> list[str]:
+    text = path.read_text(encoding="utf-8")
+    lines = prose_of_code(text) if path.suffix == ".py" else prose_of_page(text)
+    return [
+        f"{path.relative_to(ROOT)}:{number}: {found[0]!r}, write: {instead}"
+        for number, line in lines
+        for pattern, instead in WORDS.items()
+        if (found := pattern.search(line))
+    ]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_a_page_uses_no_refused_word(page: Path):
+    assert refused(page) == []
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_docstrings_and_messages_use_no_refused_word(package: str):
+    assert [fault for path in sorted((ROOT / package).rglob("*.py")) for fault in refused(path)] == []
+
+
+@pytest.mark.parametrize("template", sorted((ROOT / "flankfilm").rglob("*.toml")), ids=lambda path: path.name)
+def test_texts_of_reports_use_no_refused_word(template: Path):
+    assert refused(template) == []
+
+
+def test_a_refused_word_is_found_in_prose_alone():
+    assert list(prose_of_page("a `mend` b\n```sh\nmend\n```\nmend")) == [(1, "a `` b"), (5, "mend")]
+    assert list(prose_of_code('x = "mend"\ny = "we mend"\n')) == [(2, '"we mend"')]
