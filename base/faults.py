@@ -72,7 +72,7 @@ class InputError(FlankfilmError, ValueError):
         return cls([Fault.of(where, value, allowed, remedy)])
 
     def __str__(self) -> str:
-        """Each fault on a line of its own."""
+        """Each fault on a separate line."""
         return "\n".join(str(fault) for fault in self.faults)
 
 

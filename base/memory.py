@@ -1,4 +1,4 @@
-"""Memory that a process may still take, by what the system says of itself."""
+"""Memory that a process may still take, as the system reports it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ GROUP = Path("/sys/fs/cgroup")
 def free_memory() -> float:
     """Bytes that a process may take before the system kills it; infinite where the system does not say.
 
-    The least of what is available on the machine, of what the container's limit leaves (control groups, version 2), and
+    The minimum of what is available on the machine, of what the container's limit leaves (cgroups, version 2), and
     of what the limit of the address space leaves.
 
     Examples

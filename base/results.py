@@ -134,7 +134,7 @@ def quantity(
     --------
     >>> @record
     ... class Film:
-    ...     minimum: float = quantity("m", "least film", shown="um")
+    ...     minimum: float = quantity("m", "minimum film", shown="um")
     >>> Film(0.5e-6)
     Film(minimum 5e-07 m)
     """

@@ -21,7 +21,7 @@ _VIEWS: dict[str, str] = {}
 _PICTURES: dict[str, str] = {}
 
 ANY = "any record"
-"""Key of the view of records that have none of their own."""
+"""Key of the view of records that have no other."""
 
 
 def show_with(views: Mapping[str, str], pictures: Mapping[str, str] | None = None) -> None:

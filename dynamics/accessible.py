@@ -37,7 +37,7 @@ def accessible_saddles(oscillator: GearOscillator, states: Array, longest: int) 
     oscillator : GearOscillator
         Just past the end of the attractor.
     states : (n, 2) array
-        Samples of the attractor before its end; the more, the better it is told what is on it.
+        Samples of the attractor before its end; the more, the better points on it are recognised.
     longest : int
         Longest period of a saddle.
 

@@ -39,13 +39,13 @@ class Attractor:
     )
     orbit: Orbit | None
     """The periodic orbit, polished by Newton's method; None if aperiodic."""
-    share: float = quantity("1", "part of the starts that come to it")
+    share: float = quantity("1", "part of the starts that reach it")
     share_error: float = quantity("1", "standard error of the share if the starts are taken for a sample")
 
 
 @record
 class BasinResult(AsArray):
-    """Which attractor every start comes to."""
+    """Which attractor every start reaches."""
 
     x: Array = quantity("1", "starting values of X, or along the first direction of the plane", "x")
     v: Array = quantity("1", "starting values of V, or along the second direction of the plane", "v")
@@ -76,12 +76,12 @@ def basins(
     tolerance: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> BasinResult:
-    """Find the attractors that a grid of starts comes to, and which start comes to which.
+    """Find the attractors that a grid of starts reaches, and which start reaches which.
 
     Each start is followed until it is near a point of a known attractor and no farther from it one round later. A
-    start that comes to none is followed on; if it repeats, Newton's method makes it a new attractor. One that does not
+    start that reaches none is followed on; if it repeats, Newton's method makes it a new attractor. One that does not
     repeat is aperiodic if it stays on a set where a motion of 20 limits has a positive Lyapunov exponent, by three
-    standard errors; else it is followed for 20 limits, and what then has not come to an orbit is unsettled: chaos
+    standard errors; else it is followed for 20 limits, and what then has not reached an orbit is unsettled: chaos
     may be a transient, and a creeping motion is no chaos. (Without damping nothing settles: all that does not repeat
     is aperiodic.)
 
@@ -200,7 +200,7 @@ class _Found:
         self.sieves: list[_Sieve] = []
 
     def follow(self, state: Array, wait: int) -> int:
-        """Attractor that one state comes to, noted if it is new; or one of the negative labels."""
+        """Attractor that one state reaches, noted if it is new; or one of the negative labels."""
         kept = 4 * self.longest
         image = self.flow.follow(state, kept, wait, derivatives=False)
         self.periods += kept + wait
@@ -317,10 +317,10 @@ class _Sieve:
             self.open |= np.roll(visited, shift, axis=(0, 1))
 
     def _cells(self, states: Array) -> Integers:
-        """Indices of the cells; what lies far outside comes to the margin, which stays closed."""
+        """Indices of the cells; what lies far outside is put in the margin, which remains closed."""
         at = np.clip((states - self.low) / self.size + 2.0, 0.0, SIEVE + 3.0)
         return np.asarray(at, dtype=np.int64)
 
     def holds(self, states: Array) -> bool:
-        """Whether a motion has come to it: all of the later half of its states."""
+        """Whether a motion has reached it: all of the later half of its states."""
         return bool(np.all(self.open[tuple(self._cells(states[len(states) // 2 :, self.pair]).T)]))

@@ -37,7 +37,7 @@ class BasinBoundary:
     dimension_error: float = quantity("1", "standard error of the slope")
     shares: Array = quantity(
         "1",
-        "part of the region that comes to each attractor, from the areas of the cells; last, what comes to none",
+        "part of the region that reaches each attractor, from the areas of the cells; last, what reaches none",
         "attractor",
     )
     error: float = quantity(
@@ -57,7 +57,7 @@ def share_interval(hits: int, starts: int, confidence: float = 0.95) -> tuple[fl
     Parameters
     ----------
     hits, starts : int
-        Starts that came to the attractor, and all.
+        Starts that reached the attractor, and all.
     confidence : float
         Between 0 and 1.
 
@@ -98,14 +98,14 @@ def basin_boundary(
     radius: float = 1e-4,
     max_cells: int = 200_000,
 ) -> BasinBoundary:
-    """Refine the cells of a grid whose corners come to different attractors.
+    """Refine the cells of a grid whose corners reach different attractors.
 
     Parameters
     ----------
     oscillator : GearOscillator
         The oscillator.
     attractors : sequence of Attractor
-        Periodic ones, as `basins` finds them; what comes to none of them within `limit` is one further kind.
+        Periodic ones, as `basins` finds them; what reaches none of them within `limit` is one further kind.
     region : ((x0, x1), (v0, v1))
         Starts.
     cells : int

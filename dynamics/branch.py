@@ -148,8 +148,8 @@ class Stretch:
     label: str = quantity("", "n-p-q or Un-p-q")
     stable: bool = quantity("1", "stability of all its orbits")
     periods: int = quantity("1", "period, in excitation periods")
-    low: float = quantity("1", "least parameter value")
-    high: float = quantity("1", "greatest parameter value")
+    low: float = quantity("1", "minimum parameter value")
+    high: float = quantity("1", "maximum parameter value")
     begins: SpecialPoint | None = quantity(
         "", "special point at its first orbit; None at an end of the branch"
     )

@@ -203,12 +203,12 @@ class BranchProblem(ABC):
 
     @cached_property
     def rest(self) -> Array:
-        """State at rest over the scale, from which motions in much play are measured."""
+        """State at rest over the scale, from which motions in large backlash are measured."""
         return np.asarray(self.oscillator.rest_state() / self.scale)
 
     @cached_property
     def driven(self) -> float:
-        """Least size of a motion in play, by what drives it, over the scale."""
+        """Smallest size of a motion in backlash, from its excitation, over the scale."""
         return float(WIDTH * self.oscillator.driven_size / self.scale)
 
     def size_of(self, u: Array) -> float:

@@ -18,7 +18,7 @@ from dynamics.stiffness import FourierStiffness
 from dynamics.tracking import Mark, marked
 
 FIRST, LEAST = 0.25, 1.0 / 256.0
-"""First step of the way from one stiffness to the other, and the least."""
+"""First step of the way from one stiffness to the other, and the smallest."""
 
 NEAR = 0.05
 """How far a point may lie from where its derivatives foretold it, over the size of the motion and the parameter."""

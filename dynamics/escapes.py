@@ -116,7 +116,7 @@ def chaos_end(
     parameter : str
         As in `GearOscillator.with_parameter`.
     state : array_like, shape (2,)
-        From which the motion comes to the attractor at the first bound.
+        From which the motion reaches the attractor at the first bound.
     bounds : (float, float)
         Where chaos lasts, and where motions leave it; the second may be the lower one.
     periods : int

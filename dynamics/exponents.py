@@ -139,7 +139,7 @@ class LyapunovScan(AsArray):
     error: float = quantity("1", "largest standard error")
     cost: Cost
     converged: bool = quantity("1", "whether the sign of the larger exponent is certain everywhere")
-    message: str = quantity("", "what to know about the result")
+    message: str = quantity("", "remarks on the result")
 
     def columns(self) -> Array:
         """Columns value, larger exponent, smaller exponent, their standard errors."""

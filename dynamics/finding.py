@@ -269,7 +269,7 @@ class _Search:
         return {"starts": used, "once": once, "unseen": unseen}
 
     def _meet(self, point: Array, n: int, met: list[int]) -> None:
-        """Count that a start has come to a point of an orbit, which may be new."""
+        """Count that a start has reached a point of an orbit, which may be new."""
         k = self._known(point)
         if k is not None:
             met[k] += 1
@@ -297,7 +297,7 @@ class _Search:
             self._hunt(np.array(starts), n, 20, np.empty((0, 2)))
 
     def _hunt(self, starts: Array, n: int, limit: int, deflated: Array) -> None:
-        """Keep the orbits that Newton's method, pushed away from some points, comes to from starts."""
+        """Keep the orbits that Newton's method, pushed away from some points, reaches from starts."""
         from dynamics.kernels.searching import hunt
 
         found = np.empty((4096, 2))

@@ -1,4 +1,4 @@
-"""Which flow an oscillator has: the one place where it is chosen by what the oscillator is."""
+"""Which flow an oscillator has: the one place where it is chosen for the kind of oscillator."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Known attractors, and which of them starts come to."""
+"""Known attractors, and which of them starts reach."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Homes:
         self.periods = 0
 
     def settle(self, starts: Array, limit: int, labels: Integers | None = None) -> Integers:
-        """Index of the attractor that each start comes to within some periods; negative for none.
+        """Index of the attractor that each start reaches within some periods; negative for none.
 
         The starts are replaced by their last states. Those with a label other than -1 already are left alone.
         """

@@ -19,7 +19,7 @@ OSCILLATOR: Mapping[str, Limit] = {
     "mean_force": NUMBER,
     "error_amplitude": NUMBER,
     "frequency": Limit(0.0, low_open=True, remedy="give mesh over natural frequency"),
-    "half_backlash": Limit(0.0, remedy="give half the play, without sign"),
+    "half_backlash": Limit(0.0, remedy="give half the backlash, without sign"),
     "error_phase": NUMBER,
 }
 """Limits of an oscillator's own parameters, all of them dimensionless."""

@@ -107,7 +107,7 @@ def manifold(
     """Follow the manifolds of a saddle.
 
     A branch starts as a short stretch of the eigenvector, from a point to its image, and is carried on by the map
-    (its inverse for the stable manifold). Where neighbours come to lie farther apart than the spacing, points are put
+    (its inverse for the stable manifold). Where neighbours lie farther apart than the spacing, points are put
     between them at the start and carried along.
 
     Parameters
@@ -115,7 +115,7 @@ def manifold(
     orbit : Orbit
         A saddle: one multiplier outside the unit circle, one within.
     kind : str
-        "stable": the motions that come to the orbit, which bound basins; "unstable": those that leave it.
+        "stable": the motions that reach the orbit, which bound basins; "unstable": those that leave it.
     region : ((x0, x1), (v0, v1)), optional
         Outside it points are not put closer. Left out: three times the size of the orbit.
     length : float

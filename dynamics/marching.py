@@ -75,7 +75,7 @@ def march(
     """Take steps from a point for as long as nothing lies between neighbours.
 
     It is left to single steps to look at what may be a special point, the end of the range, a tangent that turns or a
-    multiplier that jumps at steps near the least, another number of cells, an orbit passed before, or no orbit.
+    multiplier that jumps at steps near the smallest, another number of cells, an orbit passed before, or no orbit.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ class _Room:
 
 
 class _Course:
-    """Where steps have come to, and the step that is tried."""
+    """Where steps have arrived, and the step that is tried."""
 
     def __init__(self, problem: OrbitProblem, last: Point, heading: Heading, places: Sequence[Any]) -> None:
         from dynamics.kernels.correcting import correct

@@ -180,12 +180,12 @@ def trajectory(
 
 @record
 class ForceRange:
-    """Least and greatest force of a motion, over the mean force."""
+    """Minimum and maximum force of a motion, over the mean force."""
 
     headline = ("least", "greatest")
 
-    least: float = quantity("1", "least of K(tau) f(X) / F_m; negative where the back flanks touch")
-    greatest: float = quantity("1", "greatest of K(tau) f(X) / F_m")
+    least: float = quantity("1", "minimum of K(tau) f(X) / F_m; negative where the back flanks touch")
+    greatest: float = quantity("1", "maximum of K(tau) f(X) / F_m")
     error: float = quantity("1", "change of the two with half as many samples, the larger one")
 
 
@@ -224,7 +224,7 @@ def force_range(
     *,
     load: float | None = None,
 ) -> ForceRange:
-    """Least and greatest force of a motion.
+    """Minimum and maximum force of a motion.
 
     Parameters
     ----------

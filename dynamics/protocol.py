@@ -192,7 +192,7 @@ class Oscillator(ABC):
     @property
     @abstractmethod
     def floor(self) -> float:
-        """Least size that a motion is measured by."""
+        """Smallest size that a motion is measured by."""
 
     @abstractmethod
     def rest_state(self) -> Array:
@@ -230,7 +230,7 @@ class Oscillator(ABC):
     @property
     @abstractmethod
     def driven_size(self) -> float:
-        """Size of the displacements that the forces and the error make, without the play."""
+        """Size of the displacements that the forces and the error make, without the backlash."""
 
     @abstractmethod
     def contact_motion(self, tau: Array, states: Array) -> tuple[Array, Array]:

@@ -15,7 +15,7 @@ from dynamics.oscillator import GearOscillator
 class Retabling:
     """Tables along a parameter, each of which stands until the next is made: what does not change is not made again.
 
-    Forces touch the forced motion alone, the play none of the motions that are tabulated. Numbers are those of fresh
+    Forces touch the forced motion alone, backlash none of the motions that are tabulated. Numbers are those of fresh
     tables to the last bit.
 
     Parameters

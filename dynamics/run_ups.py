@@ -26,7 +26,7 @@ from dynamics.states import checked_outputs, checked_state
 from dynamics.sweeps import settling_periods
 
 SAMPLES = 64
-"""Samples of a period, enough for order 8 and for the greatest force to a part in a thousand."""
+"""Samples of a period, enough for order 8 and for the maximum force to a part in a thousand."""
 
 BLOCK = 16
 """Periods of a block, of which orders are taken: lines lie at multiples of 1/16."""
@@ -54,14 +54,14 @@ class RunUp(AsArray):
     rms: Array = quantity(
         "1", "root mean square of X about its mean in each block", "block", error="rms_error"
     )
-    peak: Array = quantity("1", "greatest X of each block", "block", error="peak_error")
+    peak: Array = quantity("1", "maximum X of each block", "block", error="peak_error")
     force_rms: Array = quantity(
         "1",
         "root mean square of the mesh force k f(X) about its mean, dimensionless",
         "block",
         error="rms_error",
     )
-    force_peak: Array = quantity("1", "greatest mesh force of each block", "block", error="peak_error")
+    force_peak: Array = quantity("1", "maximum mesh force of each block", "block", error="peak_error")
     separated: Array = quantity(
         "1", "part of each block without contact of the driving flanks", "block", shown="%", error="error"
     )
@@ -76,7 +76,7 @@ class RunUp(AsArray):
         "1", "root mean square of each output about its mean in each block", "block output", error="error"
     )
     output_peak: Array = quantity(
-        "1", "greatest modulus of each output in each block", "block output", error="error"
+        "1", "maximum modulus of each output in each block", "block output", error="error"
     )
     state: Array = quantity(
         "1", "state at the end: X and V, or displacements and speeds", "state", no_error=STEADY
@@ -84,7 +84,7 @@ class RunUp(AsArray):
     periods: int = quantity("1", "excitation periods in all", no_error=EXACT)
     rate: float = quantity(
         "1",
-        "greatest change of the frequency in one decay time over the width of a resonance, dw/dtau / (2 zeta^2), "
+        "largest change of the frequency in one decay time over the width of a resonance, dw/dtau / (2 zeta^2), "
         "of a drive train with its slowest decay; where it is small the motion follows",
         no_error=EXACT,
     )
@@ -96,14 +96,14 @@ class RunUp(AsArray):
     )
     peak_error: Array = quantity(
         "1",
-        "the same of each block's greatest X, force or output, or what may lie above its samples if that is more",
+        "the same of each block's largest X, force or output, or what may lie above its samples if that is more",
         "block",
     )
     greatest_error: float = quantity(
-        "1", "the same of the greatest X, force or output of the whole run that differs most"
+        "1", "the same of the largest X, force or output of the whole run that differs most"
     )
     error: float = quantity(
-        "1", "greatest of the blocks' errors: where the motion jumps it may do so a block earlier or later"
+        "1", "largest of the blocks' errors: where the motion jumps it may do so a block earlier or later"
     )
     cost: Cost
     converged: bool = quantity("1", "whether the motion stayed bounded")
@@ -115,7 +115,7 @@ class RunUp(AsArray):
         return "up" if len(self.frequency) < 2 or self.frequency[-1] > self.frequency[0] else "down"
 
     def columns(self) -> Array:
-        """Columns frequency, root mean square, peak, greatest force."""
+        """Columns frequency, root mean square, peak, maximum force."""
         return np.column_stack([self.frequency, self.rms, self.peak, self.force_peak])
 
 
@@ -214,7 +214,7 @@ def run_up(
 
 
 def _errors(fine: Array, coarse: Array, above: Array) -> tuple[Array, Array, float]:
-    """Errors of each block's root mean squares and peaks, and of the greatest peaks, infinite where motions are lost.
+    """Errors of each block's root mean squares and peaks, and of the largest peaks, infinite where motions are lost.
 
     Parameters
     ----------
@@ -250,7 +250,7 @@ def _ramp(
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Figures (blocks, 5 + 2 outputs), lines (blocks, 2, orders), starts of the blocks, last state, rest of peaks.
 
-    Each frequency is held for so many periods; the last is what may lie above the greatest samples.
+    Each frequency is held for so many periods; the last is what may lie above the largest samples.
     """
     first, last = bounds
     turns = held * (np.arange(number * BLOCK // held) + 0.5) / (number * BLOCK)
@@ -288,7 +288,7 @@ def _ramp(
 
 
 def _above(curve: Array) -> float:
-    """What may lie above the greatest sample: the height of a parabola whose top is halfway to the next one."""
+    """What may lie above the largest sample: the height of a parabola whose top is halfway to the next one."""
     k = min(max(int(np.argmax(curve)), 1), len(curve) - 2)
     return float(abs(2.0 * curve[k] - curve[k - 1] - curve[k + 1]) / 8.0)
 

@@ -40,7 +40,7 @@ class Scaling:
 
     Notes
     -----
-    Displacements are along the line of action, so that half a backlash b is half the play along that line,
+    Displacements are along the line of action, so that b is half the backlash along that line,
     and an error e is the amplitude of the *unloaded* transmission error.
     """
 

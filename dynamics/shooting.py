@@ -35,7 +35,7 @@ class Orbit:
         "1", "X and V at tau = 0, or displacements and speeds; nan if not converged", "coordinate"
     )
     periods: int = quantity(
-        "1", "least period n, in excitation periods; it may be a divisor of the number asked for"
+        "1", "smallest period n, in excitation periods; it may be a divisor of the number asked for"
     )
     multipliers: npt.NDArray[np.complex128] | Array = quantity(
         "1",
@@ -265,7 +265,7 @@ def make_orbit(
 
 
 def newton_step(jacobian: Array, image_minus_state: Array) -> Array:
-    """Correction of the state; the one of least norm where a multiplier is exactly one."""
+    """Correction of the state; the one of smallest norm where a multiplier is exactly one."""
     matrix = np.eye(len(jacobian)) - jacobian
     if not np.all(np.isfinite(matrix)):
         return np.full(len(jacobian), np.nan)

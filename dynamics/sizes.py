@@ -1,4 +1,4 @@
-"""How large a motion is, however much play it lies in."""
+"""How large a motion is, however large its backlash."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def size_of(
     nodes: Array | None = None,
     tolerance: float | None = None,
 ) -> float:
-    """Scale of a motion, of which the play is a part as far as the motion reaches.
+    """Scale of a motion, of which the backlash is a part as far as the motion reaches.
 
-    Displacements X of a pair at rest are D and the deflection. In much play a motion measured by X would be so large
+    Displacements X of a pair at rest are D and the deflection. In large backlash a motion in X would be so large
     that nothing about it changes along a branch: it is measured by four times its largest distance from the state at
     rest, or four times what drives it, where that is less.
 

@@ -16,7 +16,7 @@ Region: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 
 def scale_of(oscillator: Oscillator, states: npt.ArrayLike) -> float:
-    """Scale of a motion: its largest X or V, or what the oscillator's least size is if that is more; never zero."""
+    """Scale of a motion: its largest X or V, or what the oscillator's smallest size is if that is more; never zero."""
     return max(float(np.max(np.abs(states))), oscillator.floor)
 
 

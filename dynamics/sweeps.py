@@ -54,7 +54,7 @@ class SweepResult(AsArray):
     )  # fmt: skip
     cost: Cost
     converged: bool = quantity("1", "whether every motion could be followed")
-    message: str = quantity("", "what to know about the result")
+    message: str = quantity("", "remarks on the result")
 
     def columns(self) -> Array:
         """States, shape (values, kept, dimension)."""

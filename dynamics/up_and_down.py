@@ -15,7 +15,7 @@ from dynamics.sweeps import SweepResult, sweep
 def up_and_down(
     oscillator: Oscillator, parameter: str, values: npt.ArrayLike, **options: Any
 ) -> dict[str, SweepResult]:
-    """Sweep a parameter up and down, each way on a core of its own where there are two.
+    """Sweep a parameter up and down, each way on a separate core where there are two.
 
     A sweep carries its state from value to value, so that one alone is a chain that no second core can help with.
 

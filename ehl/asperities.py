@@ -205,7 +205,7 @@ class Roughness:
         law: str | None = None,
         offset: float = 1.15,
     ) -> Roughness:
-        """Roughness by what drawings have, Ra or Rz of each flank.
+        """Roughness from the values on drawings, Ra or Rz of each flank.
 
         sigma_i = Ra_i sqrt(pi/2), of normal heights, Ra_i = Rz_i/6; sigma = sqrt(sigma_1^2 + sigma_2^2). Drawings know
         no asperities: unless these or a law are given the load is shared by the film ratio (``"zhu-hu"``). Where one of

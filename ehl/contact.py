@@ -44,7 +44,7 @@ _SPEED_PARAMETER = 1e-11  # U2 taken by from_moes when alpha = 0 leaves it free
 
 @dataclass(frozen=True)
 class LineContact:
-    """A steady line contact of two elastic cylinders; how oil comes to it is an argument of :func:`ehl.solve`.
+    """A steady line contact of two elastic cylinders; how oil is supplied is an argument of :func:`ehl.solve`.
 
     Parameters
     ----------

@@ -133,7 +133,7 @@ def load_inside(grid: Grid, groups: Groups) -> float:
 
 
 class Fluid(NamedTuple):
-    """What the flux needs to know of the oil at every node, all (n,) and by the dimensionless pressure."""
+    """What the flux needs of the oil at every node, all (n,) and by the dimensionless pressure."""
 
     ln_viscosity: Array  # ln(eta/eta0) of the viscosity that the pressure flow feels
     viscosity_slope: Array

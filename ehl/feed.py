@@ -28,7 +28,7 @@ _ROUGH = 3e-3  # and the largest such step
 
 
 class Counting(Protocol):
-    """What a call of the solver knows of its contact and of its own effort."""
+    """The contact of a call of the solver, and its effort so far."""
 
     contact: LineContact
     restarts: int

@@ -76,7 +76,7 @@ class Film:
     ``cost.counts["restarts"]`` counts the starts that did not converge.
     """
 
-    no_error = "not estimated in single places; the central and the least film have one"
+    no_error = "not estimated in single places; the central and the minimum film have one"
 
     headline = ("central_thickness", "minimum_thickness", "separation")
 
@@ -90,8 +90,8 @@ class Film:
     converged: bool
     message: str
     central_thickness: float = unsolved("m", "film thickness at x = 0", shown="um", error="error")
-    minimum_thickness: float = unsolved("m", "least film thickness", shown="um", error="error")
-    minimum_position: float = unsolved("m", "place of the least thickness", shown="um")
+    minimum_thickness: float = unsolved("m", "minimum film thickness", shown="um", error="error")
+    minimum_position: float = unsolved("m", "place of the minimum thickness", shown="um")
     outlet: float = unsolved("m", "place where the film ends", shown="um")
     separation: float = unsolved(
         "m", "film separation: approach of the dry contact less that with the film", shown="um"

@@ -8,13 +8,13 @@ from ehl.bodies import STEEL, Solid
 from ehl.contact import LineContact
 
 _SHAPE = 1.11
-"""Greatest rise under an elliptic (Hertz) source over 1/sqrt(width): max of int sqrt(1-s^2)/sqrt(x-s) ds, scaled."""
+"""Maximum rise under an elliptic (Hertz) source over 1/sqrt(width): max of int sqrt(1-s^2)/sqrt(x-s) ds, scaled."""
 
 
 def blok_flash_temperature(
     contact: LineContact, friction: float, solids: tuple[Solid, Solid] = (STEEL, STEEL)
 ) -> float:
-    """Blok's flash temperature, the greatest rise of the surfaces above their common bulk temperature [K].
+    """Blok's flash temperature, the maximum rise of the surfaces above their common bulk temperature [K].
 
     ``1.11 mu w |u1 - u2| / [(B_1 sqrt(u1) + B_2 sqrt(u2)) sqrt(2 b)]``, B = sqrt(k rho c), b the Hertz half-width:
     all heat of friction arises on the surfaces in proportion to the Hertz pressure, and parts so that both are as hot.

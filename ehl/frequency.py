@@ -41,7 +41,7 @@ class FilmResponse:
         "m2/N", "complex -d(film thickness at x = 0)/dw", "frequency", no_error=_NO_ERROR
     )
     least_compliance: Complex = quantity(
-        "m2/N", "complex -d(least film thickness)/dw", "frequency", no_error=_NO_ERROR
+        "m2/N", "complex -d(minimum film thickness)/dw", "frequency", no_error=_NO_ERROR
     )
     relative_error: Array = quantity(
         "1",
@@ -55,7 +55,7 @@ class FilmResponse:
 
     @described("1", no_error=ITSELF)
     def error(self) -> float:
-        """Greatest of the relative errors of the compliance."""
+        """Largest of the relative errors of the compliance."""
         return float(np.max(self.relative_error))
 
     @described("N/m2", "frequency", error="relative_error")
@@ -188,7 +188,7 @@ def _why_not(film: object) -> tuple[str, str] | None:
 
 
 def _not_slower(frequency: Array, contact: LineContact) -> Array:
-    """Frequencies, those near 0 so far from it that damping can be told from rounding."""
+    """Frequencies, those near 0 so far from it that damping can be distinguished from rounding."""
     least = _SLOWEST * contact.entrainment / contact.half_width
     found: Array = np.where(np.abs(frequency) < least, least, frequency)
     return found
@@ -242,7 +242,7 @@ class _Linear:
         )
 
     def answer(self, frequency: float) -> Complex:
-        """Derivatives of separation, central and least film by w [m2/N]."""
+        """Derivatives of separation, central and minimum film by w [m2/N]."""
         level, grid, groups = self.level, self.level.grid, self.level.groups
         at = 1j * float(_not_slower(np.array(frequency), level.contact))
         change = np.linalg.solve(self.matrix - at * self.stored, self.forced + at * self.swept)

@@ -36,11 +36,11 @@ class BaseOil:
     s, t : float
         Of Gold's formula [1/GPa at 1 mm^2/s], [-].
     density_15, falling : float
-        Density at 15 degC [kg/m^3], and by what it falls [kg/m^3 K].
+        Density at 15 degC [kg/m^3], and its decrease [kg/m^3 K].
     conductivity, heat_capacity : float
         [W/(m K)], [J/(kg K)].
     limiting_shear_ratio : float, optional
-        Greatest mean shear stress over the pressure [-]; unknown for esters.
+        Maximum mean shear stress over the pressure [-]; unknown for esters.
     """
 
     s: float

@@ -43,7 +43,7 @@ def _along(oil: Heated, values: Array) -> float:
 
 
 def rises(oil: Heated) -> tuple[float, float]:
-    """Greatest rise of the oil above the mean bulk temperature, and of a surface above its own [K]."""
+    """Maximum rise of the oil above the mean bulk temperature, and of a surface above its own [K]."""
     first, second = (float(np.max(oil.temperature[:, j]) - oil.bulk[j]) for j in (0, -1))
     return float(np.max(oil.temperature) - oil.bulk.mean()), max(first, second)
 

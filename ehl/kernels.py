@@ -98,7 +98,7 @@ def pressure_flow(
     shear: Array,
     lam: float,
 ) -> Array:
-    """Flow that the pressure moves upstream through each cell, (n-1,), at the viscosities as they are.
+    """Flow that the pressure moves upstream through each cell, (n-1,), at the present viscosities.
 
     The first term of the flux of :func:`reynolds`, whose arguments these are.
     """

@@ -97,7 +97,7 @@ def figures(level: Level) -> Figures:
 
 
 def _lowest(x: Array, y: Array) -> tuple[float, float]:
-    """Place and value of the least of the parabola through three points, the middle one at 0."""
+    """Place and value of the smallest of the parabola through three points, the middle one at 0."""
     (left, _, right), (above, middle, beyond) = x.tolist(), y.tolist()
     before, after = (above - middle) / left, (beyond - middle) / right
     curve = (after - before) / (right - left)

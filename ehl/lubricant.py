@@ -91,7 +91,7 @@ class Lubricant:
         tau0 of sinh shear thinning [Pa]; Newtonian when not given. Like all of these but the laws it is
         read by :func:`ehl.solve_thermal` alone: :func:`ehl.solve` is isothermal and Newtonian.
     limiting_shear_ratio : float, optional
-        Greatest mean shear stress over the pressure [-]; no limit when not given.
+        Maximum mean shear stress over the pressure [-]; no limit when not given.
 
     Raises
     ------

@@ -159,7 +159,7 @@ class MeasuredViscosity:
 
     @property
     def reliable_below(self) -> float:
-        """Greatest pressure of the table [Pa]."""
+        """Maximum pressure of the table [Pa]."""
         return self.pressure[-1]
 
     def knows(self, T: float) -> bool:

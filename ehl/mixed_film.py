@@ -41,12 +41,12 @@ class RoughFilm:
 
     @described("m", shown="um", error="error")
     def minimum_thickness(self) -> float:
-        """Least mean gap."""
+        """Minimum mean gap."""
         return self.film.minimum_thickness
 
     @described("1", error="error")
     def film_ratio(self) -> float:
-        """Lambda, least mean gap over the standard deviation of heights."""
+        """Lambda, minimum mean gap over the standard deviation of heights."""
         return self.film.minimum_thickness / self.roughness.deviation
 
 

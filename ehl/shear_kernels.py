@@ -135,7 +135,7 @@ def flow_across(
     viscosity : ndarray (n, m)
         eta [Pa s]; where the mean stress would pass its limit the film shears as if it were thinner.
     gap, limit, moved : ndarray (n,)
-        h [m], the greatest mean stress [Pa] and what the pressure moves upstream [m2/s].
+        h [m], the maximum mean stress [Pa] and what the pressure moves upstream [m2/s].
     mean_speed, slide, stress : float
         u_m, u2 - u1 [m/s], tau0 [Pa].
     zeta, weights : ndarray (m,)

@@ -64,7 +64,7 @@ def solve(
         ``"graded"`` towards inlet and pressure spike, ``"uniform"``, or ``"article"``: 130 equal nodes on
         [-4, 1.2] half-widths, which redraws a published study; it cuts off the inlet of light contacts.
     supply : Meniscus or OilLayer, optional
-        How oil comes to the contact, and thereby what stays as it is when the load changes: the place where
+        How oil is supplied to the contact, and thereby what the load does not change: the place where
         the gap fills, or the layer on the surfaces. Not given, the inlet is flooded.
     spike : float, optional
         Wanted relative error of the spike's pressure. Grids are laid around the spike and doubled until two
@@ -151,7 +151,7 @@ def solve_checked(
 
 
 def _starved(contact: LineContact, options: Options, supply: Supply, start: State | None) -> Found:
-    """Solve with a supply: a layer may be thicker than what the contact takes, which the flooded one tells."""
+    """Solve with a supply: a layer may be thicker than what the contact takes, which the flooded one shows."""
     held = start if start is not None and start.plan.fixed else None
     full = start if held is None else held.flooded
     if isinstance(supply, Meniscus):

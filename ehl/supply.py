@@ -1,4 +1,4 @@
-"""How oil comes to the contact: flooded, from a meniscus that stays in place, or as a layer of given thickness.
+"""How oil is supplied to the contact: flooded, from a meniscus that stays in place, or as a layer of given thickness.
 
 Upstream of the meniscus the gap is only partly filled: the steady, mass-conserving (Jakobsson-Floberg-Olsson)
 condition carries the layer unchanged, rho h (1 - theta) = rho0 h_oil with p = 0, up to the point where the gap is

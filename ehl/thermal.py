@@ -58,10 +58,10 @@ class ThermalFilm(Film):
         "1", "mean shear stress over the load, positive where u1 > u2", error="traction_error"
     )
     oil_temperature_rise: float = unsolved(
-        "K", "greatest oil temperature above the mean of the bulk's", error="temperature_error"
+        "K", "highest oil temperature above the mean of the bulk's", error="temperature_error"
     )
     surface_temperature_rise: float = unsolved(
-        "K", "greatest surface temperature above that body's bulk", error="temperature_error"
+        "K", "maximum surface temperature above that body's bulk", error="temperature_error"
     )
     rolling_friction: float = unsolved("N/m", "int h p'/2 dx, by which rolling resists on either surface")
     losses: Losses | None = part("where the power goes", default=None)
@@ -72,7 +72,7 @@ class ThermalFilm(Film):
     traction_error: float = unsolved("1", "change of the traction between two grids")
     temperature_error: float = unsolved(
         "1",
-        "change of the greatest temperature rises between two grids, what an unresolved spike leaves, and heat that is "
+        "change of the maximum temperature rises between two grids, what an unresolved spike leaves, and heat that is "
         "missing or ahead of the inlet",
     )
     oils: tuple[Heated, Heated] | None = part("what a next solution starts from", default=None)
@@ -107,15 +107,15 @@ def solve_thermal(
     bulk_temperatures : tuple of float, optional
         Of the first and the second body [K], which the oil arrives with; those of the lubricant's data if not given.
     tolerance : float
-        Wanted relative error of the film (central, minimum and between) and of the traction. The greatest
-        temperatures have an error of their own, `temperature_error`: where little slides they stand at the pressure
+        Wanted relative error of the film (central, minimum and between) and of the traction. The maximum
+        temperatures have a separate error, `temperature_error`: where little slides they stand at the pressure
         spike, which grids resolve last.
     nodes : int, optional
         Solve on this many nodes instead and report the error that this leaves.
     start : ThermalFilm, optional
         A flooded film of a similar contact to start from.
     supply : Meniscus or OilLayer, optional
-        How oil comes to the contact, as for :func:`ehl.solve`; flooded if not given. A layer keeps its thickness: the
+        How oil is supplied, as for :func:`ehl.solve`; flooded if not given. A layer keeps its thickness: the
         meniscus moves until the warm film carries away what it brings.
 
     Returns
@@ -205,7 +205,7 @@ def _warn_of_range(found: Compared) -> None:
     stress = float(np.abs(oil.shear.flow[: oil.last + 1, 0]).max())
     if stress > _STRONGEST * pressure:
         message = (
-            f"mean shear stress of {stress / 1e6:.3g} MPa, {stress / pressure:.2g} of the greatest pressure: "
+            f"mean shear stress of {stress / 1e6:.3g} MPa, {stress / pressure:.2g} of the maximum pressure: "
             f"oils yield at 0.03 to 0.06 of the pressure; {_YIELDING}"
         )
         warnings.warn(message, RangeWarning, stacklevel=3)

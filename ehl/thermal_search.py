@@ -108,7 +108,7 @@ def _out_of_balance(powers: dict[str, float]) -> float:
 
 
 def _climb(level: Level, oil: Heated) -> tuple[float, float]:
-    """Greatest temperature under the spike and its rise above the coldest oil between the middle and there [K]."""
+    """Maximum temperature under the spike and its rise above the coldest oil between the middle and there [K]."""
     P, hottest = level.found.P, oil.temperature.max(axis=1)
     tops = np.flatnonzero((P[1:-1] >= P[:-2]) & (P[1:-1] > P[2:])) + 1
     middle = int(np.searchsorted(oil.middles, 0.0))

@@ -40,12 +40,14 @@ class TractionCurve:
     central_thickness: Array = quantity(
         "m", "film thickness at x = 0", "point", shown="um", error="film_error"
     )
-    minimum_thickness: Array = quantity("m", "least film thickness", "point", shown="um", error="film_error")
+    minimum_thickness: Array = quantity(
+        "m", "minimum film thickness", "point", shown="um", error="film_error"
+    )
     oil_temperature_rise: Array = quantity(
-        "K", "greatest oil temperature above the bulk's", "point", error="temperature_error"
+        "K", "highest oil temperature above the bulk's", "point", error="temperature_error"
     )
     surface_temperature_rise: Array = quantity(
-        "K", "greatest surface temperature above the bulk's", "point", error="temperature_error"
+        "K", "maximum surface temperature above the bulk's", "point", error="temperature_error"
     )
     traction_error: Array = quantity("1", "change of the traction between two grids", "point")
     film_error: Array = quantity("1", "estimated error of the films", "point")
@@ -57,13 +59,13 @@ class TractionCurve:
 
     @described("1", error="error")
     def greatest_traction(self) -> float:
-        """Greatest traction coefficient of the curve."""
+        """Largest traction coefficient of the curve."""
         known = np.abs(self.traction_coefficient[np.isfinite(self.traction_coefficient)])
         return float(known.max()) if known.size > 0 else math.nan
 
     @described("1")
     def error(self) -> float:
-        """Greatest error of the traction, of points that slide."""
+        """Largest error of the traction, of points that slide."""
         slides = np.isfinite(self.traction_error) & (self.slide_roll != 0.0)
         return float(self.traction_error[slides].max()) if slides.any() else math.nan
 

@@ -45,7 +45,7 @@ class TransientFilm:
     contact: LineContact = part("the contact at the first time")
     time: Array = quantity("s", "time", "time")
     load: Array = quantity("N/m", "load", "time", shown="N/mm")
-    least: Array = quantity("m", "least film thickness", "time", shown="um", error="error")
+    least: Array = quantity("m", "minimum film thickness", "time", shown="um", error="error")
     central: Array = quantity("m", "film thickness at x = 0", "time", shown="um", error="error")
     separation: Array = quantity(
         "m",
@@ -54,20 +54,18 @@ class TransientFilm:
         shown="um",
         error="error",
     )
-    greatest_pressure: Array = quantity(
-        "Pa", "greatest pressure", "time", shown="GPa", error="pressure_error"
-    )
+    greatest_pressure: Array = quantity("Pa", "maximum pressure", "time", shown="GPa", error="pressure_error")
     x: Array = quantity("m", "places, which follow the contact", "time node", shown="um")
     pressure: Array = quantity("Pa", "pressure", "time node", shown="GPa")
     thickness: Array = quantity("m", "film thickness", "time node", shown="um")
-    no_error = "not estimated in single places; the central and the least film have one"
+    no_error = "not estimated in single places; the central and the minimum film have one"
     cost: Cost
     converged: bool
     message: str
-    lowest: float = unsolved("m", "least film of all steps of time", shown="um", error="error")
+    lowest: float = unsolved("m", "minimum film of all steps of time", shown="um", error="error")
     lowest_time: float = unsolved("s", "time of it")
     grid_error: float = unsolved(
-        "1", "greatest change of central and least film and separation between two grids", no_error=ITSELF
+        "1", "largest change of central and minimum film and separation between two grids", no_error=ITSELF
     )
     time_error: float = unsolved(
         "1",
@@ -76,12 +74,12 @@ class TransientFilm:
     )
     pressure_error: float = unsolved(
         "1",
-        "change of the greatest pressure between two grids, for each halving that the spike's cells need",
+        "change of the maximum pressure between two grids, for each halving that the spike's cells need",
         no_error=ITSELF,
     )
     balance: float = unsolved(
         "1",
-        "greatest net flux into a node, its change of content counted, over the flux, of all steps",
+        "largest net flux into a node, its change of content counted, over the flux, of all steps",
         no_error=ITSELF,
     )
 
@@ -120,7 +118,7 @@ def solve_transient(
     entrainment, radius : callable or array_like, optional
         u [m/s] and R [m] over time; the contact's unless given.
     tolerance : float
-        Wanted relative error of central and least film at every time.
+        Wanted relative error of central and minimum film at every time.
     nodes : int, optional
         Solve on this many nodes instead and report the error that this leaves.
     step : float, optional
@@ -300,7 +298,7 @@ class _Run:
 
 
 def _grid_error(coarse: Course, fine: Course) -> float:
-    """Greatest estimated error of the finer of two grids, of all moments."""
+    """Largest estimated error of the finer of two grids, of all moments."""
     names = ("central_thickness", "minimum_thickness", "separation")
     worst = 0.0
     for before, after in zip(coarse.shots, fine.shots, strict=True):

@@ -23,7 +23,7 @@ def deflection_parts(cycle: MeshCycle, bodies: Compliance) -> Mapping[str, Array
 
     For every loaded pair D = sum_j B_ij F_j + Hertz(F_i) + gap_i; weighted by the shares of the load these are as
     many parts of one D. Pinion and wheel: teeth, and bodies under them. Coupling: what the load of other teeth moves
-    a tooth beyond the turn of the body, which is the wind-up. The rest holds gaps, tip edges, contacts that move and a
+    a tooth beyond the body's rotation, which is the wind-up. The rest holds gaps, tip edges, contacts that move and a
     film.
 
     Parameters

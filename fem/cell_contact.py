@@ -43,7 +43,7 @@ class CellShare:
     strips : (torques,) array
         Half-widths of strips of pressure over a cell's length (``fem.wide_contact``).
     rise : (torques, pitches, positions, pairs, cells) array
-        By how much least gaps of cells fall short of their mean [m]; 0 where cells touch all over or nowhere.
+        By how much smallest gaps of cells fall short of their mean [m]; 0 where cells touch all over or nowhere.
     shafts : HeldShafts or None
         From whose first touch the share is measured; None where they are rigid.
     """
@@ -87,7 +87,7 @@ class CellContact:
         near : (torques, ..., pairs, parts) array
             Forces to begin with, on some parts of it [N].
         rise : (torques, ..., pairs, cells) array, optional
-            By how much least gaps of cells fall short of their mean (`rises`) [m]; otherwise cells touch all over or
+            By how much smallest gaps of cells fall short of their mean (`rises`) [m]; otherwise cells touch all over or
             nowhere.
         held : bool
             Whether the share is measured from the first touch on shafts that are held; else it counts the shafts.
@@ -155,7 +155,7 @@ class CellContact:
         return CellShare(found, bends, left, strips, np.zeros_like(left) if rise is None else rise, reached)
 
     def rises(self, face: FaceSetting, coarse: CellShare) -> Array:
-        """By how much the least gap of cells falls short of their mean (torques, ..., pairs, cells) [m].
+        """By how much the minimum gap of cells falls short of their mean (torques, ..., pairs, cells) [m].
 
         By a solution with as many cells, or fewer.
         """
@@ -171,7 +171,7 @@ class CellContact:
         return _radius(self.where)
 
     def _half_widths(self, line_load: Array) -> Array:
-        """Greatest half-widths of contacts of two flanks (torques,) [m] by line loads (torques, ..., pairs)."""
+        """Largest half-widths of contacts of two flanks (torques,) [m] by line loads (torques, ..., pairs)."""
         flanks, modulus = self.where.touchable & ~self.where.edge, self.bodies.pinion.law.plane_modulus
         other = self.bodies.wheel.law.plane_modulus
         load = np.where(flanks, line_load / self.kappa, 0.0)

@@ -24,7 +24,7 @@ from base import Array, Integers, record, unclocked
 __all__ = ["Condensation", "condensation", "unknowns_of"]
 
 FEW, LEAST = 32, 4
-"""Elements of a group that is not halved, of two unknowns at a node, and the least of them with more unknowns."""
+"""Elements of a group that is not halved, of two unknowns at a node, and the smallest of them with more unknowns."""
 
 
 @record
@@ -221,7 +221,7 @@ def _order(users: Integers, used: Integers) -> tuple[Integers, tuple[int, int]]:
 
 
 def _inverse_of_factor(matrix: Array) -> Array:
-    """L^-1 of a symmetric definite matrix L L^T; of none, where a group has no nodes of its own."""
+    """L^-1 of a symmetric definite matrix L L^T; of none, where a group has no other nodes."""
     if not len(matrix):
         return matrix
     with unclocked():

@@ -94,7 +94,7 @@ def mesh_cycle(
         also yield to the tangential forces is left out, up to 0.35 mu of a pair's deflection at A and E,
         nothing at C.
     reference : {"bore", "body", "teeth"}
-        What D is measured against: the turn of what holds the bores, of the bodies weighted by their inertia
+        What D is measured against: the rotation of what holds the bores, of the bodies weighted by their inertia
         (what motion needs), or of the root circles (what closed forms describe). No force depends on it
         (``MeshCycle.against``). A compliance that leaves parts out measures its own way at "bore".
     moving_contact : bool or None
@@ -187,7 +187,7 @@ def mesh_cycle(
 def _solved(
     given: Setting, bodies: Compliance, force: Array, film: Film | None, tables: EdgeTables
 ) -> list[tuple[Solution, list[int]]]:
-    """Solutions for forces (torques,) [N], each with the numbers of its own: one by one where one does not settle."""
+    """Solutions for forces (torques,) [N], each with separate numbers: one by one where one does not settle."""
     contact, every = solve(given, bodies, force, film, tables), list(range(len(force)))
     if contact.settled or len(every) == 1:
         return [(contact, every)]
@@ -218,9 +218,7 @@ def _check(
     if np.any(torque == 0.0):  # needs a setting without faults
         play = float(np.max(contact_candidates(given).back_gap))
         if play >= 0.0:
-            allowed = (
-                f"must not be 0 where no flank bears: there is play of {1e6 * play:.4g} um at some positions"
-            )
+            allowed = f"must not be 0 where no flank bears: there is backlash of {1e6 * play:.4g} um at some positions"
             remedy = "leave it out, or give less backlash; unloaded_transmission_error is that of rigid gears"
             found.add("torque", "0", allowed, remedy)
     found.raise_if_any()

@@ -41,7 +41,7 @@ class ContactCandidates:
     curvature : (n_1, pairs) array
         Of relieved flanks over that of the involutes, R/R'.
     lacking : (n_1, pairs) array
-        Part of the gap by what the gears' flanks lack, but for that of single teeth [m].
+        Part of the gap from the material that the gears' flanks lack, but for that of single teeth [m].
     lever : (2, n, pairs) array
         Lever of the normal about the axes, over the base radii.
     tangent_arm : (2, n, pairs) array

@@ -29,7 +29,7 @@ class ContactForces:
     points: Array = quantity("m", "where the flanks touch", "point axis")
     force_N: Array = quantity("N", "force on the gear of that row", "point axis")
     pressure_Pa: Array = quantity(
-        "Pa", "greatest Hertz pressure; nan at tip edges, whose pressure has no such maximum", "point"
+        "Pa", "maximum Hertz pressure; nan at tip edges, whose pressure has no such maximum", "point"
     )
     half_width_m: Array = quantity("m", "half-width of the pressure; nan at tip edges", "point")
     gear: Integers = quantity("1", "0 the pinion, 1 the wheel", "point")

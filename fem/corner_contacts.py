@@ -27,7 +27,7 @@ NEAR_CORNER = 1.5
 """Half-widths from a sharp corner within which a contact's pressure is that of strips."""
 
 UNBOUNDED, LEAST_UNRESOLVED = 1.2, 0.01
-"""Pressure beside a corner over Hertz's greatest one above which stresses are only indicative, and the least distance
+"""Pressure beside a corner over Hertz's largest one above which stresses are only indicative, and the smallest distance
 [modules] up to which they are."""
 
 
@@ -72,7 +72,7 @@ def corner_contact(
 
 
 def _unresolved(pressure: TipPressure, hertz: float, module: float) -> float:
-    """Distance from the corner up to which the pressure, unbounded there, is well above Hertz's greatest one."""
+    """Distance from the corner up to which the pressure, unbounded there, is well above Hertz's largest one."""
     if pressure.distance[0] > pressure.width[0]:  # it does not reach the corner
         return 0.0
     above = np.minimum.accumulate(pressure.pressure > UNBOUNDED * hertz)
@@ -83,7 +83,7 @@ def _unresolved(pressure: TipPressure, hertz: float, module: float) -> float:
 def _on_corner(
     tooth: int, ring: Ring, profile: ToothProfile, bodies: Compliance, pressure: TipPressure
 ) -> Contact:
-    """Contact on the gear with the corner: its resultant on the ring, its strips on a sector of its own."""
+    """Contact on the gear with the corner: its resultant on the ring, its strips on a separate sector."""
     middle = np.sqrt(profile.flank_rho[1] ** 2 - 2 * profile.base_radius * pressure.mean(pressure.distance))
     at = flank_points(ring.mesh, np.array([middle]))
     away = -np.sign(at.towards_tip().lean) * pressure.mean(pressure.lean)

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 __all__ = ["cut_off", "cut_offs"]
 
 JOIN = 1.25
-"""Half-widths over distances from the corner at which a contact has come to it."""
+"""Half-widths over distances from the corner at which a contact has reached it."""
 
 FADE = (1.0, 3.0)
 """Distances from the corner, in half-widths, between which the correction fades out."""
@@ -47,16 +47,16 @@ FAR = (0.06, 0.16)
 """Distances [modules] between which it fades out in any case: strips about contacts farther in are too few."""
 
 STEEPEST = 3.0
-"""Greatest slope by the force's logarithm, over the correction itself, where relieved flanks come to a corner."""
+"""Largest slope by the force's logarithm, over the correction itself, where relieved flanks reach a corner."""
 
 FIRST, LAST = 4, 0.8
-"""Strip, counted from the corner, at which the least contact joins, and the part of the greatest force."""
+"""Strip, counted from the corner, at which the smallest contact joins, and the part of the maximum force."""
 
 NEWTON = 5
 """Steps to the number of strips at which a contact bears a force."""
 
 BELOW, ABOVE = 16, 32
-"""Forces of the table below and above the one at which the contact comes to the corner."""
+"""Forces of the table below and above the one at which the contact reaches the corner."""
 
 
 def cut_offs(
@@ -258,7 +258,7 @@ def _scaled_cubic(cubic: Array, strips: Integers, t: Array) -> tuple[Array, Arra
 
 
 def _completed(log_part: Array, quotient: Array, slope: Array, slid: Array) -> tuple[Array, Array]:
-    """Correction over force and its slope by ln F, with that of contacts that do not come to the corner.
+    """Correction over force and its slope by ln F, with that of contacts that do not reach the corner.
 
     All but contacts far from it are given back what strips slide, over the force.
     """

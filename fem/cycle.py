@@ -179,7 +179,7 @@ class MeshCycle(PairFigures, MeshFigures):
 
     @property
     def face_load_factor(self) -> Array | None:
-        """Greatest line load of the most loaded pair over that pair's mean (positions,); None without cells."""
+        """Maximum line load of the most loaded pair over that pair's mean (positions,); None without cells."""
         return None if self.face is None else self.face.face_load_factor
 
     def against(self, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)) -> MeshCycle:
@@ -188,7 +188,7 @@ class MeshCycle(PairFigures, MeshFigures):
         Parameters
         ----------
         reference : {"bore", "body", "teeth"}
-            The turn of what holds the bores, of the bodies weighted by their inertia, or of the root circles.
+            The rotation of what holds the bores, of the bodies weighted by their inertia, or of the root circles.
         bore_inertia : (float, float)
             What turns with the bores of pinion and wheel beside their own bodies, for "body" [kg m2].
 

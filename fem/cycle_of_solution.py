@@ -1,4 +1,4 @@
-"""The record of a mesh cycle, made of the contact's solution for one torque, with what a reader should know of it."""
+"""The record of a mesh cycle, made of the contact's solution for one torque, with remarks for the reader."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from fem.sharing import Solution
 __all__ = ["cycle_of"]
 
 LARGE_DEFLECTION = 0.03
-"""Part of the module above which a deflection is told."""
+"""Part of the module above which a deflection is reported."""
 
 LARGE_SHIFT = 0.1
 """The same of shafts: the path of contact gets shorter by as much, the contact ratio less by a third of it."""
 
 WIDE_CONTACT = 0.07
-"""Part of the radius of relative curvature above which a contact's half-width is told."""
+"""Part of the radius of relative curvature above which a contact's half-width is reported."""
 
 
 def cycle_of(
@@ -179,12 +179,12 @@ def _short(forces: Array) -> list[str]:
         return []
     return [
         f"the most loaded pair bears on {least} of {cells} cells of the face at some positions, where {FEW_CELLS} are "
-        "needed to tell how the load is spread; give more cells, or less slope and crowning"
+        "needed to resolve how the load is spread; give more cells, or less slope and crowning"
     ]
 
 
 def _remarks(given: Setting, contact: Solution, number: int, forces: Array, edge: Booleans) -> list[str]:
-    """What a reader of the figures should know."""
+    """Remarks for a reader of the figures."""
     where, remarks = contact.where, []
     if np.any(forces[edge] > 0):
         sharp = [one.radius == 0.0 for one in given.rounds]

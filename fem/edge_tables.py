@@ -84,7 +84,7 @@ class EdgeTables:
     given : Setting
         At any positions: what counts is how the gears are set up.
     bodies : Compliance
-        On any of its meshes that share the answer of the tips; others have tables of their own (`serving`).
+        On any of its meshes that share the answer of the tips; others have separate tables (`serving`).
     """
 
     def __init__(self, given: Setting, bodies: Compliance) -> None:

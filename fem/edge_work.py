@@ -21,7 +21,7 @@ HALVINGS = 14
 
 NEAR, BESIDE = 2.0, 0.02
 """Distance from a load over the edge's length below which the edge is integrated on panels, and below which that of the
-chord no longer tells that of the curved edge."""
+chord no longer represents that of the curved edge."""
 
 LEAST_PANEL = 1e-9
 """Of the edge: shorter panels, beside a load that all but stands on a node, are left out with their share."""

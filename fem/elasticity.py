@@ -191,7 +191,7 @@ def nodal_stress_matrix(
     """Matrix (3n, 2n) from displacements to sigma_xx, sigma_yy, tau_xy at the nodes, averaged over elements.
 
     Row 3 i + c is component c at node i. Where elements of different thickness (m,) meet, the thinnest alone count:
-    their stress is the greatest.
+    their stress is the largest.
     """
     from scipy.sparse import coo_array
 

@@ -232,7 +232,7 @@ def _less(curves: Array, force: float, turn: Array) -> Array:
 
 
 def _reserve(found: Solution, force: float, given: Setting) -> Array:
-    """Reserves of contacts by force or gap, and of the nearest pair by what the next one is behind it.
+    """Reserves of contacts by force or gap, and of the nearest pair by its lead over the next one.
 
     Which pair is nearest without load changes between pairs on the path only where flanks deviate.
     """

@@ -1,6 +1,6 @@
 """Loaded gears as input of other programs: Abaqus or CalculiX decks with loads, meshes in many formats.
 
-Each gear is a problem of its own: its bore held, and the forces of the contacts, as the load sharing found them at
+Each gear is a separate problem: its bore held, and the forces of the contacts, as the load sharing found them at
 one mesh position, put on its flanks (``fem.loaded_gears``). Both stand in the common frame, so that their files fit
 together. SI units throughout.
 """
@@ -92,7 +92,7 @@ def write_mesh(
     if form == "gmsh":
         if len(some) != 1:
             allowed = "must be one gear for gmsh, whose names hold for all of a file"
-            raise InputError([Fault("gears", f"{len(some)}", allowed, "write each to a file of its own")])
+            raise InputError([Fault("gears", f"{len(some)}", allowed, "write each to a separate file")])
         return write_msh(path, some[0].mesh)
     fields = {
         gear.name: {"force_N": np.column_stack([gear.forces, 0.0 * gear.forces[:, 0]])} for gear in some
@@ -177,7 +177,7 @@ def write_abaqus(path: Path, *gears: LoadedGear) -> Path:
 
 
 def export_pair(folder: Path, gears: Sequence[LoadedGear], form: str = "inp") -> tuple[Path, ...]:
-    """Write ``pinion`` and ``wheel`` into a folder, each to a file of its own.
+    """Write ``pinion`` and ``wheel`` into a folder, each to a separate file.
 
     Parameters
     ----------

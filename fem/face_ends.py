@@ -1,7 +1,7 @@
 """What free ends add to the displacement of a gear's solid: a table over places of loads, for pictures.
 
 A prism with free ends less one between walls (``fem.free_ends``), here with its whole section instead of the flank
-alone. The difference is smooth in the load's place, so that few places tell it, and each of the four prisms of a gear
+alone. The difference is smooth in the load's place, so that few places suffice, and each of the four prisms of a gear
 can be forgotten when its part of the table is taken. Beside a load at the very end it is not quite smooth: between
 places of the table the outermost 1/64 of the face is up to a fifth of that part off, the next 1/64 a twentieth.
 """
@@ -89,7 +89,7 @@ def end_fields(
         The gear, in modules.
     over : Section
     width : float
-        Of its own face.
+        Of the gear's face.
     z : (layers,) array
         Where the teeth are looked at, from mid-face.
     beside : int

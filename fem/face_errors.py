@@ -27,15 +27,15 @@ Every doubling changes about half as much as the one before, with a sign by chan
 """
 
 LEFT_OF_LOAD = 0.25
-"""Part that is left, in the second order, of what a greatest load changed by and a parabola did not foresee."""
+"""Part that is left, in the second order, of what a maximum load changed by and a parabola did not foresee."""
 
 FEW_CELLS = 4
-"""Cells that a contact needs, or those who ask are told."""
+"""Cells that a contact needs; with fewer the result says so."""
 
 ENDS_ERROR = 0.03
 """Part of what free ends do that their coarse sections leave uncertain, beside three-dimensional elements.
 
-Of a displacement where the load stands 0.02. Of the root stress, by a section of its own (``fem.fillet_ends``) and with
+Of a displacement where the load stands 0.02. Of the root stress, by a separate section (``fem.fillet_ends``) and with
 what free ends do at most within two modules, 0.005 to 0.015; at the end itself under the end cell alone 0.03.
 """
 
@@ -47,11 +47,11 @@ class CellErrors:
     Attributes
     ----------
     factor, line_load : (torques,) arrays
-        Of the greatest face-load factor and the greatest line load.
+        Of the maximum face-load factor and the maximum line load.
     relative : (torques,) array
         Of stiffness and deflection at a position, root mean square over positions.
     ends : (torques,) array
-        Further one of both by what free ends leave uncertain, alike at all positions.
+        Further one of both from what free ends leave uncertain, alike at all positions.
     scatter : dict of (3, torques) arrays
         As of ``gears.mesh_figures.FewerCells``.
     shafts, tilt, matrix : (torques,) arrays
@@ -100,7 +100,7 @@ def cell_errors(over: CellContact, face: FaceSetting, fine: CellShare, coarse: C
 
 
 def _shaft_errors(fine: CellShare, coarse: CellShare, rest: float) -> Array:
-    """Errors of what shafts do, of their tilt and of the mesh on them (3, torques), of the greatest over positions."""
+    """Errors of what shafts do, of their tilt and of the mesh on them (3, torques), of the largest over positions."""
     if fine.shafts is None or coarse.shafts is None:
         return np.zeros((3, len(fine.forces)))
     one, other = fine.shafts, coarse.shafts
@@ -154,7 +154,7 @@ def _curves(whole: Array, share: LoadShare) -> dict[str, Array]:
 def _load_errors(
     over: CellContact, face: FaceSetting, fine: CellShare, coarse: CellShare, torque: int
 ) -> tuple[float, float, float]:
-    """Errors of the greatest factor and line load, and that of stiffness and deflection by free ends."""
+    """Errors of the maximum factor and line load, and that of stiffness and deflection by free ends."""
     kappa = over.kappa[..., None]
     loads, fewer = (one.left.shape[-1] * one.forces[torque] / kappa for one in (fine, coarse))
     factors, half = face_load_factors(loads), face_load_factors(fewer)
@@ -176,7 +176,7 @@ def _load_errors(
 
 
 def _place(values: Array) -> tuple[int, int]:
-    """Pitch and position of the greatest value."""
+    """Pitch and position of the maximum value."""
     pitch, position = np.unravel_index(int(np.argmax(values)), values.shape)
     return int(pitch), int(position)
 
@@ -191,7 +191,7 @@ def _between_walls(
 
 
 def _most_loaded(loads: Array, over_mean: bool) -> Array:
-    """Line loads (cells,) of the pair that bears most, over their mean, or of that with the greatest one."""
+    """Line loads (cells,) of the pair that bears most, over their mean, or of that with the largest one."""
     if over_mean:
         most = loads[int(np.argmax(loads.sum(axis=-1)))]
         return np.asarray(most / most.mean())
@@ -199,9 +199,9 @@ def _most_loaded(loads: Array, over_mean: bool) -> Array:
 
 
 def greatest_error(cells: Array, fewer: Array) -> float:
-    """Relative error of the greatest of line loads (cells,), by those with half as many.
+    """Relative error of the largest of line loads (cells,), by those with half as many.
 
-    Within the face it is what the greatest cell lacks to the top of a parabola through it and its neighbours, and a
+    Within the face it is what the largest cell lacks to the top of a parabola through it and its neighbours, and a
     part of what the last doubling changed beyond what the parabola there foresaw. At an end, and where few cells bear,
     all that the doubling changed is left, in the first order, or what the parabola foresees, if more.
     """
@@ -215,7 +215,7 @@ def greatest_error(cells: Array, fewer: Array) -> float:
 
 
 def _foreseen(cells: Array) -> float:
-    """What halving the cells adds to the greatest, by a parabola with the means of three."""
+    """What halving the cells adds to the largest, by a parabola with the means of three."""
     k, last = int(np.argmax(cells)), len(cells) - 1
     if last < 2:
         return 0.0
@@ -226,7 +226,7 @@ def _foreseen(cells: Array) -> float:
 
 
 def face_load_factors(forces: Array) -> Array:
-    """Greatest force on a cell of the most loaded pair over that pair's mean (...) of forces (..., pairs, cells)."""
+    """Maximum force on a cell of the most loaded pair over that pair's mean (...) of forces (..., pairs, cells)."""
     most = np.argmax(forces.sum(axis=-1), axis=-1)[..., None, None]
     chosen = np.take_along_axis(forces, most, axis=-2)[..., 0, :]
     return np.asarray(chosen.max(axis=-1) / chosen.mean(axis=-1))

@@ -123,7 +123,7 @@ def _face_field(
 def _solid(
     ready: GearPrisms, z: Array, moved: Array, place: Sequence[Place], teeth: Sequence[int], module: float
 ) -> ToothField:
-    """Wedges of all teeth that are drawn, each with points of its own."""
+    """Wedges of all teeth that are drawn, each with separate points."""
     used, triangles = np.unique(ready.triangles, return_inverse=True)
     triangles = triangles.reshape(-1, 3)
     layer = len(used) * np.arange(len(z) - 1)[:, None, None]

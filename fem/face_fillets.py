@@ -31,7 +31,7 @@ class FaceFillets:
     ends : (FilletEnds, FilletEnds) or None
         What free ends add; None between walls.
     mesh_errors : (float, float)
-        Estimated relative error of the greatest even stress on the mesh that the waves were solved on.
+        Estimated relative error of the largest even stress on the mesh that the waves were solved on.
     cost : Cost
         Of what was not there already.
     """

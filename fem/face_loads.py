@@ -30,8 +30,8 @@ OF_BOTH = "off by matrix_error of the root of stiffness times tilt stiffness: it
 class FaceLoads(FaceCells):
     """Line loads over the face at the positions of a mesh cycle.
 
-    ``error`` and ``line_load_error`` are what more cells would change of the greatest face-load factor and of the
-    greatest line load, and a part of what free ends do; ``shaft_error``, ``tilt_error`` and ``matrix_error`` of how far
+    ``error`` and ``line_load_error`` are what more cells would change of the maximum face-load factor and of the
+    maximum line load, and a part of what free ends do; ``shaft_error``, ``tilt_error`` and ``matrix_error`` of how far
     shafts give way, of their tilt, and of the mesh between bodies that tilt.
     """
 
@@ -39,7 +39,7 @@ class FaceLoads(FaceCells):
     headline = ("greatest_face_load_factor", "greatest_line_load")
 
     face_load_factor: Array = quantity(
-        "1", "greatest line load of the most loaded pair over that pair's mean", "position", error="error"
+        "1", "maximum line load of the most loaded pair over that pair's mean", "position", error="error"
     )
     setting: FaceSetting = part("cells, alignment, leads and ends")
     plane: str = part('"strain" or "stress", as of the compliance')
@@ -52,8 +52,8 @@ class FaceLoads(FaceCells):
         "position pair cell",
         shown="um",
     )
-    error: float = quantity("1", "estimated relative error of the greatest face-load factor")
-    line_load_error: float = quantity("1", "estimated relative error of the greatest line load")
+    error: float = quantity("1", "estimated relative error of the maximum face-load factor")
+    line_load_error: float = quantity("1", "estimated relative error of the maximum line load")
     shaft_misalignment: Array = quantity(
         "m",
         "how far the shafts' bending and twist under the load open the flanks over the face, end to end, by the mean "
@@ -93,23 +93,23 @@ class FaceLoads(FaceCells):
         default=None,
     )
     shaft_error: float | None = quantity(
-        "1", "estimated relative error of how far shafts give way, of the greatest", default=None
+        "1", "estimated relative error of how far shafts give way, of the largest", default=None
     )
     tilt_error: float | None = quantity(
-        "1", "estimated relative error of the shafts' tilt and of what it adds, of the greatest", default=None
+        "1", "estimated relative error of the shafts' tilt and of what it adds, of the largest", default=None
     )
     matrix_error: float | None = quantity(
-        "1", "estimated relative error of the mesh between bodies that tilt, of the greatest", default=None
+        "1", "estimated relative error of the mesh between bodies that tilt, of the largest", default=None
     )
 
     @described("1", error="error")
     def greatest_face_load_factor(self) -> float:
-        """Greatest of the face-load factors of all positions."""
+        """Largest of the face-load factors of all positions."""
         return float(np.max(self.face_load_factor))
 
     @described("N/m", shown="N/mm", error="line_load_error")
     def greatest_line_load(self) -> float:
-        """Greatest line load of all positions, pairs and cells."""
+        """Maximum line load of all positions, pairs and cells."""
         return float(np.max(self.line_load))
 
     @described("N", "position", no_error=OF_BOTH)
@@ -124,7 +124,7 @@ class FaceLoads(FaceCells):
 
     @described("Pa", "position pair cell", shown="MPa", no_error=HERTZ)
     def hertz_pressure(self) -> Array:
-        """Hertz pressure: greatest of the contact of every cell; nan where no two flanks touch, as at tip edges."""
+        """Hertz pressure: largest of the contact of every cell; nan where no two flanks touch, as at tip edges."""
         radius = self.curvature_radius[..., None]
         return np.asarray(peak_pressure(self.line_load, radius, reduced_modulus(self.pair, self.plane)))
 

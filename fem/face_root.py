@@ -1,7 +1,7 @@
 """Root stress of one gear along the face: loads on cells of all pairs, at a cycle's positions and on its arcs.
 
-Loads on cells stress a fillet over some modules of the face (``fem.fillet_face``), so that the greatest stress is less
-concentrated than the greatest line load. The place along the face where it is greatest is found first, over all
+Loads on cells stress a fillet over some modules of the face (``fem.fillet_face``), so that the maximum stress is less
+concentrated than the maximum line load. The place along the face where it is largest is found first, over all
 instants; along the fillet and over the cycle the stress at that place is looked at as in the plane.
 """
 
@@ -30,14 +30,14 @@ __all__ = ["FaceRootStress", "RootOnArcs", "RootOverFace", "root_over_face"]
 LEFT_OF_ROOT = 0.9
 """Part of what twice as many cells changed that is left: a third in the second order, the most on few at an end."""
 
-SINGLE = "not estimated at single places; the greatest stresses have errors"
+SINGLE = "not estimated at single places; the maximum stresses have errors"
 
 
 @record
 class FaceRootStress:
-    """Greatest stresses along the fillets of one gear at places of its face.
+    """Maximum stresses along the fillets of one gear at places of its face.
 
-    Errors of the greatest stresses are by the cells, by the waves' mesh and by free ends, beyond those of even loads.
+    Errors of the maximum stresses are by the cells, by the waves' mesh and by free ends, beyond those of even loads.
     """
 
     no_error = SINGLE
@@ -55,42 +55,44 @@ class FaceRootStress:
     )
     tension: Array = quantity(
         "Pa",
-        "greatest principal stress along the fillet under the loaded flank",
+        "maximum principal stress along the fillet under the loaded flank",
         "position tooth place",
         shown="MPa",
     )
     compression: Array = quantity(
         "Pa",
-        "least stress along the other fillet, negative in compression",
+        "minimum stress along the other fillet, negative in compression",
         "position tooth place",
         shown="MPa",
     )
-    cycle_tension: Array = quantity("Pa", "greatest tension of all teeth and instants", "place", shown="MPa")
+    cycle_tension: Array = quantity("Pa", "maximum tension of all teeth and instants", "place", shown="MPa")
     cycle_compression: Array = quantity(
-        "Pa", "greatest compression of all teeth and instants, negative", "place", shown="MPa"
+        "Pa", "maximum compression of all teeth and instants, negative", "place", shown="MPa"
     )
     tangential: Array = quantity(
         "Pa",
-        "stress along the fillet under the loaded flank at the instant of the greatest tension",
+        "stress along the fillet under the loaded flank at the instant of the maximum tension",
         "place sample",
         shown="MPa",
     )
     face_factor: float = quantity(
         "1",
-        "stress face-load factor: greatest tension over its mean over the face in contact, at the instant of the "
+        "stress face-load factor: maximum tension over its mean over the face in contact, at the instant of the "
         "greatest",
     )
     over_even: float = quantity(
         "1",
-        "greatest tension over that of the same forces of all pairs spread evenly along the face: what uneven loads "
+        "maximum tension over that of the same forces of all pairs spread evenly along the face: what uneven loads "
         "cost this root",
     )
     tension_error: float = quantity(
-        "1", "estimated relative error of the greatest tension by what varies along the face", no_error=ITSELF
+        "1",
+        "estimated relative error of the maximum tension from the variation along the face",
+        no_error=ITSELF,
     )
     compression_error: float = quantity(
         "1",
-        "estimated relative error of the greatest compression by what varies along the face",
+        "estimated relative error of the maximum compression from the variation along the face",
         no_error=ITSELF,
     )
 
@@ -102,10 +104,10 @@ class RootOverFace:
     Attributes
     ----------
     tangential : (positions, teeth, 2, samples) array
-        Stress at the cycle's positions where the greatest tension along the face is [Pa].
+        Stress at the cycle's positions where the maximum tension along the face is [Pa].
     tension, compression : RootPeak
     passage : (2, 2, samples) array
-        Least and greatest stress of all instants at that place [Pa].
+        Minimum and maximum stress of all instants at that place [Pa].
     face : FaceRootStress
     """
 
@@ -117,7 +119,7 @@ class RootOverFace:
 
 
 def root_over_face(on_arcs: RootOnArcs, face: FaceLoads, rho: Array, loaded_position: Array) -> RootOverFace:
-    """Greatest stresses of a gear over its face, its fillets, all teeth and instants.
+    """Maximum stresses of a gear over its face, its fillets, all teeth and instants.
 
     Parameters
     ----------
@@ -163,20 +165,20 @@ def root_over_face(on_arcs: RootOnArcs, face: FaceLoads, rho: Array, loaded_posi
 
 
 def _even(stress: StressOverFace, even: CellLoads, z: Array) -> float:
-    """Greatest tension by even loads [Pa]: at the instant that is the greatest where the face in contact is halved."""
+    """Maximum tension by even loads [Pa]: at the instant that is the largest where the face in contact is halved."""
     instant = int(np.argmax(stress.greatest(even, np.zeros(1))[0].max(axis=(1, 2))))
     return float(stress.greatest(even.part(instant), z)[0].max())
 
 
 def _place(z: Array, values: Array) -> float:
-    """Place of the greatest value, between places by the parabola through three."""
+    """Place of the maximum value, between places by the parabola through three."""
     top = int(np.argmax(values))
     return float(z[top] if top in (0, len(z) - 1) else extreme(z, values)[1])
 
 
 @record
 class _Found:
-    """A greatest stress, its error by what varies along the face, the node nearest to it, and extremes of all nodes."""
+    """A maximum stress, its error from the variation along the face, the nearest node, and extremes of all nodes."""
 
     peak: RootPeak
     error: float
@@ -213,7 +215,7 @@ class RootOnArcs:
         return CellLoads(every[..., CELLS:], every[..., FORCE + 1 + self.gear])
 
     def peak(self, side: int, z: float) -> _Found:
-        """Greatest stress on one side of all teeth and instants at a place of the face."""
+        """Maximum stress on one side of all teeth and instants at a place of the face."""
         stress, found, line = self.stress, self.found, self.stress.fillets.influence.line
         whole = self._whole(found.arcs, z)
         fine, before = (None if one is None else self._nodes(one, z) for one in (found.arcs, found.before))

@@ -21,7 +21,7 @@ FREE_ENDS, WALLS, SLICES = "free-ends", "walls", "slices"
 """What couples the cells of the face."""
 
 PLACES = 2049
-"""Along the face at which its least gap is looked for."""
+"""Along the face at which its minimum gap is looked for."""
 
 CELLS = Limit(4, 512, remedy="64 resolve what a face does", whole=True)
 
@@ -93,7 +93,7 @@ class FaceSetting:
                 _check_shaft(found, f"shafts[{k}]", shaft, pair.face_width, pair.face_offsets[k])
 
     def least_gap(self, pair: GearPair) -> float:
-        """Least of the gaps along the face by straight leads and what lies in the plane of action [m], 0 or less."""
+        """Smallest of the gaps along the face by straight leads and what lies in the plane of action [m], 0 or less."""
         return float(np.min(self.gaps_along(pair)))
 
     def gaps_along(self, pair: GearPair) -> Array:

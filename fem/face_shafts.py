@@ -53,7 +53,7 @@ class HeldShafts:
     mesh : (..., 2, 2) array
         Of (F, M) [N, N m] by the approach at mid-face and its slope over the face [m, rad].
     most : (...) array
-        Greatest on the face of what both give way together, over the module.
+        Largest on the face of what both give way together, over the module.
     """
 
     deflection: Array
@@ -90,7 +90,7 @@ class ShaftsUnderFace:
     middles : (cells,) array
         z [m].
     gaps : (PLACES,) array
-        Along the face without load, beyond the least of them [m].
+        Along the face without load, beyond the smallest of them [m].
     module : float
         [m]
     """
@@ -160,7 +160,7 @@ class ShaftsUnderFace:
         )
 
     def _touch(self, bent: Array, kappa: Array, gaps: Array) -> Array:
-        """Least gap along the face of all pairs (...), by what the shafts give way at the cells (..., cells) [m]."""
+        """Minimum gap along the face of all pairs (...), less the give of the shafts at the cells (..., cells) [m]."""
         straight = not self.gaps.any()  # then it is at a middle or at an end of the face
         along = bent @ (_ends(bent.shape[-1]) if straight else _between_middles(bent.shape[-1]))
         least, beyond = np.full(bent.shape[:-1], np.inf), 0.0 if straight else self.gaps

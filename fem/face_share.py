@@ -65,11 +65,11 @@ class FaceShare:
 
     @property
     def open(self) -> Array:
-        """Least gap that is left along the face (torques, pitches, positions, pairs) [m]."""
+        """Minimum gap that is left along the face (torques, pitches, positions, pairs) [m]."""
         return np.asarray(self.left.min(axis=-1))
 
     def bent(self, number: int) -> Array:
-        """By how much more the pinion turns before flanks touch (pitches, positions) [m], by what the shafts do.
+        """By how much more the pinion turns before flanks touch (pitches, positions) [m], because of the shafts.
 
         Parameters
         ----------

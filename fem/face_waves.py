@@ -7,7 +7,7 @@ wave as a prism between frictionless walls (``fem.prism``), here with its whole 
 
 U is solved for the waves of ``fem.gear_face`` and interpolated between them. Loads stand on the mesh as nodal forces:
 within an element of a contact the displacement is the mesh's and not that of Hertz's pressure. Where cells are coupled
-by bodies with free ends, what these add is a table of its own (``fem.face_ends``).
+by bodies with free ends, what these add is a separate table (``fem.face_ends``).
 """
 
 from __future__ import annotations

@@ -69,7 +69,7 @@ class GearField:
 
     @described("Pa", shown="MPa")
     def greatest_von_mises_Pa(self) -> float:
-        """Greatest von Mises stress, but for places where stresses are only indicative."""
+        """Maximum von Mises stress, but for places where stresses are only indicative."""
         return float(self.von_mises_Pa[self.cells[self.indicative == 0]].max())
 
     @property

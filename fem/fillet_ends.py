@@ -109,9 +109,9 @@ def fillet_ends(shape: GearShape, face_width: float, rho_low: float) -> FilletEn
     ----------
     shape : GearShape
     face_width : float
-        Of its own face [modules].
+        Of the gear's face [modules].
     rho_low : float
-        Least curvature radius of loads [modules], if the flank goes on below it.
+        Minimum curvature radius of loads [modules], if the flank goes on below it.
     """
     from meshes import mesh_sector
 

@@ -131,7 +131,7 @@ def fillet_influence(ring: Ring, profile: ToothProfile, reach: int, rho_low: flo
     reach : int
         Teeth on either side of the loaded one.
     rho_low : float
-        Least curvature radius of loads [m], if the flank goes on below it.
+        Minimum curvature radius of loads [m], if the flank goes on below it.
     """
     low, high = max(rho_low, profile.flank_rho[0]), profile.flank_rho[1] - CORNER_CLEARANCE * profile.module
     unit = np.cos(np.pi * (np.arange(LOADS) + 0.5) / LOADS)

@@ -54,7 +54,7 @@ class FilletWaves:
         For each tooth, counted anticlockwise from the loaded one: Chebyshev coefficients over ``rho_range`` of
         E* eps_t, E* eps_z and tau [1/module] for the solved waves, on the left (index 0) and the right fillet.
     lack : float
-        Greatest part of the greatest even stress that nodal forces on this mesh miss.
+        Largest part of the largest even stress that nodal forces on this mesh miss.
     """
 
     rho_range: tuple[float, float]

@@ -37,7 +37,7 @@ PLACES, DEGREE = 9, 6
 CLEARANCE = 0.15
 """Nearest place to the tip corner, as an arc in modules; nearer contacts take its values."""
 FOOT = 0.5
-"""Least curvature radius in modules; contacts nearer to the base circle take its values."""
+"""Minimum curvature radius in modules; contacts nearer to the base circle take its values."""
 
 
 @record

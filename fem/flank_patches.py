@@ -42,7 +42,7 @@ class FlankField:
     displacement_m: Array = quantity("m", "elastic displacement, as of the solid", "point space")
     pressure_Pa: Array = quantity("Pa", "mean pressure over the quadrangle", "cell")
     hertz_pressure_Pa: Array = quantity(
-        "Pa", "greatest Hertz pressure of the cell of the face; nan where no two flanks touch", "cell"
+        "Pa", "maximum Hertz pressure of the cell of the face; nan where no two flanks touch", "cell"
     )
     line_load_N_per_m: Array = quantity("N/m", "line load of the cell of the face", "cell")
     gap_m: Array = quantity(

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["GearCompliance", "gear_compliance", "hub_windup"]
 
 CROSS_DEGREE, CROSS_SHARE = 12, 5
-"""Least degree of cross terms in either place, and eighths of the number of loads, with which it grows."""
+"""Smallest degree of cross terms in either place, and eighths of the number of loads, with which it grows."""
 
 PLACES = 65
 """Places along the flank at which the size of what a fit leaves out is looked at."""
@@ -282,7 +282,7 @@ def _upper(series: Array) -> Array:
 
 
 def _over(size: float, values: Array) -> float:
-    """Size over the greatest of some values; 0 where there are none."""
+    """Size over the largest of some values; 0 where there are none."""
     greatest = float(np.max(values, initial=0.0))
     return size / greatest if greatest > 0.0 else 0.0
 

@@ -1,4 +1,4 @@
-"""Root stress of one gear along the mesh cycle: at its positions, and the greatest on its arcs."""
+"""Root stress of one gear along the mesh cycle: at its positions, and the largest on its arcs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = ["GearRootStress"]
 class GearRootStress:
     """Stress along the fillets of one gear's teeth, at the sample points of ``line``."""
 
-    no_error = "not estimated at single instants; the greatest stresses have errors"
+    no_error = "not estimated at single instants; the maximum stresses have errors"
 
     headline = ("greatest_tension_Pa", "greatest_compression_Pa")
 
@@ -36,26 +36,26 @@ class GearRootStress:
         "position tooth fillet sample",
         shown="MPa",
     )
-    greatest_tension: RootPeak = part("greatest tension of all teeth and instants, and where it acts")
-    greatest_compression: RootPeak = part("greatest compression of all teeth and instants, and where it acts")
+    greatest_tension: RootPeak = part("maximum tension of all teeth and instants, and where it acts")
+    greatest_compression: RootPeak = part("maximum compression of all teeth and instants, and where it acts")
     passage_range_Pa: Array = quantity(
         "Pa",
-        "least and greatest stress of a tooth's passage at every sample, of all instants",
+        "minimum and maximum stress of a tooth's passage at every sample, of all instants",
         "bound fillet sample",
         shown="MPa",
     )
     fillets_error: float = quantity(
-        "1", "estimated relative error of the greatest stresses by the fillets' mesh", no_error=ITSELF
+        "1", "estimated relative error of the maximum stresses by the fillets' mesh", no_error=ITSELF
     )
     face: FaceRootStress | None = part(
-        "over the face; None of loads that are even along it. Where they are not, what else is told of all positions, "
-        "teeth and samples is at the place along the face where the greatest tension is",
+        "over the face; None of loads that are even along it. Where they are not, all else given for all positions, "
+        "teeth and samples is at the place along the face where the maximum tension is",
         default=None,
     )
 
     @property
     def errors(self) -> Mapping[str, float]:
-        """Estimated relative errors of the greatest stresses by their names."""
+        """Estimated relative errors of the maximum stresses by their names."""
         peaks = {
             "greatest_tension_Pa": self.greatest_tension,
             "greatest_compression_Pa": self.greatest_compression,
@@ -74,32 +74,32 @@ class GearRootStress:
 
     @described("Pa", "position tooth", shown="MPa")
     def tension_Pa(self) -> Array:
-        """Greatest principal stress along the fillet under the loaded flank."""
+        """Maximum principal stress along the fillet under the loaded flank."""
         return extreme(self.line.arc, self.tangential_Pa[:, :, LOADED])[0]
 
     @described("m", "position tooth", shown="mm")
     def tension_arc(self) -> Array:
-        """Place of the greatest stress: arc length from the middle of the gap."""
+        """Place of the maximum stress: arc length from the middle of the gap."""
         return extreme(self.line.arc, self.tangential_Pa[:, :, LOADED])[1]
 
     @described("Pa", "position tooth", shown="MPa")
     def compression_Pa(self) -> Array:
-        """Least principal stress along the other fillet, negative in compression."""
+        """Minimum principal stress along the other fillet, negative in compression."""
         return -extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[0]
 
     @described("m", "position tooth", shown="mm")
     def compression_arc(self) -> Array:
-        """Place of the least stress: arc length from the middle of the gap."""
+        """Place of the minimum stress: arc length from the middle of the gap."""
         return extreme(self.line.arc, -self.tangential_Pa[:, :, OTHER])[1]
 
     @described("Pa", shown="MPa", error="errors")
     def greatest_tension_Pa(self) -> float:
-        """Greatest tension under a loaded flank, of all teeth and positions."""
+        """Maximum tension under a loaded flank, of all teeth and positions."""
         return self.greatest_tension.stress_Pa
 
     @described("Pa", shown="MPa", error="errors")
     def greatest_compression_Pa(self) -> float:
-        """Greatest compression, negative, on the other side of a loaded tooth, of all teeth and positions."""
+        """Maximum compression, negative, on the other side of a loaded tooth, of all teeth and positions."""
         return self.greatest_compression.stress_Pa
 
     def passage(self) -> tuple[Array, Array]:

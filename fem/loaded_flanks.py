@@ -84,7 +84,7 @@ def loaded_flanks(
     reach : float
         Base pitches outside the path within which tip edges are looked for.
     force : float
-        Greatest force by a torque [N].
+        Maximum force by a torque [N].
     tables : EdgeTables
         Laws of the tip edges.
     """
@@ -107,7 +107,7 @@ def loaded_flanks(
 
 
 def greatest_force(bodies: Compliance, where: ContactCandidates, force: float) -> float:
-    """Greatest force on a pair by a torque's force [N]: teeth that overlap are pressed on both sides without one."""
+    """Maximum force on a pair by a torque's force [N]: teeth that overlap are pressed on both sides without one."""
     overlap, points = -float(np.min(where.back_gap)), bodies.pair.points
     middle = np.array([0.5 * float(points.A + points.E)])
     return force + (overlap / float(bodies.own(middle)[0]) if overlap > 0.0 else 0.0)

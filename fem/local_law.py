@@ -240,7 +240,7 @@ class Film(Protocol):
 def film_yielding(film: Film, rho1: Array, forces: Array, shares: Array) -> Array:
     r"""What films yield beyond the transmission error, counted along their tangents from zero force (positions,) [m].
 
-    A film separates the flanks most where the force is least, so that the transmission error D itself is less
+    A film separates the flanks most where the force is smallest, so that the transmission error D itself is less
     than without film and F/D would call a film stiffer than no film. What yields is the bodies' deflection
     :math:`D + s_i` and the film's :math:`F_i/k_i`: with these in series in each pair, and the mean over the pairs
     weighted by their shares, a stiff film gives the dry secant back.

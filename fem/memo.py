@@ -1,4 +1,4 @@
-"""A bounded memory of results by what they depend on, for all threads of a process."""
+"""A bounded memory of results, keyed by all they depend on, for all threads of a process."""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ class LoadedContacts:
         return replace(moves, cubic=ends.cubic, local=ends.local)
 
     def _changed(self) -> float:
-        """Greatest change of D by the motion over a base pitch; the whole of it where there is no solution.
+        """Largest change of D by the motion over a base pitch; the whole of it where there is no solution.
 
         Half the change of the mean tangent, if that is more: near the end of the first order, where strained teeth
         stiffen without bound, it grows first.

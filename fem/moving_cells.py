@@ -79,7 +79,7 @@ class MovingCells:
         return self.coupling.start
 
     def turn(self, approach: Array) -> Array:
-        """By what the pinion rolls on (...) [m]."""
+        """Distance that the pinion rolls on (...) [m]."""
         return approach + self.least
 
     def split(self, every: Array) -> Array:

@@ -303,7 +303,7 @@ def moved_places(moves: ContactMoves, force: Array, approach: Array) -> Array:
 def model_error(
     moves: ContactMoves, force: Array, approach: Array, moving: bool, changed: Array | float = 0.0
 ) -> float:
-    """Estimate what the model of the contacts leaves out, relative to the deflection, greatest over the positions.
+    """Estimate what the model of the contacts leaves out, relative to the deflection, largest over the positions.
 
     What Hencky's law would change, and what the width of contacts leaves out of Hertz's law, plus the square of what
     the moving contact changes to the first order; plus that itself where contacts stay, or what a resolved pressure

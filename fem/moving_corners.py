@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 __all__ = ["MovedFlanks", "moved_flanks"]
 
 DEEPEST = 0.25
-"""Greatest deflection [modules] at which the pinion's flank is looked at for its corner."""
+"""Maximum deflection [modules] at which the pinion's flank is looked at for its corner."""
 
 
 @record

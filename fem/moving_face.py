@@ -129,7 +129,7 @@ def moving_cells(
     given, bodies, flanks, kappa, pairs
         As of ``moved_over_face``.
     rise : (torques, pitches, positions, pairs, cells) array
-        By how much least gaps of cells fall short of their mean [m].
+        By how much smallest gaps of cells fall short of their mean [m].
     strip : float
         Half-width of strips of pressure over a cell's length.
     """

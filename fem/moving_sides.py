@@ -1,7 +1,7 @@
 """Contacts that move where flanks on both sides of the teeth bear: one energy of both sides and of what couples them.
 
 The pinion turns by D, so that its loaded flanks roll on by D from their first touch. Its other flanks, seen in the
-mirror, roll on by D' = -(D + j), j the play between the first touches of both sides. With the energy of each side by
+mirror, roll on by D' = -(D + j), j the backlash between first touches of both sides. With the energy of each side by
 itself (``fem.moving_contact``) and X, what loads on one side do to the other (``fem.opposite_flanks``), at the places
 x_1 and x_1' of the pinion's flanks,
 

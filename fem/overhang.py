@@ -1,11 +1,11 @@
 """What a gear that is wider than the face in contact yields less: its body goes on beyond the load.
 
-Between walls at the ends of its own face b_g a gear answers waves k_m = m pi/b_g. Loads and deflections in the middles
+Between walls at the ends of its face b_g a gear answers waves k_m = m pi/b_g. Loads and deflections in the middles
 z_c of the cells, h wide, hold waves up to K = pi/h; with c(k) the answer to a wave of line load, even loads included,
 
     C_cd = c(K) delta_cd/h + sum_(k_m < K) (2 - delta_m0)/b_g [c(k_m) - c(K)] cos k_m z_c cos k_m z_d ,
 
-z from the end of its own face. The sum's terms vanish towards K, so that cells need not divide the face; where they do,
+z from the end of its face. The sum's terms vanish towards K, so that cells need not divide the face; where they do,
 and for b_g = b, this is the cosine transform of equally wide gears (``fem.face_share``), by which it replaces it here.
 """
 

@@ -30,13 +30,13 @@ if TYPE_CHECKING:
 __all__ = ["Compliance", "compliance"]
 
 ORDER = 3.0
-"""Order of convergence of the displacement at a load: 4 in the limit, 3 to 3.7 on meshes in use, least at the tip."""
+"""Order of convergence of the displacement at a load: 4 in the limit, 3 to 3.7 on meshes in use, lowest at the tip."""
 
 FINEST = 4
 """Most refinements that a tolerance may ask for."""
 
 TOLERANCE = Limit(2e-6, remedy="0.001 is 0.1 %")
-"""The least one can be met with those refinements."""
+"""The smallest one can be met with those refinements."""
 
 REFINEMENTS = Limit(1, FINEST + 1, remedy="leave it out", whole=True)
 

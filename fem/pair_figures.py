@@ -58,7 +58,7 @@ class PairFigures:
         return np.asarray(np.hypot(self.separating_force, across * np.cos(self.pair.working_pressure_angle)))
 
     def _loaded_radius(self) -> tuple[Array, Array, float]:
-        """Greatest line loads [N/m] and radii of relative curvature [m] of contacts of two flanks, else nan; E'."""
+        """Maximum line loads [N/m] and radii of relative curvature [m] of contacts of two flanks, else nan; E'."""
         touching = np.isfinite(self.rho1) & (self.forces > 0)
         rho1, rho2 = self.flank_rho
         even = self.forces / self.pair.face_width
@@ -67,7 +67,7 @@ class PairFigures:
 
     @described("Pa", "position pair", shown="MPa", no_error=HERTZ)
     def hertz_pressure(self) -> Array:
-        """Greatest Hertz pressure, over the face too; nan where two flanks do not touch.
+        """Maximum Hertz pressure, over the face too; nan where two flanks do not touch.
 
         nan at tip edges too: there the pressure is no ellipse, and at a sharp corner it has no bound.
         """
@@ -75,7 +75,7 @@ class PairFigures:
 
     @described("m", "position pair", shown="um", no_error=HERTZ)
     def half_width(self) -> Array:
-        """Half-width of the Hertz contact, the greatest over the face; nan where two flanks do not touch."""
+        """Half-width of the Hertz contact, the largest over the face; nan where two flanks do not touch."""
         return half_width(*self._loaded_radius())
 
     def surface_speeds(self, speed: float = 1.0) -> Array:
@@ -115,7 +115,7 @@ class PairFigures:
         """Torque on the wheel of the normal forces, tilted by friction if there is any; of the loaded flanks alone.
 
         Where a tip edge presses it differs from the torque of the pinion times the ratio even without
-        friction, by what the yielding teeth store; over a cycle that evens out.
+        friction, because the yielding teeth store energy; over a cycle that evens out.
         """
         slip = np.sign(self.sliding())
         arm = self.candidates.lever[1] * self.pair.base_radii[1]

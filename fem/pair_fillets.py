@@ -30,8 +30,8 @@ COARSEST, HALVINGS = 0.16, 3
 may halve it."""
 
 START = 0.05
-"""Steps [modules] of the least curvature radius of loads, so that mates of nearly equal reach share a solution.
-Nearer to the fillet no short series follows the stress, of undercut teeth least of all."""
+"""Steps [modules] of the minimum curvature radius of loads, so that mates of nearly equal reach share a solution.
+Nearer to the fillet no short series follows the stress, and that of undercut teeth is the worst case."""
 
 TOLERANCE = Limit(0.0, low_open=True, remedy="0.005 is 0.5 %")
 FILLET_EDGE = Limit(0.002, 1.0, "modules", "leave it out")
@@ -52,7 +52,7 @@ class Fillets:
     fillet_edge: float = quantity("1", "edge length on the fillets of the mesh in use, in modules")
     errors: Array = quantity(
         "1",
-        "estimated relative error of the greatest stress on a gear's fillet, from two nested meshes",
+        "estimated relative error of the maximum stress on a gear's fillet, from two nested meshes",
         "gear",
     )
     shapes: tuple[LoadedShape, LoadedShape] = part("pinion and wheel as they were solved, in modules")
@@ -85,7 +85,7 @@ class SolvedFillets:
 
 @dataclass(frozen=True)
 class LoadedShape:
-    """A gear's shape, and the least curvature radius of loads on it.
+    """A gear's shape, and the minimum curvature radius of loads on it.
 
     Attributes
     ----------
@@ -123,7 +123,7 @@ def fillets(
     """Influence functions of both gears on a mesh whose fillets are as fine as the tolerance asks for.
 
     Each mesh is solved with its own refinement (every triangle in four). The error is taken as half of the
-    largest difference of the greatest stress, over loads along the flank and both fillets (the observed order
+    largest difference of the maximum stress, over loads along the flank and both fillets (the observed order
     of a maximum that hops between elements is 1.5 to 2.5), plus what the Chebyshev fit leaves over. At the ends
     of a fillet, where its curvature jumps, the stress itself is several times less exact than its maximum.
 
@@ -131,7 +131,7 @@ def fillets(
     ----------
     pair : gears.GearPair
     tolerance : float
-        Relative, on the greatest stress along a fillet.
+        Relative, on the maximum stress along a fillet.
     plane : {"strain", "stress"}
     fillet_edge : float, optional
         Edge length on the fillets before the refinement, in modules; fixes the mesh instead of the tolerance.

@@ -35,7 +35,7 @@ ARROW = 2.0
 
 
 def fillet_stress(field: GearField) -> float:
-    """Greatest von Mises stress [Pa] between root and form circle, without cells whose stress is only indicative."""
+    """Maximum von Mises stress [Pa] between root and form circle, without cells whose stress is only indicative."""
     cells = field.cells[(field.region == FILLET) & (field.indicative == 0)]
     return float(field.von_mises_Pa[np.unique(cells)].max())
 

@@ -72,7 +72,7 @@ class PartCells:
 
 
 def part_cells(laws: CellLaws, coupling: CellCoupling, rise: Array) -> PartCells:
-    """Laws of cells whose least gap falls short of their mean by r (..., n) [m].
+    """Laws of cells whose minimum gap falls short of their mean by r (..., n) [m].
 
     F* is found by the laws' secant, then by tangents, to about 1e-3.
     """
@@ -86,7 +86,7 @@ def part_cells(laws: CellLaws, coupling: CellCoupling, rise: Array) -> PartCells
 
 
 def rises(gaps: Array, bends: Array) -> Array:
-    """By how much each cell's least gap falls short of its mean, under load (..., cells) [m].
+    """By how much each cell's minimum gap falls short of its mean, under load (..., cells) [m].
 
     Parameters
     ----------

@@ -34,13 +34,13 @@ ROUND = 0.1
 """Distance [modules of rho] from the end of a flank's fit within which places beyond it are rounded off to it."""
 
 FORCES, LEAST = 0.25, 3e-6
-"""Step of the forces' logarithm, and the least force over the greatest."""
+"""Step of the forces' logarithm, and the minimum force over the largest."""
 
 
 def up_to(rho: Array, high: float, module: float) -> tuple[Array, Array, Array]:
     """Places no farther than the end of a flank's fit, smoothly, and their derivatives by those that are asked for.
 
-    So that a compliance that grows as a logarithm towards the corner, and then no more, leaves no corner of its own.
+    So that a compliance that grows as a logarithm towards the corner, and then no more, leaves no separate corner.
     """
     length = ROUND * module
     t = np.clip(0.5 * (rho - high) / length + 0.5, 0.0, 1.0)
@@ -83,9 +83,9 @@ class PlaceSurface:
     gaps : CubicSpline
         Over the first of these [m].
     reach : (float, float)
-        Least and greatest asinh of these; beyond nothing changes.
+        Smallest and largest asinh of these; beyond nothing changes.
     forces : (float, float)
-        Least and greatest force [N].
+        Minimum and maximum force [N].
     sliding : float
         Growth of z per force by the tilt of the touched flank [m/N].
     """
@@ -99,7 +99,7 @@ class PlaceSurface:
 
     @property
     def first(self) -> float:
-        """Place from which on the corner tells [m]."""
+        """Place from which on the corner has an effect [m]."""
         return float(self.unit * np.sinh(self.reach[0]))
 
     def _xi(self, place: Array) -> tuple[Array, Array, Array, Booleans]:
@@ -114,7 +114,7 @@ class PlaceSurface:
         return np.asarray(self.gaps(self._xi(place)[0]))
 
     def at(self, place: Array, force: Array) -> Pushed:
-        """Derivatives by forces [N] and by what moves places [m], the gap among them; linear below the least force."""
+        """Derivatives by forces [N] and by shifts of places [m], the gap among them; linear below the minimum force."""
         size = np.clip(force, *self.forces)
         xi, by_place, curved, covered = self._xi(place + self.sliding * force)
         log, part = np.log(size), np.minimum(force / self.forces[0], 1.0)

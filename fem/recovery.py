@@ -1,6 +1,6 @@
 """Nodal stresses of a sector: averaged inside, from tangential strain and known tractions on the free edges.
 
-Averages of the elements' stresses are least exact on the boundary, where they matter most. There the traction
+Averages of the elements' stresses are the most inaccurate on the boundary, where they matter most. There the traction
 (tau_n, tau_t) is known and the tangential strain comes from the edges' Gauss points (``fem.fillet``):
 
     sigma_nn = tau_n,  sigma_nt = tau_t,  sigma_tt = E* eps_t + nu* tau_n .

@@ -1,6 +1,6 @@
-"""What a deflection is measured against: the turn of the bores, of the bodies, or of the root circles.
+"""What a deflection is measured against: the rotation of the bores, of the bodies, or of the root circles.
 
-A deflection D along the line of action is the turn of the pinion less that of the wheel, each times its base radius,
+A deflection D along the line of action is the pinion's rotation less that of the wheel, each times its base radius,
 and a gear that yields has no single turn. What two references differ by is a turn of each gear, so it adds to D the
 same for all pairs in contact and changes no force:
 
@@ -12,7 +12,7 @@ the torsional stiffness k_t of the support, the body's wind-up w between the hel
 inertia balances the torque (``gears.closed_form.inertial_wind_up``), the turn c per force that D holds is
 
 - bore: w + r_b^2/k_t, all up to what holds the gear: the static transmission error between the shafts;
-- body: lambda w, against the turn of the ring weighted by its inertia, the torque balanced by that inertia: what the
+- body: lambda w, against the ring's rotation weighted by its inertia, the torque balanced by that inertia: what the
   equation of motion of a rigid gear means by its angle, while the shaft keeps the torque that it had. The inertia of
   the teeth is left out (docs/validation/fem.md has what that changes);
 - teeth: 0, against the mean turn of the root circle.

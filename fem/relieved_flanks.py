@@ -1,13 +1,13 @@
 r"""Where flanks touch that differ from involutes: relief and deviations turn and bend them, so that the contact moves.
 
 With sigma the distance along the common tangent from where the involutes touch, towards the pinion's tip, flanks that
-lack h(sigma) of material stand apart by sigma^2/(2 R) + h. They touch where that is least,
+lack h(sigma) of material stand apart by sigma^2/(2 R) + h. They touch where that is smallest,
 
     sigma/R + h' = 0,    1/R' = 1/R + h'',
 
 to the second order a contact of involutes there with the radius R', and with the gap h - (R' h'^2)/2 at its nominal
 place. Slope and curvature of h are differences over ``SPAN`` on either side, so that waves shorter than a contact, over
-which its pressure takes the mean, count with their depth alone. Where the least gap is that of a tip corner an edge
+which its pressure takes the mean, count with their depth alone. Where the minimum gap is that of a tip corner an edge
 touches: tip relief moves that place outwards by R h'.
 """
 
@@ -32,7 +32,7 @@ SPAN = 0.05
 """Half of the stretch over which slope and curvature of what is missing are differences [modules]."""
 
 CURVATURES = (0.5, 4.0)
-"""Least and greatest curvature 1/R' over 1/R: more than this is a wave or an edge, not a contact's curvature."""
+"""Minimum and maximum curvature 1/R' over 1/R: more than this is a wave or an edge, not a contact's curvature."""
 
 SLACK = 1e-7
 """Distance [m of rho] on either side within which a flank is taken to be on the start of its relief."""
@@ -49,14 +49,14 @@ MOST_STEPS = 100
 
 @record
 class Touch:
-    """Contacts of flanks with relief or deviations (n,), where the least gap is not beyond a corner.
+    """Contacts of flanks with relief or deviations (n,), where the minimum gap is not beyond a corner.
 
     Attributes
     ----------
     rho : (2, n) array
         Curvature radii where pinion and wheel are touched [m].
     gap : (n,) array
-        Turn of the pinion that closes the gap, times its base radius, by what the flanks lack [m].
+        Rotation of the pinion that closes the gap of the relieved flanks, times its base radius [m].
     curvature : (n,) array
         R/R'.
     lever : (2, n) array
@@ -121,7 +121,7 @@ def touch(given: Setting, place: Array, removed: tuple[Removed, Removed]) -> Tou
 
 
 def _least(slope: Callable[[Array], Array], low: Array, high: Array, close: float) -> tuple[Array, Booleans]:
-    """Where gaps of growing slopes are least between bounds (n,), and whether they would be less beyond these.
+    """Where gaps of growing slopes are smallest between bounds (n,), and whether they would be less beyond these.
 
     By false position, whose bound that stays counts half (Illinois), until slopes are ``close`` to zero: a slope that
     turns at the kink of a flank leads Newton's method to and fro between its two sides for ever.

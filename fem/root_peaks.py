@@ -1,4 +1,4 @@
-"""The greatest stress on the fillets of a cycle: between samples of a fillet and between nodes of the cycle's arcs."""
+"""The maximum stress on the fillets of a cycle: between samples of a fillet and between nodes of the cycle's arcs."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ LOADED, OTHER = 0, 1
 _SIGNS = {LOADED: 1.0, OTHER: -1.0}
 
 FINER = 4
-"""Points between the nodes of an arc, of which the greatest has a parabola through its neighbours."""
+"""Points between the nodes of an arc, of which the largest has a parabola through its neighbours."""
 
 
 @record
 class RootPeak:
-    """The greatest stress of a cycle and where it acts."""
+    """The maximum stress of a cycle and where it acts."""
 
-    no_error = "not estimated by itself; the greatest stress has an error"
+    no_error = "not estimated by itself; the maximum stress has an error"
 
     headline = ("stress_Pa", "position")
 
@@ -50,7 +50,7 @@ class RootPeak:
     )
     along_Pa: Array = quantity("Pa", "stress along that fillet at that instant", "sample", shown="MPa")
     sampling: float = quantity(
-        "1", "estimated relative error by what is greater between the instants", no_error=ITSELF
+        "1", "estimated relative error from higher values between the instants", no_error=ITSELF
     )
     forces: float = quantity(
         "1",
@@ -74,7 +74,7 @@ class RootNodes:
     stress: Array
 
     def greatest(self, line: FilletLine, side: int) -> Greatest:
-        """Greatest stress on one side of all teeth, on the series through the stress at every sample and arc.
+        """Maximum stress on one side of all teeth, on the series through the stress at every sample and arc.
 
         Between nodes only arcs and teeth are looked at on which it may be: by as much as the stress changes there.
         """
@@ -97,7 +97,7 @@ class RootNodes:
 
 @dataclass(frozen=True)
 class Greatest:
-    """Greatest stress, or least with its sign turned; its error between nodes; tooth, position and fillet there."""
+    """Maximum stress, or smallest with its sign turned; its error between nodes; tooth, position and fillet there."""
 
     value: float
     off: float
@@ -107,7 +107,7 @@ class Greatest:
 
 
 def _on_arc(stress: Array, samples: Array, crowded: bool) -> tuple[float, float, float, Array]:
-    """Greatest on an arc of one tooth (nodes, samples): its error, the argument of the series, the stress there."""
+    """Largest on an arc of one tooth (nodes, samples): its error, the argument of the series, the stress there."""
     degree = len(stress) - 1
     angle = np.linspace(0.0, np.pi, FINER * degree + 1)
     series = to_series(degree) @ stress
@@ -131,7 +131,7 @@ def peak_of(
     influence: FilletInfluence,
     side: int,
 ) -> RootPeak:
-    """Greatest stress on one side of all teeth, and what is missed between the nodes.
+    """Maximum stress on one side of all teeth, and what is missed between the nodes.
 
     Parameters
     ----------

@@ -255,7 +255,7 @@ class Setting:
         return np.asarray(gap * cos(self.pair.rack.alpha) * (-1 if self.back else 1))
 
     def tooth_gap(self, teeth: Integers, rho: Array) -> Array:
-        """Gap by what teeth (2, ...) lack of the mean of their gear at curvature radii (2, ...) [m].
+        """Gap from what teeth (2, ...) lack compared with the mean of their gear at curvature radii (2, ...) [m].
 
         `removed` is that mean, by which tip edges have their laws: over a contact of their size what a tooth differs
         by is taken as even.

@@ -176,7 +176,7 @@ class Solution:
         return np.stack([np.clip(one, *end) for one, end in zip(rho, ends, strict=True)])
 
     def shafts_give_way(self, number: int) -> float:
-        """Greatest deflection of both shafts on the face over the module; 0 of rigid ones."""
+        """Maximum deflection of both shafts on the face over the module; 0 of rigid ones."""
         held = None if self.face is None else self.face.shafts
         return 0.0 if held is None else float(np.max(held.most[number]))
 

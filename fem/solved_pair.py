@@ -39,7 +39,7 @@ class SolvedPair:
     refinements: int = quantity("1", "refinements of the mesh in use")
     sizes: Sizes = part("of the mesh before it was refined")
     reach: int = quantity("1", "neighbours with cross terms on either side of a tooth")
-    error: float = quantity("1", "estimated relative error of a pair's deflection, greatest along the path")
+    error: float = quantity("1", "estimated relative error of a pair's deflection, largest along the path")
     cost: Cost
     converged: bool
     message: str
@@ -167,7 +167,7 @@ class SolvedPair:
     def coarser(self) -> Self | None:
         """The same gears, off by their errors times the gain of the last refinement; None where these are unknown.
 
-        By the mesh they differ as the one before that refinement does. Motion and back flanks stay as they are.
+        By the mesh they differ as the one before that refinement does. Motion and back flanks do not change.
         """
         if self._flanks_before is None:
             return None

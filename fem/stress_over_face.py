@@ -59,7 +59,7 @@ class Beside:
     ----------
     stress : float
     waves : float
-        By what varies along the face, between walls.
+        From the variation along the face, between walls.
     ends : float
         Most that free ends do at places near it, for what they do may vanish at the peak itself.
     von_mises : float
@@ -124,7 +124,7 @@ class StressOverFace:
         return found
 
     def greatest(self, loads: CellLoads, z: Array) -> tuple[Array, Array]:
-        """Greatest tension, and greatest compression as a positive number (n, teeth, places) [Pa]."""
+        """Maximum tension, and maximum compression as a positive number (n, teeth, places) [Pa]."""
         arc, count = self.fillets.influence.line.arc, len(loads.load)
         tension, compression = np.zeros((2, count, len(self.teeth), len(z)))
         step = max(1, MOST // (2 * len(arc) * len(z)))

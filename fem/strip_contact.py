@@ -101,7 +101,7 @@ def from_the_corner(kernel: Array, gaps: Array, first: Array, levers: Array) -> 
 def _bordered(matrix: Array) -> tuple[Array, Array, Array]:
     """Factors of a kernel with one row and two columns more (strips + 1, strips + 2): L's last row, U's last columns.
 
-    The order of the rows stays: the kernel is almost symmetric and definite. LAPACK keeps it of its own accord where
+    The order of the rows stays: the kernel is almost symmetric and definite. LAPACK keeps it itself where
     every pivot is the largest beside it, as narrow strips yield more than wide ones; else it is done step by step. To
     LAPACK columns are rows, so that U has the unit diagonal; products of both factors do not know.
     """
@@ -227,7 +227,7 @@ def closings(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Array, I
 
 
 def _eliminate(whole: Array, rows: Integers, strip: Integers) -> None:
-    """Eliminate one strip of each row's system; of its own equation nothing is left."""
+    """Eliminate one strip of each row's system; nothing is left of its equation."""
     pivot = whole[rows, strip, strip]
     line, column = whole[rows, strip], whole[rows, :, strip]
     each = slice(None) if len(rows) == len(whole) else rows

@@ -213,8 +213,8 @@ def _singular(loads: LineLoads, unknowns: Integers) -> Array:
 def half_plane(law: PlaneElasticity) -> Array:
     """Third-order integrals (3,) over a half-plane under Hertz's pressure, times a, per unit load cubed.
 
-    In elliptic coordinates x + i z = a cosh(mu - i theta) Hertz's stress of greatest pressure p has
-    tr sigma = -2 p sin(theta) e^-mu, E* omega = 2 p cos(theta) e^-mu and the greatest shear
+    In elliptic coordinates x + i z = a cosh(mu - i theta) Hertz's stress of maximum pressure p has
+    tr sigma = -2 p sin(theta) e^-mu, E* omega = 2 p cos(theta) e^-mu and the largest shear
     p sinh(mu) sin(theta) e^-mu/|sinh(mu - i theta)|. In units of p^3 a^2/45 the integrals of (tr sigma)^3,
     tr sigma sigma : sigma and E*^2 omega^2 tr sigma are -192, -128 and -64.
     """

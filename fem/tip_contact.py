@@ -83,7 +83,7 @@ class EdgeLaw:
     force : (n, k) array
         Growing forces on the line of action that turn the pinion as the contact's do [N], the first one zero.
     approach : (n, k) array
-        Turn of the pinion times its base radius [m] without the touched flank's ``own`` part, without the turn of
+        Turn of the pinion times its base radius [m] without the touched flank's ``own`` part, without the rotation of
         the tip's own body on its hub, and without other teeth; at zero force that at which the tip touches.
     largest : (n,) array
         Force [N] up to which the law holds: over all strips, or until strips farther in would let it fall.

@@ -76,7 +76,7 @@ def gap_at(
     along: Array | float = 0.0,
     out: Array | float = 0.0,
 ) -> tuple[Array, Array]:
-    """As ``unloaded_gap`` for points of their own at every position: arrays of one shape."""
+    """As ``unloaded_gap`` for separate points at every position: arrays of one shape."""
     r1, r2 = base_radii
     # line of action along x, gear 1's tangent point at the origin, axes at (0, -r1) and (line, r2); all is written as
     # differences from where the involutes touch, so that small gaps keep their digits
@@ -115,7 +115,7 @@ def opening(base_radii: tuple[float, float], line: float, rho1: Array, where: Ar
 
 
 def opening_at(base_radii: tuple[float, float], line: float, rho1: Array, where: Array, rho2: Array) -> Array:
-    """As ``opening`` for points of their own at every position: arrays of one shape."""
+    """As ``opening`` for separate points at every position: arrays of one shape."""
     r1, r2 = base_radii
     turned: Array = (where - rho1) / r1 - (rho2 - (line - rho1)) / r2
     return turned
@@ -199,7 +199,7 @@ def chamfer_length(profile: ToothProfile) -> float:
 
 
 def chamfer_gap(pair: GearPair, corner: int, place: Array, start: float = 0.0) -> Array:
-    """Least gap of a chamfer behind the corner, along the chamfer and at its end (n,) [m]; inf without one.
+    """Minimum gap of a chamfer behind the corner, along the chamfer and at its end (n,) [m]; inf without one.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """A loaded sector by itself, meshed finely at its tip corner: fields where a corner presses or cuts off a pressure.
 
 Near a free corner a half-plane's field is wrong, and its correction varies over less than the elements of the ring.
-So the strips' pressure is put on a sector of its own as it is, with no singularity taken out; its cuts move as the
+So the strips' pressure is put on a separate sector as it is, with no singularity taken out; its cuts move as the
 ring has them move under the same resultant, and its bore is held.
 """
 
@@ -28,7 +28,7 @@ GAUSS_POINTS = 3
 """Of each strip."""
 
 CORNER, GROWTH, LEAST = 0.1, 0.2, 1e-3
-"""Edge length at the corner over the contact's extent, its growth away from there, and its least size [modules]."""
+"""Edge length at the corner over the contact's extent, its growth away from there, and its smallest size [modules]."""
 
 
 @record

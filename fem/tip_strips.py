@@ -210,7 +210,7 @@ def _scaled(part: Array, logarithm: float, solved: int) -> Array:
 
     Of two strips the one farther from the corner is loaded. Two strips that are both nearer than the first
     load are moved out together, to that load, and to another one farther out: the two differ by the wedge's
-    logarithm and by what the tooth adds, linear in the distances, which is taken off.
+    logarithm and from the tooth's contribution, linear in the distances, which is taken off.
     """
     first, second = np.indices((len(part), len(part)))
     larger, smaller = np.maximum(first, second), np.minimum(first, second)

@@ -1,7 +1,7 @@
 """Root stress of both gears along the mesh cycle.
 
 Forces of a loaded mesh cycle times the influence functions of the fillets (``fem.fillet_influence``), all loaded teeth
-together: a tooth's root also feels the loads of its neighbours. Greatest stresses are those on the cycle's arcs between
+together: a tooth's root also feels the loads of its neighbours. Maximum stresses are those on the cycle's arcs between
 events, where forces have corners and steps, whatever the cycle's positions. The fillet is a free edge, so the stress
 there is uniaxial along it: sigma_t is a principal stress, the one across is zero, and in plane strain the third is
 nu sigma_t.
@@ -47,7 +47,7 @@ class RootStress:
     wheel: GearRootStress = part("of the wheel")
     error: float = quantity(
         "1",
-        "largest estimated relative numerical error of the greatest stresses: of the fillets' mesh, of the forces, and "
+        "largest estimated relative numerical error of the maximum stresses: of the fillets' mesh, of the forces, and "
         "of what lies between the instants",
     )
     cost: Cost
@@ -56,18 +56,18 @@ class RootStress:
 
     @property
     def errors(self) -> Mapping[str, float]:
-        """Estimated relative errors of the greatest tensions by their names."""
+        """Estimated relative errors of the maximum tensions by their names."""
         both = {"pinion_tension_Pa": self.pinion, "wheel_tension_Pa": self.wheel}
         return {name: one.errors["greatest_tension_Pa"] for name, one in both.items()}
 
     @described("Pa", shown="MPa", error="errors")
     def pinion_tension_Pa(self) -> float:
-        """Greatest tension on the pinion's fillets."""
+        """Maximum tension on the pinion's fillets."""
         return self.pinion.greatest_tension_Pa
 
     @described("Pa", shown="MPa", error="errors")
     def wheel_tension_Pa(self) -> float:
-        """Greatest tension on the wheel's fillets."""
+        """Maximum tension on the wheel's fillets."""
         return self.wheel.greatest_tension_Pa
 
 
@@ -81,18 +81,18 @@ def root_stress(
     pair : gears.GearPair
     cycle : MeshCycle
         Of this pair; its normal forces are used, friction is left out. A tip edge is taken to press along the
-        normal of its own flank at the end of the involute.
+        normal of the edge's flank at the end of the involute.
     fillets : Fillets, optional
         Of this pair in the cycle's plane, to be used again for other torques or positions; computed to
         ``tolerance`` unless given.
     tolerance : float
-        Relative, on the greatest stress.
+        Relative, on the maximum stress.
 
     Returns
     -------
     RootStress
-        With cells of the face also over the face; what else is told of all teeth and samples is then at the place of
-        the greatest tension along the face.
+        With cells of the face also over the face; what else is given for all teeth and samples is then at the place of
+        the maximum tension along the face.
 
     Raises
     ------
@@ -149,7 +149,7 @@ def root_stress(
 def _gear_stress(
     pair: GearPair, cycle: MeshCycle, found: MeshArcs, roots: Fillets, gear: int
 ) -> GearRootStress:
-    """Stress at the cycle's positions, and the greatest on its arcs."""
+    """Stress at the cycle's positions, and the largest on its arcs."""
     influence, fillets_error = (roots.pinion, roots.wheel)[gear], float(roots.errors[gear])
     offsets = cycle.pair_offset
     teeth = np.arange(offsets.min() - 1, offsets.max() + 2)

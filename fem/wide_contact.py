@@ -64,7 +64,7 @@ def shared_by_width(
     share : callable
         Shares some torques (numbers) over cells, with strips of a half-width over a cell's length, 0 for lines.
     width : callable
-        Greatest half-width [m] of the contacts of such shares (torques,).
+        Largest half-width [m] of the contacts of such shares (torques,).
     cell : float
         Length of a cell [m].
     start : (torques,) array

@@ -75,7 +75,7 @@ def _pressed(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
     key = "tight" if section.centre_distance_mm is None else "centre_distance_mm"
     value = "true" if key == "tight" else f"{section.centre_distance_mm:g}"
     allowed = (
-        f"leaves an overlap of {-1e6 * pair.backlash:.4g} µm; the wanted {asked}, in which back flanks touch by turns, "
+        f"leaves an overlap of {-1e6 * pair.backlash:.4g} µm; the wanted {asked}, in which back flanks also touch, "
         "requires none"
     )
     remedy = "Give more backlash"

@@ -105,7 +105,7 @@ def _folder(package: str) -> Path:
 
 
 def keep_compiled_code() -> None:
-    """Give numba a cache folder of our own, named by the code that it compiles.
+    """Give numba a separate cache folder, named by the code that it compiles.
 
     numba does not notice a changed helper in another file, and fails where site-packages cannot
     be written; a folder per digest of the sources cures both. Call it before numba is imported.

@@ -1,6 +1,6 @@
 """Processes that we start: they import nothing from the current folder, and end with the one that started them.
 
-A child that is told to (a closed pipe, which also tells that its parent has died) ends at once, without cleaning up:
+A child that is ordered to (by a closed pipe, also when its parent has died) ends at once, without cleaning up:
 what it writes is whole at any moment. Compiled code may keep the interpreter busy for minutes; so where the system can
 end a child by itself, it is asked to.
 
@@ -106,7 +106,7 @@ def answering_signals() -> Iterator[None]:
 def ends_later() -> Iterator[None]:
     """Answer signals that ask for an end when this is left: what is started half-way could not be ended.
 
-    A worker whose parent goes on before it has told it what to do ends with a traceback.
+    A worker whose parent goes on before it has sent it work ends with a traceback.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -198,7 +198,7 @@ def dask_setup(_worker: Any) -> None:
 
 
 def _is_no_lost_connection(record: logging.LogRecord) -> bool:
-    """Whether a worker's record, with its traceback, tells more than that the study has ended and gone."""
+    """Whether a worker's record, with its traceback, shows more than that the study has ended and gone."""
     kind = record.exc_info[0] if record.exc_info else None
     return kind is None or not issubclass(kind, OSError)
 

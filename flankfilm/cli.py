@@ -182,7 +182,7 @@ def study(study: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> int
 
 @app.command
 def optimise(task: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> int:
-    """Look for the least of one output, or the trade-off of several, over keys of a scene within bounds.
+    """Look for the minimum of one output, or the trade-off of several, over keys of a scene within bounds.
 
     Parameters
     ----------
@@ -313,7 +313,7 @@ SETTINGS_OF_NUMBA = ".numba_config.yaml"
 
 
 DATE = "SOURCE_DATE_EPOCH"
-"""Variable by which libraries date what they write, as soon as they are loaded."""
+"""Variable with which libraries date what they write, as soon as they are loaded."""
 
 
 def _commands() -> int:

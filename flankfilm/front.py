@@ -168,7 +168,7 @@ def study(
 
 
 def optimise(task: Task | Path | str, out: Path | str | None = None, how: Execution = Execution()) -> Optimum:
-    """Look for the least of one output, or the trade-off of several; arguments as of `study`.
+    """Look for the minimum of one output, or the trade-off of several; arguments as of `study`.
 
     Examples
     --------

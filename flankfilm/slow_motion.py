@@ -1,7 +1,7 @@
 """Speeds so far below the resonance that no motion is followed there, found from cheap bounds of the stiffness.
 
 A mesh period of the exact flow is divided into cells by the fastest time scale; their number is bounded
-(`dynamics.oscillator.MAX_CELLS`), and with it the least frequency.
+(`dynamics.oscillator.MAX_CELLS`), and with it the lowest frequency.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ SOFTEST, STIFFEST = 0.2, 3.0
 
 
 def least_frequency(damping_ratio: float, harmonics: float) -> float:
-    """Least mesh over natural frequency at which a motion is followed.
+    """Smallest mesh over natural frequency at which a motion is followed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Compiled code made ready on all cores before it is needed, each part in a process of its own."""
+"""Compiled code made ready on all cores before it is needed, each part in a separate process."""
 
 from __future__ import annotations
 

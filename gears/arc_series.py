@@ -14,7 +14,7 @@ each of them changes of a figure is added as squares.
 Towards an end where a contact begins they are known: coefficients of a singularity at an end follow one another, so
 that their sum changes a figure by far less than each of them. There the series of half the degree, through every other
 point, shows what it leaves out itself: the same sum with n/2 for n. If coefficients fall as :math:`k^{-p}` that sum
-falls as :math:`n^{1-p}`: from there to n it is reduced half as much as they are.
+falls as :math:`n^{1-p}`: from there to n it is reduced half as much as these.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from base import Array
 __all__ = ["OVERSHOOT", "ceiling", "gauss", "greatest_of", "left_out", "lobatto", "to_series"]
 
 OVERSHOOT = 3.0
-"""Largest error of a greatest value between nodes, over what it exceeds theirs by."""
+"""Largest error of a maximum value between nodes, over what it exceeds theirs by."""
 
 
 def lobatto(degree: int) -> Array:
@@ -100,9 +100,9 @@ def ceiling(series: Array) -> float:
 
 
 def greatest_of(series: Array, crowded: bool = False) -> tuple[float, float]:
-    """Greatest value of a Chebyshev series between -1 and 1, and its error; 0 at an end.
+    """Maximum value of a Chebyshev series between -1 and 1, and its error; 0 at an end.
 
-    The error is what the series leaves out there, and no more than ``OVERSHOOT`` times what the greatest value exceeds
+    The error is what the series leaves out there, and no more than ``OVERSHOOT`` times what the maximum value exceeds
     those at the nodes by: these are exact, and a series may wave between them.
     """
     nodes = chebyshev.chebval(lobatto(len(series) - 1), series)

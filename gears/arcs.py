@@ -56,7 +56,7 @@ class Arc:
         "",
         "at the same points of every pair: share of the torque, normal force [N], curvature radius of the pinion's "
         "and of the wheel's flank [m], and where the face has cells the line load on each [N/m]; None where pairs are "
-        "not told apart",
+        "not distinguished",
         "node pair kind",
         default=None,
     )
@@ -131,12 +131,12 @@ class Arcs:
         return Arcs(names, arcs, self.pitches)
 
     def shares(self) -> Arcs | None:
-        """Load shares of the pairs as curves; None where pairs are not told apart."""
+        """Load shares of the pairs as curves; None where pairs are not distinguished."""
         found = [arc.pairs[..., SHARE] for arc in self.arcs if arc.pairs is not None]
         return self.with_curves("share", found) if len(found) == len(self.arcs) else None
 
     def greatest_of_all(self) -> tuple[float, float]:
-        """Greatest value of all curves, and its error by sampling."""
+        """Maximum value of all curves, and its error by sampling."""
         found = [self.extremes(name)[1] for name in self.names]
         greatest = max(value for value, _ in found)
         return greatest, max(value + error for value, error in found) - greatest
@@ -193,15 +193,15 @@ class Arcs:
         return (total / width, square**0.5 / width) if width > 0.0 else (float("nan"), float("nan"))
 
     def extremes(self, name: str) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Least and greatest value of a curve on closed arcs, each with its error by sampling.
+        """Minimum and maximum value of a curve on closed arcs, each with its error by sampling.
 
-        Ends of arcs are Chebyshev points, so that an extreme value there has none of its own; an arc whose extreme is
+        Ends of arcs are Chebyshev points, so that an extreme value there has no separate one; an arc whose extreme is
         less, but uncertain, may exceed it.
         """
         return self._greatest(name, -1.0), self._greatest(name, 1.0)
 
     def _greatest(self, name: str, sign: float) -> tuple[float, float]:
-        """Greatest value of sign times a curve, times sign, and its error."""
+        """Maximum value of sign times a curve, times sign, and its error."""
         series = [(sign * one, arc.crowded) for arc, one in self._series(name)]
         ceilings = [ceiling(one) for one, _ in series]
         greatest = above = below = -np.inf

@@ -98,7 +98,7 @@ def share_between(
     touchable = np.isfinite(clear)
     problem = _Problem(stiff, local, film, np.where(touchable, clear, 0.0), side, arms, whole, touchable)
     if np.any((problem.whole == 0.0) & (problem.play >= 0.0)):
-        allowed = "must not be 0 where the gaps leave play: no flank bears there"
+        allowed = "must not be 0 where the gaps leave backlash: no flank bears there"
         raise LoadSharingError.at("force", "0", allowed, "give a force, or gaps that overlap")
     loads, approach, steps = problem.central_path()
     return problem.finished(loads, approach, steps)

@@ -14,7 +14,7 @@ from gears.plane import mirrored, polar, turned
 from gears.profile import ToothProfile
 
 FINEST = 1e-10
-"""Least chord error [m]; a thousandth of what the best machines hold."""
+"""Smallest chord error [m]; a thousandth of what the best machines hold."""
 
 MOST_POINTS = 5_000_000
 """Points of one contour above which a coarser tolerance is asked for."""
@@ -74,7 +74,7 @@ class Contour:
     segments : tuple of Segment
         Each begins where the one before it ends; the last ends where the first begins.
     bore_radius : float or None
-        Radius of the bore as a contour of its own [m]; None where it is part of the segments.
+        Radius of the bore as a separate contour [m]; None where it is part of the segments.
     tolerance : float
         Largest distance of a chord from its curve [m].
     """

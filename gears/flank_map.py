@@ -24,7 +24,7 @@ class FlankMap:
     lead : LeadTrace
         Mean over the profile, less the mean of the map.
     twist : float
-        Greatest deviation of the map from their sum: what is left out [m].
+        Largest deviation of the map from their sum: what is left out [m].
     """
 
     profile: ProfileDeviation

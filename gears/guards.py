@@ -96,7 +96,7 @@ def check_gear(
 
 
 def _neck(tooth: ToothProfile) -> float:
-    """Half the least thickness between the fillets [m]."""
+    """Half the minimum thickness between the fillets [m]."""
     return float(np.min(tooth.fillet(np.linspace(0.0, 1.0, 65))[:, 0]))
 
 
@@ -124,7 +124,7 @@ def _check_tooth(found: Findings, name: str, gear: Gear, tooth: ToothProfile, ra
 
 
 def _add_pointed(found: Findings, name: str, gear: Gear, tooth: ToothProfile) -> None:
-    """Note a pointed tooth, by what thins it, with the highest tip that the flanks allow."""
+    """Note a pointed tooth, with what thins it, with the highest tip that the flanks allow."""
     spare = gear.thickness_allowance + 2.0 * tooth.reference_radius * tooth.tip_half_angle
     point = tooth.base_radius * math.hypot(1.0, tangent_from_involute(max(tooth.base_half_angle, 1e-9)))
     excess = (tooth.tip_radius - point) / tooth.module

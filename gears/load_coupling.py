@@ -17,7 +17,7 @@ class Coupling(ABC):
     Attributes
     ----------
     apart : bool
-        Whether positions are solved one by one, so that those that are settled can be left as they are.
+        Whether positions are solved one by one, so that those that are settled are not solved again.
     start : float
         Part of the whole force with which one is taken in.
     """

@@ -2,7 +2,7 @@
 
 All follow from the smooth arcs between the cycle's events. The error of a figure is that of its arcs' series and, by
 finite elements, that of the mesh and of fits along the flanks: the figure is computed once more from gears on the mesh
-before the last refinement whose fits are off by as much more, with events of its own. What films may err by changes it
+before the last refinement whose fits are off by as much more, with separate events. What films may err by changes it
 likewise: it is computed once more with films so changed, and with half as many cells of the face. These parts have
 nothing to do with each other and are added as squares. A part of a harmonic's error is complex, with the phase of what
 causes it.
@@ -31,7 +31,7 @@ HARMONICS = 50
 """Harmonics of the mesh frequency that are figures of a cycle."""
 
 STEP = 1e-3
-"""Least relative step of the tangent stiffness that is an event of its own."""
+"""Smallest relative step of the tangent stiffness that is a separate event."""
 
 SHOWN = 24
 """Points of an arc in pictures."""
@@ -121,13 +121,13 @@ class MeshArcs:
         )
 
     def extreme(self, name: str, greatest: bool) -> Estimate:
-        """Least or greatest value of a curve."""
+        """Minimum or maximum value of a curve."""
         value, error = self.arcs.extremes(name)[greatest]
         scatter = self._scatter(name).size
         return self._estimate(value, error, lambda arcs: arcs.extremes(name)[greatest][0], scatter)
 
     def range(self, name: str) -> Estimate:
-        """Greatest less least value of a curve."""
+        """Maximum minus minimum value of a curve."""
         (least, off), (most, more) = self.arcs.extremes(name)
 
         def apart(arcs: Arcs) -> float:
@@ -137,7 +137,7 @@ class MeshArcs:
         return self._estimate(most - least, hypot(off, more), apart, self._scatter(name).varying)
 
     def greatest_share(self) -> Estimate:
-        """Greatest share of the torque that a pair takes; nan where pairs are not told apart."""
+        """Largest share of the torque that a pair takes; nan where pairs are not distinguished."""
         shares = self.arcs.shares()
         if shares is None:
             return Estimate(float("nan"), None)
@@ -213,7 +213,7 @@ class MeshArcs:
         least: float = 0.0,
         alike: bool = True,
     ) -> Estimate:
-        """Estimate with the error of arcs, the mesh, cells (least: what these change at positions) and other models."""
+        """Estimate with the error of arcs, mesh, cells (`least`: what these change at positions) and other models."""
         if self.other is None:
             return Estimate(value, None)
         other = self.other * value if alike else 0.0
@@ -282,27 +282,27 @@ class MeshFigures(ABC):
 
     @described("N/m", error="errors")
     def least_stiffness(self) -> float:
-        """Least mesh stiffness (tangent)."""
+        """Minimum mesh stiffness (tangent)."""
         return self._estimates["least_stiffness"].value
 
     @described("N/m", error="errors")
     def greatest_stiffness(self) -> float:
-        """Greatest mesh stiffness (tangent)."""
+        """Maximum mesh stiffness (tangent)."""
         return self._estimates["greatest_stiffness"].value
 
     @described("N/m", error="errors")
     def least_secant_stiffness(self) -> float:
-        """Least mesh stiffness (secant)."""
+        """Minimum mesh stiffness (secant)."""
         return self._estimates["least_secant_stiffness"].value
 
     @described("N/m", error="errors")
     def greatest_secant_stiffness(self) -> float:
-        """Greatest mesh stiffness (secant)."""
+        """Maximum mesh stiffness (secant)."""
         return self._estimates["greatest_secant_stiffness"].value
 
     @described("1", error="errors")
     def greatest_load_share(self) -> float:
-        """Greatest share of the torque that a pair takes."""
+        """Largest share of the torque that a pair takes."""
         return self._estimates["greatest_load_share"].value
 
     @described("1", "harmonic", error="stiffness_harmonics_error")

@@ -46,7 +46,7 @@ class GearPair(PairGeometry):
     module : float
         m [m].
     face_width : float
-        b of the face in contact [m]; gears that are wider have a ``face_width`` of their own.
+        b of the face in contact [m]; wider gears have a separate ``face_width``.
     rack : BasicRack
         Basic rack tooth profile; ISO 53 profile A unless given.
     material : Material or (Material, Material)

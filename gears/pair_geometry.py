@@ -52,7 +52,7 @@ class PairGeometry:
 
     @described("m", "gear", shown="mm")
     def face_widths(self) -> tuple[float, float]:
-        """Face width of each gear, the pair's where it has none of its own."""
+        """Face width of each gear, the pair's where it has no other."""
         first, second = (
             self.face_width if gear.face_width is None else float(gear.face_width)
             for gear in (self.pinion, self.wheel)

@@ -124,7 +124,7 @@ class BasicRack:
         if not found.found and self.largest_fillet_radius <= 0.0:
             deepest = math.pi / 4.0 / math.tan(self.alpha)
             allowed = f"must be less than {deepest:.6g} modules at this pressure angle"
-            remedy = "the rack tooth comes to a point before its tip, so not even a full-radius fillet fits: "
+            remedy = "the rack tooth ends in a point before its tip, so not even a full-radius fillet fits: "
             remedy += "reduce h_fP or alpha"
             found.add(f"{where}.h_fP", f"{self.h_fP:g}", allowed, remedy)
         return tuple(found.found)

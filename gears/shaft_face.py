@@ -44,7 +44,7 @@ def shaft_over_face(
     Parameters
     ----------
     shaft : Shaft
-        Whose left end is at the least z.
+        Whose left end is at the smallest z.
     z : (n,) array
         Places along the face, growing, 0 at the middle of the face in contact [m].
     base_radius : float

@@ -1,4 +1,4 @@
-"""gmsh within this process: loaded when it is needed, one user at a time, each with a model of its own."""
+"""gmsh within this process: loaded when it is needed, one user at a time, each with a separate model."""
 
 from __future__ import annotations
 

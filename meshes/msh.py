@@ -24,7 +24,7 @@ def write_msh(path: Path, mesh: GearMesh) -> Path:
     """Write a gear's mesh for gmsh, format 4.1, binary; coordinates to the last bit.
 
     The physical groups of dimension 1 are the named boundaries, those of dimension 2 ``gear`` (everything)
-    and ``tooth 0`` and so on. Each tooth is a surface of its own and each boundary of a tooth a curve, so that
+    and ``tooth 0`` and so on. Each tooth is a separate surface and each boundary of a tooth a curve, so that
     gmsh can show and hide them.
 
     Parameters

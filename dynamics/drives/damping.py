@@ -41,7 +41,7 @@ def rayleigh_damping(
 
 
 def modal_damping(mass: npt.ArrayLike, stiffness: npt.ArrayLike, ratios: npt.ArrayLike) -> Array:
-    r"""Damping that gives each mode of M and K a ratio of its own.
+    r"""Damping that gives each mode of M and K its ratio.
 
     :math:`C = M \Phi \, \mathrm{diag}(2 \zeta_i \omega_i) \, \Phi^T M` with :math:`\Phi^T M \Phi = 1`; free
     motions have none.

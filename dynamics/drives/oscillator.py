@@ -138,7 +138,7 @@ class DriveOscillator(PeriodicOscillator):
         if not entries <= MAX_ENTRIES:
             allowed = f"must give tables of at most {MAX_ENTRIES} numbers (these have {entries:.3g})"
             raise InputError.at(
-                "frequency", self.frequency, allowed, "raise it, or lower the greatest stiffness"
+                "frequency", self.frequency, allowed, "raise it, or lower the maximum stiffness"
             )
 
     @property
@@ -184,7 +184,7 @@ class DriveOscillator(PeriodicOscillator):
 
     @property
     def driven_size(self) -> float:
-        """Largest displacement at rest without play, or the error."""
+        """Largest displacement at rest without backlash, or the error."""
         rest = replace(self, half_backlash=0.0).rest_state()
         return natural_size(float(np.max(np.abs(rest))), largest(self.error_series))
 

@@ -133,12 +133,12 @@ class OneOf:
 
     @property
     def low(self) -> float:
-        """Least value."""
+        """Minimum value."""
         return float(min(self.values))
 
     @property
     def high(self) -> float:
-        """Greatest value."""
+        """Maximum value."""
         return float(max(self.values))
 
 

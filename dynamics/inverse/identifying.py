@@ -152,7 +152,7 @@ def _settled(catalogue: Catalogue, start: GearOscillator, depth: int) -> Fit:
 
 
 def _completed(catalogue: Catalogue, reduction: Reduction, start: GearOscillator, trials: int) -> Solution:
-    """From the reduced problem to the whole: play, all branches, all events, all unknowns."""
+    """From the reduced problem to the whole: backlash, all branches, all events, all unknowns."""
     here = start
     if reduction.play is not None:
         here = _with_play(catalogue, reduction, here)
@@ -164,7 +164,7 @@ def _completed(catalogue: Catalogue, reduction: Reduction, start: GearOscillator
 
 
 def _with_play(catalogue: Catalogue, reduction: Reduction, start: GearOscillator) -> GearOscillator:
-    """The play from the events that touch the back flank; the start if none of them can be met."""
+    """The backlash from the events that touch the back flank; the start if none of them can be met."""
     assert reduction.play is not None
     whole = reduction.problem
     events = tuple(e for e in whole.events if e.fitted and not e.one_sided)

@@ -18,7 +18,7 @@ def match(lines: Sequence[Line], events: Sequence[Event], width: float) -> Partn
     """Partner of each event, None where there is none.
 
     Events that name a branch are laid on one computed branch in their order, by dynamic programming over both
-    directions and all branches. All others take the points that are left so that the sum of the losses is least.
+    directions and all branches. All others take the points that are left so that the sum of the losses is smallest.
     No point is taken twice.
 
     Parameters
@@ -58,7 +58,7 @@ def _along(events: list[Event], lines: Sequence[Line], width: float, taken: set[
 
 
 def _ordered(events: list[Event], points: list[SpecialPoint], width: float) -> tuple[float, Partners]:
-    """Order-preserving choice of least loss: total[i, j] is that of the first i events on the first j points."""
+    """Order-preserving choice of smallest loss: total[i, j] is that of the first i events on the first j points."""
     m, n = len(events), len(points)
     total = np.zeros((m + 1, n + 1))
     for i, event in enumerate(events):
@@ -83,7 +83,7 @@ def _ordered(events: list[Event], points: list[SpecialPoint], width: float) -> t
 
 
 def _freely(events: list[Event], points: list[SpecialPoint], width: float) -> Partners:
-    """One-to-one choice of least loss, without order."""
+    """One-to-one choice of smallest loss, without order."""
     from scipy.optimize import linear_sum_assignment
 
     if not events or not points:

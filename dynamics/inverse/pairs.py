@@ -1,4 +1,4 @@
-r"""Enumeration by two events of one branch: a grazing and a period doubling whose ratio knows neither force nor play.
+r"""Enumeration by two events of one branch: grazing and period doubling whose ratio needs neither force nor backlash.
 
 In a scan of the error's amplitude the orbit in contact touches at :math:`\varepsilon_{gr}` and the motion that leaves
 contact doubles at :math:`\varepsilon_{pd}`. As long as the back flank is not touched only X - D counts, and the
@@ -31,7 +31,7 @@ BEFORE, SETTLE = 0.97, 300
 """Of the doubling's amplitude, where the motion settles, and periods that it takes."""
 
 ONE_SIDED = ("1-1-0", "1-2-0")
-"""Motions of which the play does not count."""
+"""Motions that do not depend on the backlash."""
 
 ROUND = 0.01
 """Step of the values that count as round."""

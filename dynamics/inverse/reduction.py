@@ -28,10 +28,10 @@ class Reduction:
     first : Problem
         What is solved first: fewer unknowns, and the events that they decide.
     play : Unknown or None
-        Range in which the play is sought next, with the events that touch the back flank; None if it is known, or
+        Range in which the backlash is sought next, with the events that touch the back flank; None if it is known, or
         nothing depends on it.
     rescaled : bool
-        Whether the play is known and the scale of F_m and eps is what is really sought.
+        Whether the backlash is known and the scale of F_m and eps is what is really sought.
     held : tuple of str
         Unknowns that no event depends on; they keep the middle of their range.
     message : str

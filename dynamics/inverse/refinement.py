@@ -91,8 +91,8 @@ def fit(start: Fit, names: Sequence[str]) -> Fit:
 
     Least squares of the differences in units of the last decimal by Gauss and Newton, then reweighted (`refit`). If
     more than `CLOSE` units are left anywhere, it is repeated without one event or two, as long as one event more than
-    unknowns is left; those first without which the linearised equations of the first fit have the least misfit. The
-    least misfit of all events wins.
+    unknowns is left; those first without which the linearised equations of the first fit have the smallest misfit. The
+    smallest misfit of all events wins.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def _suspects(now: Fit, names: Sequence[str], rows: Sequence[int]) -> list[tuple
 
 
 def refit(start: Fit, names: Sequence[str], rows: Sequence[int], limit: int = 20) -> Fit:
-    """Reweighted least squares on some events, from a fit that is near: the events that agree come to decide alone.
+    """Reweighted least squares on some events, from a fit that is near: in the end the events that agree decide alone.
 
     Parameters
     ----------

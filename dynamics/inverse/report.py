@@ -44,7 +44,7 @@ class Candidate:
     )
     outliers: tuple[int, ...] = quantity(
         "1",
-        "fitted events that the fit came to disregard: no partner, or beyond three times the scale of the differences",
+        "fitted events that the fit disregarded: no partner, or beyond three times the scale of the differences",
         "outlier",
     )
     misfit: float = quantity("1", "sum over the fitted events of trust times ln(1 + difference in units)")

@@ -2,7 +2,7 @@
 
 Three things take most of the time in which numba compiles a kernel of forty helpers:
 
-- every helper becomes machine code of its own, which nobody calls, because its callers link and inline it. Here it is
+- every helper becomes separate machine code, which nobody calls, because its callers link and inline it. Here it is
   handed to them as it is before LLVM works on it, and is worked on there;
 - for every ``+``, ``a[i]`` and ``max`` numba tries all that it knows of these, in each round of the inference of types
   and once more for the code, and again for each literal index; of every condition it asks what ``bool`` does. Here the
@@ -161,7 +161,7 @@ class _Linked(_Optimised):
 
     @property
     def codegen(self) -> Any:
-        """Of machine code alone: a helper raises nothing, and has no environment to be told of."""
+        """Of machine code alone: a helper raises nothing, and has no environment to report to."""
         return _Mute(self._codegen)
 
 
@@ -193,7 +193,7 @@ class _Way:
 
 
 def _rewritten(state: Any) -> None:
-    """Loops in numba's own form; constant indices and the like by what is made for them."""
+    """Loops in numba's own form; constant indices and the like by the functions made for them."""
     blocks = state.func_ir.blocks = canonicalize_cfg(state.func_ir.blocks)
     for kind in rewrite_registry.rewrites["before-inference"]:
         rewrite, waiting = kind(state), list(blocks.items())

@@ -93,7 +93,7 @@ class ContactLaw(ABC):
     Attributes
     ----------
     half_backlash : float
-        Half the play between the contacts, at least 0.
+        Half the backlash between the contacts, at least 0.
     film : SqueezeFilm
         Damping by the oil in the gap; none unless given.
     one_sided : bool
@@ -119,7 +119,7 @@ class ContactLaw(ABC):
 
     @property
     def data(self) -> Array:
-        """Number of sides with play."""
+        """Number of sides with backlash."""
         return np.array([1.0 if self.one_sided else 2.0])
 
     @property

@@ -32,7 +32,7 @@ class SmoothOscillator(PlanarOscillator):
     law : Law
         :math:`f`, periodic in its first argument.
     damping_ratio : float
-        :math:`\zeta`; negative values are allowed, a law may hold damping of its own.
+        :math:`\zeta`; negative values are allowed, a law may have separate damping.
     mean_force : float
         :math:`F_m`.
     error_amplitude : float or sequence of float

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ehl import Film, LineContact, Meniscus, MixedFilm, OilLayer, TransientFilm
 
 
-THICKNESS, STIFFNESS = "central and least film", "film stiffness (approach)"
+THICKNESS, STIFFNESS = "central and minimum film", "film stiffness (approach)"
 ORDERS = {THICKNESS: 2.0, STIFFNESS: 2.0}
 FINEST = {False: (3e-5, 0.01), True: (5e-4, 0.01)}
 """Tolerances of film and spike at the pitch point, in full and quick: graded grids alone do not resolve the
@@ -201,7 +201,7 @@ def film_path() -> Levels:
 
     def all_of(found: list[Film]) -> Answer:
         heights = [h for f in found for h in (f.central_thickness, f.minimum_thickness)]
-        values = {"central and least films": value(heights, max(f.error for f in found))}
+        values = {"central and minimum films": value(heights, max(f.error for f in found))}
         return answer(float(np.mean([f.x.size for f in found])), values, *found)
 
     series = over((0.02, 0.005, 0.001), percent, along, all_of, name="tolerances")
@@ -246,7 +246,7 @@ def film_path_fed(short: str, words: str, layer: OilLayer | None, rough: bool) -
     def all_of(found: list[Film | MixedFilm]) -> Answer:
         inside = [f.film if isinstance(f, MixedFilm) else f for f in found]
         heights = [h for f in found for h in (f.central_thickness, f.minimum_thickness)]
-        values = {"central and least films": value(heights, max(f.error for f in found))}
+        values = {"central and minimum films": value(heights, max(f.error for f in found))}
         return answer(float(np.mean([f.x.size for f in inside])), values, *found)
 
     series = over((0.005, 0.001, 2e-4), percent, along, all_of, name="tolerances")
@@ -257,8 +257,8 @@ def film_path_fed(short: str, words: str, layer: OilLayer | None, rough: bool) -
 def film_over_time() -> Levels:
     """Film over time by its tolerance.
 
-    Flooded line contact at the pitch point whose load falls to half along half a cosine within 4 b/u: central and least
-    film at seven times, by steps of time and grids that the tolerance chooses.
+    Flooded line contact at the pitch point whose load falls to half along half a cosine within 4 b/u: central and
+    minimum film at seven times, by steps of time and grids that the tolerance chooses.
     """
     from ehl import solve_transient
 
@@ -273,7 +273,7 @@ def film_over_time() -> Levels:
         return solve_transient(contact, load, times, tolerance=tolerance)
 
     def both(found: TransientFilm) -> Answer:
-        values = {"central and least films": value([*found.central, *found.least], found.error)}
+        values = {"central and minimum films": value([*found.central, *found.least], found.error)}
         return answer(found.x.shape[1], values, found)
 
     series = over((0.02, 0.01, 0.005), percent, followed, both, name="tolerances")

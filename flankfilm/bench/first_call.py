@@ -19,7 +19,7 @@ from flankfilm.children import module, python
 
 @dataclass(frozen=True)
 class FirstCall:
-    """Processor time of a solver's coarsest work of every case, in a process of its own.
+    """Processor time of a solver's coarsest work of every case, in a separate process.
 
     Attributes
     ----------

@@ -92,7 +92,7 @@ def mesh(quick: bool) -> Levels:
     """How exactly meshes of one tooth keep its outline, by refinement.
 
     Pinion of the pair 36/40, one sector: gmsh fills the outline, mid-side nodes go onto the exact curves. Errors of
-    the area inside the curved edges; a mesh has no estimate of its own.
+    the area inside the curved edges; a mesh has no separate estimate.
     """
     from meshes import Sizes, mesh_sector
 

@@ -29,7 +29,7 @@ class Timing:
     Attributes
     ----------
     cpu, wall : float
-        Least processor time and least wall time [s]: what else the machine does only adds.
+        Lowest processor time and lowest wall time [s]: what else the machine does only adds.
     median : float
         Median of the processor time [s].
     repeats : int
@@ -139,7 +139,7 @@ def measure(
     case : Case
         What to measure.
     repeat : int
-        Least number of timed runs of each level.
+        Smallest number of timed runs of each level.
     announce : callable
         Called with what is done next, once for each of `steps`.
     """
@@ -214,7 +214,7 @@ _UNTIMED = Timing(math.nan, math.nan, math.nan, 0)
 
 
 def gain(rows: tuple[Row, ...]) -> float:
-    """Return by what factor the processor time grows for a tenth of the error, over the levels of one series.
+    """Return the factor by which the processor time grows for a tenth of the error, over the levels of one series.
 
     The slope of a straight line through log time over log error, by least squares over the levels that none
     of the others beats in both; NaN with fewer than two, or where their errors span less than a factor of

@@ -117,7 +117,7 @@ def _headlines(found: Bench) -> list[Headline]:
     ]
     if ratios:
         safe = sum(ratio >= 0.9 for ratio in ratios)
-        note = f"median {median(ratios):.2g}, least {min(ratios):.2g}"
+        note = f"median {median(ratios):.2g}, minimum {min(ratios):.2g}"
         entries.append(Headline("estimates of 0.9 times the error or more", f"{safe} of {len(ratios)}", note))
     if failures:
         entries.append(Headline("levels without figures", str(failures), "reasons in the tables"))
@@ -159,7 +159,7 @@ def _work(case: CaseResult) -> Part:
 
 def _first_calls(found: Bench) -> Part:
     text = (
-        "Processor time of the coarsest work of all cases of a solver in a process of its own. A first call holds the "
+        "Processor time of the coarsest work of all cases of a solver in a separate process. A first call holds the "
         "start of Python, imports, and what the cases need beforehand; the first of all also compiles the kernels, "
         "which are then kept on disk. No time above holds any of this."
     )
@@ -180,7 +180,7 @@ def _first_calls(found: Bench) -> Part:
 
 def _peers(peers: Sequence[PeerRow]) -> Part:
     text = (
-        "The same work by other programs in an environment of their own; their processor time without imports and "
+        "The same work by other programs in a separate environment; their processor time without imports and "
         "first calls."
     )
     columns: Columns = {
@@ -197,5 +197,5 @@ def _peers(peers: Sequence[PeerRow]) -> Part:
 
 def _machine(found: Bench) -> Part:
     cells = (*found.machine.described(), ("load when it ended", busy(found.load_after)))
-    text = f"Least of {found.repeat} or more runs of each level; {'quick' if found.quick else 'complete'}."
+    text = f"Minimum of {found.repeat} or more runs of each level; {'quick' if found.quick else 'complete'}."
     return Part("machine", "Machine and versions", (text,), tables=(Table(("", ""), cells),))

@@ -1,4 +1,4 @@
-"""Other programs on the same work, in an environment of their own.
+"""Other programs on the same work, in a separate environment.
 
 A peer is a file of ``peer_scripts`` that ``main.py`` there runs with an interpreter of that environment and nothing of
 ours in its way: the work goes in as JSON on standard input, what it found comes back as one line of JSON on standard
@@ -32,7 +32,7 @@ class PeerRow:
     peer, version, level : str
         Program and setting.
     cpu, first : float
-        Least processor time, and that of its first call [s].
+        Lowest processor time, and that of its first call [s].
     error : float
         Relative difference from the case's finest solution.
     note : str

@@ -190,16 +190,16 @@ def contact(short: str, words: str, beyond: bool, quick: bool) -> Levels:
 
 @case("Root stress", "edges per module on the fillets")
 def root_stress(quick: bool) -> Levels:
-    """Greatest root stress by the edge length on the fillets and by tolerance.
+    """Maximum root stress by the edge length on the fillets and by tolerance.
 
     Pair 36/40 at {TORQUE:g} N m, mesh cycle at hand: influence of flank loads on all fillets, from nothing, and the
-    greatest tension over {POSITIONS} positions.
+    maximum tension over {POSITIONS} positions.
     """
     import fem
 
     pair = example_pair()
     cycle = fem.mesh_cycle(pair, TORQUE, POSITIONS)
-    quantity = "greatest tension, both gears"
+    quantity = "maximum tension, both gears"
 
     def stress(**how: Any) -> tuple[Fillets, RootStress]:
         found = fem.fillets(pair, **how)

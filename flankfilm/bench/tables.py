@@ -36,7 +36,7 @@ class Summary:
     gain : float
         Factor of processor time for a tenth of the error; NaN where too few levels can be compared.
     ratios : (float, float)
-        Least and greatest estimated over true error; NaN where there is no estimate.
+        Minimum and maximum estimated over true error; NaN where there is no estimate.
     """
 
     title: str
@@ -125,7 +125,7 @@ def terminal(found: Bench) -> Table:
     from rich import box
     from rich.table import Table
 
-    title = f"processor time on {found.machine.processor}, least of {found.repeat} or more"
+    title = f"processor time on {found.machine.processor}, minimum of {found.repeat} or more"
     shown = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
     for place, head in enumerate(HEADS):
         shown.add_column(head, justify="left" if place < 3 else "right", no_wrap=place >= 3)

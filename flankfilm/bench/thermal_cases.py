@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from flankfilm.coupling.film_table import FilmTable
 
 _NODES = "{} nodes".format
-_THICKNESS = "central and least film"
+_THICKNESS = "central and minimum film"
 
 
 def thermal_films(quick: bool) -> tuple[Case, ...]:
@@ -91,7 +91,7 @@ def thermal_path() -> Levels:
         heights = [h for f in found for h in (f.central_thickness, f.minimum_thickness)]
         friction = [f.traction_coefficient for f in found if abs(f.traction_coefficient) > 0.01]
         values = {
-            "central and least films": value(heights, max(f.error for f in found)),
+            "central and minimum films": value(heights, max(f.error for f in found)),
             "traction": value(friction, max(f.traction_error for f in found)),
         }
         return answer(float(np.mean([f.x.size for f in found])), values, *found)
@@ -105,7 +105,7 @@ def face_table() -> Levels:
     """Films of the cells of a face by the line loads at which they are solved.
 
     Pair 36/40, 2000 rpm: nine places of the path and line loads over 2.8 decades, and between them bicubic splines. The
-    values are least and central films of 200 cells at random places and loads.
+    values are minimum and central films of 200 cells at random places and loads.
     """
     from flankfilm.coupling import FilmModel
     from flankfilm.coupling.film_table import table_on
@@ -128,7 +128,7 @@ def face_table() -> Levels:
         errors = np.hypot([table.error, table.central_error], table.film_error or 0.0).tolist()
         return answer(
             table.load.size,
-            {"least films": value(least, errors[0]), "central films": value(central, errors[1])},
+            {"minimum films": value(least, errors[0]), "central films": value(central, errors[1])},
         )
 
     counts = (11, 21, 41)

@@ -48,7 +48,7 @@ class FilmAlongPath:
         "m", "layer of oil at ambient pressure that passes the contact", "point", shown="um"
     )
     starvation: Array | None = quantity("1", "central film over that of the smooth flooded contact", "point")
-    film_ratio: Array | None = quantity("1", "film ratio Lambda, least mean gap over sigma", "point")
+    film_ratio: Array | None = quantity("1", "film ratio Lambda, minimum mean gap over sigma", "point")
     asperity_share: Array | None = quantity("1", "asperities' share of the load", "point")
     at_pitch: tuple[ehl.StiffnessRow, ...] = part(
         "film stiffness by every definition at the contact nearest to C, in series with the stiffness of its teeth"
@@ -66,18 +66,18 @@ class FilmAlongPath:
 
     @described("m", shown="um", error="least_film_error")
     def least_film(self) -> float:
-        """Least film along the path, between the films as well."""
+        """Minimum film along the path, between the films as well."""
         return self._least[0]
 
     @property
     def least_film_error(self) -> float | None:
-        """Relative error of the least film and film ratio: of the films and of their steps; None by formula."""
+        """Relative error of the minimum film and film ratio: of the films and of their steps; None by formula."""
         value, off = self._least
         return None if self.error is None else float(np.hypot(self.error, off / value))
 
     @described("1", error="least_film_error")
     def least_film_ratio(self) -> float | None:
-        """Least film ratio Lambda along the path, between the films as well; None for smooth flanks."""
+        """Minimum film ratio Lambda along the path, between the films as well; None for smooth flanks."""
         return None if self.film_ratio is None else least_of(self.film_ratio, self.load)[0]
 
     @cached_property

@@ -72,7 +72,7 @@ def part_figures(
 
 
 def greatest(values: Array | Mapping[str, Array]) -> float | None:
-    """Greatest of all values, perhaps of both directions, that are finite; None without any."""
+    """Largest of all values, perhaps of both directions, that are finite; None without any."""
     each = list(values.values()) if isinstance(values, Mapping) else [values]
     known = np.concatenate([one[np.isfinite(one)] for one in each])
     return float(known.max()) if known.size else None

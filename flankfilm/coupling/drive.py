@@ -90,19 +90,19 @@ class PairDrive:
     )
     reduction_error: float = quantity(
         "1",
-        "greatest change of the swing of a force by modes that are not retained, of the linear response within the "
-        "speeds; over the swing there, or a tenth of its greatest where that is more",
+        "largest change of the swing of a force by modes that are not retained, of the linear response within the "
+        "speeds; over the swing there, or a tenth of its largest where that is more",
         no_error=ITSELF,
     )
     gyroscopic_change: float = quantity(
         "1",
-        "greatest relative change of a natural frequency by gyroscopic moments and the second plane, which are left "
-        "out, at the greatest speed",
+        "largest relative change of a natural frequency by gyroscopic moments and the second plane, which are left "
+        "out, at the highest speed",
         no_error=ITSELF,
     )
     tilt_change: float = quantity(
         "1",
-        "greatest relative change of a natural frequency by a mesh that resists tilt more, as a stiffness spread "
+        "largest relative change of a natural frequency by a mesh that resists tilt more, as a stiffness spread "
         "evenly over its face does",
         no_error=ITSELF,
     )
@@ -231,7 +231,7 @@ def pair_drive(
     error_amplitude, error_phase, extra_inertia, length_scale, one_sided, reference, free_damping_ratio
         As of `pair_oscillator`.
     speeds : (float, float), optional
-        Least and greatest speed of the pinion that is looked at [rad/s]; by the natural frequency of the pair on rigid
+        Lowest and highest speed of the pinion that is looked at [rad/s]; by the natural frequency of the pair on rigid
         shafts if left out, see `RANGE`.
     reduction_tolerance : float
         Of the swing of forces within the speeds, by the modes that are not retained.

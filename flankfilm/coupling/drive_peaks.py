@@ -1,7 +1,7 @@
 """Peaks of what a drive train carries, between the speeds of a sweep too, and what damping makes of them.
 
-Places are the greatest values of both sweeps and the highest peaks of the linear response, which is cheap everywhere.
-About the highest of them periodic motions are followed to the greatest force.
+Places are the maximum values of both sweeps and the highest peaks of the linear response, which is cheap everywhere.
+About the highest of them periodic motions are followed to the maximum force.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ HIGHEST = 3
 """Peaks of the linear response at which the motion is computed, of each part."""
 
 NEARLY = 0.9
-"""Places are searched whose force is at least this part of the greatest known."""
+"""Places are searched whose force is at least this part of the largest known."""
 
 STEPS, SETTLED = 10, 1e-3
 """Most motions of one search, and relative difference of a parabola from the motion at its top at which it ends."""
 
 
 class Peaks(NamedTuple):
-    """Greatest forces over a range of speed: of the mesh over the mean force, then of each part.
+    """Maximum forces over a range of speed: of the mesh over the mean force, then of each part.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Peaks(NamedTuple):
         Mesh frequency over the natural one of the pair on rigid shafts.
     height : ndarray, shape (1 + parts,)
     band : ndarray, shape (2, 1 + parts)
-        Heights there with the least and the greatest damping that is likely; nan without a motion that repeats.
+        Heights there with the minimum and the maximum damping that is likely; nan without a motion that repeats.
     settled : ndarray, shape (1 + parts,)
         Relative difference to the neighbours of the search, and of samples of a period.
     """
@@ -63,7 +63,7 @@ class Peaks(NamedTuple):
 def drive_peaks(
     drive: PairDrive, found: Mapping[str, dynamics.SweepResult], shaken: Mapping[str, Vibrations]
 ) -> Peaks:
-    """Find the greatest force of the mesh and of every part over the range of a sweep.
+    """Find the maximum force of the mesh and of every part over the range of a sweep.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def drive_peaks(
 
 
 class _Peak(NamedTuple):
-    """Greatest force of a part: where, how high, how far settled, and the motion there."""
+    """Maximum force of a part: where, how high, how far settled, and the motion there."""
 
     part: int
     frequency: float
@@ -127,7 +127,7 @@ class _Search:
                     self.known.append((value, states[-1], periods, heights[way][row], 0.0))
 
     def sampled(self, part: int) -> _Peak:
-        """Greatest of the motions known."""
+        """Largest of the motions known."""
         if not self.known:
             every = np.concatenate([one[:, part] for one in self.heights.values()])
             greatest = float(np.nanmax(every, initial=0.0)) if np.isfinite(every).any() else np.nan
@@ -136,7 +136,7 @@ class _Search:
         return _Peak(part, value, float(heights[part]), change, state, periods)
 
     def greatest(self, part: int) -> _Peak:
-        """Greatest force of all motions known, and of those at the tops of parabolas through it and its neighbours."""
+        """Maximum force of all motions known, and of those at the tops of parabolas through it and its neighbours."""
         off = np.inf
         for _ in range(STEPS):
             points = {
@@ -168,7 +168,7 @@ class _Search:
         return _Peak(part, frequency, float(heights[part]), change, state, periods)
 
     def damped(self, peak: _Peak) -> list[float]:
-        """Heights of a peak with the least and the greatest damping that is likely, at its frequency."""
+        """Heights of a peak with the minimum and the maximum damping that is likely, at its frequency."""
         found: list[float] = []
         for factor in self.drive.damping_band:
             if not peak.periods:
@@ -187,13 +187,13 @@ class _Search:
 def _heights(
     drive: PairDrive, oscillator: dynamics.DriveOscillator, state: Array, periods: int
 ) -> tuple[Array, float]:
-    """Greatest forces of a motion, of the mesh and of all parts, and how they change with half as many samples."""
+    """Maximum forces of a motion, of the mesh and of all parts, and how they change with half as many samples."""
     one = vibration(oscillator, state, periods, load=drive.mean_force, outputs=drive.outputs)
     return np.append(one.force, np.abs(one.parts[2])), one.change
 
 
 def _top(places: list[float], heights: list[float]) -> tuple[float, float]:
-    """Place and height of the top of a parabola through three points, the greatest last; halfway between two."""
+    """Place and height of the top of a parabola through three points, the largest last; halfway between two."""
     best, height = places[-1], heights[-1]
     if len(places) == 3:
         near, far = sorted(places[:2], key=lambda one: abs(one - best))
@@ -213,7 +213,7 @@ def _maxima(at: Array, heights: Array) -> list[tuple[float, float, float]]:
 
 
 def linear_heights(drive: PairDrive, low: float, high: float) -> tuple[Array, Array]:
-    """Greatest forces of the linear response in contact: mean and amplitudes of all harmonics added up.
+    """Maximum forces of the linear response in contact: mean and amplitudes of all harmonics added up.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ def gear_masses(pair: gears.GearPair) -> tuple[float, float]:
 def mesh_frequencies(
     pair: gears.GearPair, scales: dynamics.Scaling, speed: float, speeds: tuple[float, float] | None
 ) -> tuple[float, float]:
-    """Least and greatest mesh frequency that is looked at [rad/s]."""
+    """Lowest and highest mesh frequency that is looked at [rad/s]."""
     teeth = pair.pinion.teeth
     if speeds is not None:
         low, high = sorted(speeds)

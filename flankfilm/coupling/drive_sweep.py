@@ -46,12 +46,12 @@ class DriveSweep:
     )
     reduction_error: float = quantity(
         "1",
-        "greatest change of the swing of a force by these modes, of the linear response within the speeds of the train",
+        "largest change of the swing of a force by these modes, of the linear response within the speeds of the train",
         no_error=ITSELF,
     )
     labels: Mapping[str, tuple[str, ...]] = quantity("", "motion n-p-q", "frequency")
     force_factor: Mapping[str, Array] = quantity(
-        "1", "greatest mesh force over the mean force", "frequency", error="sampling_error"
+        "1", "maximum mesh force over the mean force", "frequency", error="sampling_error"
     )
     separated: Mapping[str, Array] = quantity(
         "1",
@@ -71,11 +71,11 @@ class DriveSweep:
         error="sampling_error",
     )
     bearing_force: Mapping[str, Array] = quantity(
-        "N", "greatest modulus of the force of bearings", "frequency bearing", error="sampling_error"
+        "N", "maximum modulus of the force of bearings", "frequency bearing", error="sampling_error"
     )
     bearing_force_peak: Array = quantity(
         "N",
-        "greatest modulus of the force of bearings over the range of speed, between its values too",
+        "maximum modulus of the force of bearings over the range of speed, between its values too",
         "bearing",
         error="bearing_force_peak_error",
     )
@@ -88,7 +88,7 @@ class DriveSweep:
     )
     bearing_force_peak_band: Array = quantity(
         "N",
-        "the same with the least and the greatest damping of shafts and bearings that is likely",
+        "the same with the minimum and the maximum damping of shafts and bearings that is likely",
         "end bearing",
         no_error=ITSELF,
     )
@@ -107,13 +107,13 @@ class DriveSweep:
     )
     shaft_torque: Mapping[str, Array] = quantity(
         "N m",
-        "greatest modulus of the torque of shafts and couplings",
+        "maximum modulus of the torque of shafts and couplings",
         "frequency shaft",
         error="sampling_error",
     )
     shaft_torque_peak: Array = quantity(
         "N m",
-        "greatest modulus of the torque of shafts and couplings over the range of speed, between its values too",
+        "maximum modulus of the torque of shafts and couplings over the range of speed, between its values too",
         "shaft",
         error="shaft_torque_peak_error",
     )
@@ -126,7 +126,7 @@ class DriveSweep:
     )
     shaft_torque_peak_band: Array = quantity(
         "N m",
-        "the same with the least and the greatest damping of shafts and bearings that is likely",
+        "the same with the minimum and the maximum damping of shafts and bearings that is likely",
         "end shaft",
         no_error=ITSELF,
     )
@@ -135,7 +135,7 @@ class DriveSweep:
     )
     force_peak: float = quantity(
         "1",
-        "greatest mesh force over the mean force in the range of speed, between its values too",
+        "maximum mesh force over the mean force in the range of speed, between its values too",
         error="force_peak_error",
     )
     force_peak_speed: float = quantity(
@@ -143,7 +143,7 @@ class DriveSweep:
     )
     force_peak_band: Array = quantity(
         "1",
-        "the same with the least and the greatest damping of shafts and bearings that is likely",
+        "the same with the minimum and the maximum damping of shafts and bearings that is likely",
         "end",
         no_error=ITSELF,
     )
@@ -151,7 +151,7 @@ class DriveSweep:
         "1", "relative error of the peak by search, samples and that band", no_error=ITSELF
     )
     sampling_error: float = quantity(
-        "1", "largest change with half as many samples of a period, over the greatest of its part"
+        "1", "largest change with half as many samples of a period, over the largest of its part"
     )
     longer_order: int | None = quantity(
         "1",
@@ -165,23 +165,23 @@ class DriveSweep:
         no_error=EXACT,
     )
     force_change: Mapping[str, Array] | None = quantity(
-        "1", LEFT.format("the greatest mesh force"), "checked", no_error=ITSELF
+        "1", LEFT.format("the maximum mesh force"), "checked", no_error=ITSELF
     )
     bearing_force_change: Mapping[str, Array] | None = quantity(
-        "1", LEFT.format("the greatest force of bearings"), "checked bearing", no_error=ITSELF
+        "1", LEFT.format("the maximum force of bearings"), "checked bearing", no_error=ITSELF
     )
     bearing_force_swing_change: Mapping[str, Array] | None = quantity(
         "1",
-        LEFT.format("the root mean square of their forces, over the greatest,"),
+        LEFT.format("the root mean square of their forces, over the largest,"),
         "checked bearing",
         no_error=ITSELF,
     )
     shaft_torque_change: Mapping[str, Array] | None = quantity(
-        "1", LEFT.format("the greatest torque of shafts and couplings"), "checked shaft", no_error=ITSELF
+        "1", LEFT.format("the maximum torque of shafts and couplings"), "checked shaft", no_error=ITSELF
     )
     shaft_torque_swing_change: Mapping[str, Array] | None = quantity(
         "1",
-        LEFT.format("the root mean square of their torques, over the greatest,"),
+        LEFT.format("the root mean square of their torques, over the largest,"),
         "checked shaft",
         no_error=ITSELF,
     )
@@ -192,22 +192,22 @@ class DriveSweep:
 
     @described("N", error="greatest_bearing_error")
     def greatest_bearing_force(self) -> float | None:
-        """Greatest force of a bearing over the range of speed; None without bearings."""
+        """Maximum force of a bearing over the range of speed; None without bearings."""
         return greatest(self.bearing_force_peak)
 
     @described("N m", error="greatest_shaft_error")
     def greatest_shaft_torque(self) -> float | None:
-        """Greatest torque of a shaft or coupling over the range of speed; None without one that yields."""
+        """Maximum torque of a shaft or coupling over the range of speed; None without one that yields."""
         return greatest(self.shaft_torque_peak)
 
     @property
     def greatest_bearing_error(self) -> float | None:
-        """Relative error of the greatest force of a bearing."""
+        """Relative error of the maximum force of a bearing."""
         return _at_greatest(self.bearing_force_peak, self.bearing_force_peak_error)
 
     @property
     def greatest_shaft_error(self) -> float | None:
-        """Relative error of the greatest torque of a shaft or coupling."""
+        """Relative error of the maximum torque of a shaft or coupling."""
         return _at_greatest(self.shaft_torque_peak, self.shaft_torque_peak_error)
 
     @described("1", no_error=ITSELF)
@@ -237,7 +237,7 @@ class DriveSweep:
 
 
 def _at_greatest(values: Array, errors: Array) -> float | None:
-    """Error of the greatest value; None without any."""
+    """Error of the maximum value; None without any."""
     return float(errors[int(np.nanargmax(values))]) if np.isfinite(values).any() else None
 
 

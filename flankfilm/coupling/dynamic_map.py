@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @record
 class DynamicMap:
-    """Greatest force over the mean one, over speed and torque, of settled motions up and down in speed."""
+    """Maximum force over the mean one, over speed and torque, of settled motions up and down in speed."""
 
     headline = ("greatest", "sampling_error")
 
@@ -41,7 +41,7 @@ class DynamicMap:
     )
     factor: Array = quantity(
         "1",
-        "K_v: greatest force over the mean force, of the sweeps up and down the greater",
+        "K_v: maximum force over the mean force, of the sweeps up and down the greater",
         "torque speed",
         error="sampling_error",
     )
@@ -62,7 +62,7 @@ class DynamicMap:
     )
     bearing_force: Array = quantity(
         "N",
-        "greatest modulus of the force of bearings, of both sweeps the greater",
+        "maximum modulus of the force of bearings, of both sweeps the greater",
         "torque speed bearing",
         error="sampling_error",
     )
@@ -77,7 +77,7 @@ class DynamicMap:
     )
     shaft_torque: Array = quantity(
         "N m",
-        "greatest modulus of the torque of shafts and couplings, of both sweeps the greater",
+        "maximum modulus of the torque of shafts and couplings, of both sweeps the greater",
         "torque speed shaft",
         error="sampling_error",
     )
@@ -107,24 +107,24 @@ class DynamicMap:
 
     @property
     def greatest(self) -> float:
-        """Greatest factor of the map."""
+        """Maximum factor of the map."""
         return float(np.nanmax(self.factor))
 
     @described("N", error="sampling_error")
     def greatest_bearing_force(self) -> float | None:
-        """Greatest force of a bearing of the map; None without bearings."""
+        """Maximum force of a bearing of the map; None without bearings."""
         return greatest(self.bearing_force)
 
     @described("N m", error="sampling_error")
     def greatest_shaft_torque(self) -> float | None:
-        """Greatest torque of a shaft or coupling of the map; None without one that yields."""
+        """Maximum torque of a shaft or coupling of the map; None without one that yields."""
         return greatest(self.shaft_torque)
 
 
 def dynamic_map(
     motion_at: Callable[[float], PairOscillator | PairDrive], torques: Sequence[float], speeds: ArrayLike
 ) -> DynamicMap:
-    """Greatest force over the mean one, over speed and torque.
+    """Maximum force over the mean one, over speed and torque.
 
     Parameters
     ----------

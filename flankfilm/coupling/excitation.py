@@ -4,7 +4,7 @@ A curve e over one period becomes :math:`e_0 + \sum_j e_j \cos(j \theta + \varph
 of equally spaced samples. The mean drives nothing. In the motion harmonic j has the force :math:`j^2 \omega^2 e_j`;
 about a mesh of mean stiffness in contact it answers with :math:`e_j (j \omega)^2 H(j \omega)`,
 :math:`H(r) = [(1-r^2)^2 + (2 \zeta r)^2]^{-1/2}`, which is :math:`e_j / (2 \zeta)` at its resonance and :math:`e_j` far
-above. The order is the least that leaves out less than a share of the curve, or of the static deflection where that is
+above. The order is the lowest that leaves out less than a share of the curve, or of the static deflection where that is
 larger, and of the motion where a range of frequencies is given.
 """
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["FaceFilms", "face_films"]
 
 _BEARS = 0.01
-"""Part of the greatest line load below which a cell's pressure along the face says nothing of its film."""
+"""Part of the maximum line load below which a cell's pressure along the face says nothing of its film."""
 
 
 @record
@@ -34,7 +34,7 @@ class FaceFilms(FaceCells):
 
     minimum_thickness: Array = quantity(
         "m",
-        "least film of each cell; nan where it bears less than the lightest film that was solved",
+        "minimum film of each cell; nan where it bears less than the lightest film that was solved",
         "position pair cell",
         shown="um",
         error="error",
@@ -68,7 +68,7 @@ class FaceFilms(FaceCells):
         "1", "largest relative error of these; None by formula", no_error=ITSELF
     )
     table_error: float = quantity(
-        "1", "relative error by what is interpolated between places and loads", no_error=ITSELF
+        "1", "relative error from the interpolation between places and loads", no_error=ITSELF
     )
     table: FilmTable = part("the films over place and load")
     cost: Cost
@@ -92,12 +92,12 @@ class FaceFilms(FaceCells):
 
     @described("m", shown="um", error="error")
     def least_film(self) -> float:
-        """Least film of all cells and positions."""
+        """Minimum film of all cells and positions."""
         return float(np.nanmin(self.minimum_thickness))
 
     @described("m", shown="mm", no_error="that of the cells: it lies in the middle of one")
     def least_film_place(self) -> float:
-        """Place on the face of the least film, 0 at mid-face."""
+        """Place on the face of the minimum film, 0 at mid-face."""
         return float(self.face_position[self._least[2]])
 
     @described("Pa", shown="GPa", no_error="not estimated: Hertz's law of the line load")
@@ -107,12 +107,12 @@ class FaceFilms(FaceCells):
 
     @described("m", shown="um", no_error="an estimate of where the line contact ends, itself")
     def end_zone(self) -> float:
-        """Length at either end of the face over which oil leaks sideways: about the greatest half-width there."""
+        """Length at either end of the face over which oil leaks sideways: about the largest half-width there."""
         return float(np.nanmax(self.half_width[..., [0, -1]]))
 
     @described("1", no_error=ITSELF)
     def side_flow(self) -> float:
-        """Greatest slope of the pressure along the face over that across, ``b |dp_H/dz| / p_H``, of cells that bear."""
+        """Largest slope of the pressure along the face over that across, ``b |dp_H/dz| / p_H``, of cells that bear."""
         step = float(self.face_position[1] - self.face_position[0])
         pressure = np.nan_to_num(self.hertz_pressure)
         bears = (self.line_load > _BEARS * self.line_load.max()) & (pressure > 0.0)

@@ -40,17 +40,17 @@ class FaceLoadModels:
 
     model: tuple[str, ...] = quantity("", "model of what couples the cells of the face", "model")
     face_load_factor: Array = quantity(
-        "1", "face-load factor, the greatest over the mesh cycle", "model", error="face_load_factor_error"
+        "1", "face-load factor, maximum over the mesh cycle", "model", error="face_load_factor_error"
     )
     face_load_factor_error: Array = quantity(
         "1",
-        "estimated relative numerical error of the greatest face-load factor; nan of ISO 6336-1",
+        "estimated relative numerical error of the maximum face-load factor; nan of ISO 6336-1",
         "model",
         no_error=ITSELF,
     )
     pitch_point_factor: Array = quantity("1", "face-load factor with a pair at the pitch point", "model")
     greatest_line_load: Array = quantity(
-        "N/m", "greatest line load over the mesh cycle; nan of ISO 6336-1", "model", shown="N/mm"
+        "N/m", "maximum line load over the mesh cycle; nan of ISO 6336-1", "model", shown="N/mm"
     )
     line_load_difference: Array = quantity(
         "1",
@@ -176,7 +176,7 @@ def left_out_by_iso(face: fem.FaceLoads, pair: gears.GearPair) -> str:
 
 
 def _left_out(face: fem.FaceLoads, pair: gears.GearPair) -> Iterator[str]:
-    """What of a face no slope tells, by name."""
+    """What of a face no slope shows, by name."""
     setting = face.setting
     for name, lead in zip(("pinion", "wheel"), setting.leads, strict=True):
         if lead.crowning:

@@ -24,7 +24,7 @@ POSITIONS = 40
 
 @record
 class FaceTolerance:
-    """Face-load factors of one pair with its axes as they are meant, and out of parallel by a tolerance either way."""
+    """Face-load factors of one pair with its nominal axes, and out of parallel by a tolerance either way."""
 
     headline = ("robust_face_load_factor",)
 
@@ -32,7 +32,7 @@ class FaceTolerance:
         "m", "axes out of parallel in the plane of action, over the face", "case", shown="um", no_error=EXACT
     )
     face_load_factor: Array = quantity(
-        "1", "face-load factor, the greatest over the mesh cycle", "case", error="face_load_factor_error"
+        "1", "face-load factor, maximum over the mesh cycle", "case", error="face_load_factor_error"
     )
     face_load_factor_error: Array = quantity(
         "1", "estimated relative error of the face-load factor", "case", no_error=ITSELF
@@ -41,17 +41,17 @@ class FaceTolerance:
 
     @described("1", error="error")
     def robust_face_load_factor(self) -> float:
-        """Greatest face-load factor over the tolerance of the alignment."""
+        """Maximum face-load factor over the tolerance of the alignment."""
         return float(np.max(self.face_load_factor))
 
     @property
     def error(self) -> float:
-        """Estimated relative error of the greatest factor."""
+        """Estimated relative error of the maximum factor."""
         return float(self.face_load_factor_error[int(np.argmax(self.face_load_factor))])
 
 
 def face_load_tolerance(teeth: LoadedTeeth, tolerance: float, positions: int = POSITIONS) -> FaceTolerance:
-    """Share the load over the face with the axes as they are meant, and out of parallel by a tolerance either way.
+    """Share the load over the face with the nominal axes, and out of parallel by a tolerance either way.
 
     Between these the factor is less: it grows to either side with what the axes are out of parallel by beyond that
     which the leads take back.
@@ -93,7 +93,7 @@ def face_load_tolerance(teeth: LoadedTeeth, tolerance: float, positions: int = P
 
 
 def _factor(teeth: LoadedTeeth, alignment: gears.Alignment, positions: int) -> tuple[float, float]:
-    """Greatest face-load factor with an alignment, and its error."""
+    """Maximum face-load factor with an alignment, and its error."""
     cycle = replace(teeth, flanks=replace(teeth.flanks, alignment=alignment)).cycle(positions)
     face = cells_of(cycle).face
     return face.greatest_face_load_factor, face.error

@@ -253,7 +253,7 @@ class FilmLaw:
         forces: Array,
         solved: tuple[Array, Array],
     ) -> tuple[Array, Array]:
-        """Separation by one of two films, solved with separations and exponents of its own, and its exponent."""
+        """Separation by one of two films, solved with separate separations and exponents, and its exponent."""
         fallen, local = self._fall(both, forces, *solved)
         before, _ = self._fall(both, self.force[film], *solved)
         return solved[0][film] * np.exp(np.minimum(before - fallen, _LARGEST_LOGARITHM)), local

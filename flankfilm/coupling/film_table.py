@@ -39,10 +39,10 @@ LOADS = 21
 """Line loads at each of them."""
 
 LIGHTEST = 2e-3
-"""Least of these loads over the greatest of the dry contact."""
+"""Smallest of these loads over the largest of the dry contact."""
 
 HEAVIEST = 1.2
-"""Greatest of them over that: films move load to where there is most of it."""
+"""Largest of them over that: films move load to where there is most of it."""
 
 LEFT_OUT = {"separation": 0.25, "minimum_thickness": 0.25, "central_thickness": 0.75}
 """Part of what a grid twice as coarse misses that this one does: a sixteenth where both resolve the films.
@@ -124,7 +124,7 @@ class FilmTable:
         """Tables that are off, and how much of what each changes of a figure is error.
 
         One has the separations off by their films' errors, node by node as the last refinement moved them, and slopes
-        with them; two have every second place and every second load. Films by formula have no error of their own.
+        with them; two have every second place and every second load. Films by formula have no error estimate.
         """
         grids = tuple((self._every_second(along), OF_SLOPES) for along in (0, 1))
         if self.separation_shift is None:
@@ -133,7 +133,7 @@ class FilmTable:
 
     @cached_property
     def error(self) -> float:
-        """Relative error of least films and separation by the grid of places and loads."""
+        """Relative error of minimum films and separation by the grid of places and loads."""
         return max(self._missed("separation"), self._missed("minimum_thickness"))
 
     @cached_property

@@ -42,7 +42,7 @@ Held: TypeAlias = "ehl.Meniscus | ehl.OilLayer | PlacedMeniscus | None"
 
 
 def supply_of(held: Held, contact: ehl.LineContact) -> Supply:
-    """Supply of one contact by what is held at the inlets of all.
+    """Supply of one contact from what is held at the inlets of all.
 
     Raises
     ------
@@ -336,7 +336,7 @@ def off_by_errors(law: FilmLaw, path: PathFilms) -> tuple[FilmLaw, ...]:
 
     Separations are off as the last refinement moved them. Slopes move this way and that along the path, since the
     pressure spike runs over the nodes: that decides what harmonics err by. Means err by more than the sum of these
-    moves, so that in a further law all slopes are off to one side. Films by formula have no error of their own.
+    moves, so that in a further law all slopes are off to one side. Films by formula have no error estimate.
     """
     if not all(isinstance(film, ehl.Film | ehl.MixedFilm) for film in path.films):
         return ()

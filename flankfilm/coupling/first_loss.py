@@ -73,7 +73,7 @@ def grazing_budget(
 
 
 def _clearance(oscillator: dynamics.GearOscillator) -> float:
-    """Least clearance of the orbit that never leaves contact."""
+    """Minimum clearance of the orbit that never leaves contact."""
     from dynamics.grazing import contact_orbit
 
     return contact_orbit(oscillator).clearance

@@ -14,7 +14,7 @@ from flankfilm.coupling.train import Train, lowest_modes
 def gyroscopic_change(
     train: Train, modes: Array, squares: Array, speeds: Sequence[float], count: int, about: float
 ) -> float:
-    r"""Greatest relative change of the train's frequencies by gyroscopic moments.
+    r"""Largest relative change of the train's frequencies by gyroscopic moments.
 
     The plane across the line of action meets no mesh: each shaft bends there by itself, and gyroscopic moments are all
     that joins it to the motion along that line. With modes Q of the train and P of that plane

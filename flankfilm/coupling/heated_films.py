@@ -24,7 +24,7 @@ LOOSEST = 0.2
 """What a film may be asked for at most."""
 
 SHORTEST = 1.0 / 16.0
-"""Least part of the way from another film that one step goes."""
+"""Smallest part of the way from another film that one step goes."""
 
 
 @dataclass(frozen=True)
@@ -127,12 +127,12 @@ class HeatedFilms:
 
     @property
     def minimum_thickness(self) -> Array:
-        """Least film (n,) [m]."""
+        """Minimum film (n,) [m]."""
         return np.array([film.minimum_thickness for film in self.films])
 
     @property
     def film_ratio(self) -> Array | None:
-        """Least film over the standard deviation of heights (n,); None of smooth flanks."""
+        """Minimum film over the standard deviation of heights (n,); None of smooth flanks."""
         rough = self.oil.roughness
         return None if rough is None else np.asarray(self.minimum_thickness / rough.deviation)
 

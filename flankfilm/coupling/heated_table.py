@@ -32,10 +32,10 @@ FEW = (9, 5)
 """The same of those that first values are found from."""
 
 LIGHTEST = 0.03
-"""Least of the loads over the greatest; cells that bear less have the friction of this one."""
+"""Smallest of the loads over the largest; cells that bear less have the friction of this one."""
 
 HEAVIEST = 1.02
-"""Greatest of the loads over that of the cells: friction tilts the forces and moves them a little."""
+"""Largest of the loads over that of the cells: friction tilts the forces and moves them a little."""
 
 FIGURES = ("friction", "rolling", "first_part", "minimum_thickness", "oil_rise", "first_rise", "second_rise")
 
@@ -119,7 +119,7 @@ def _places(pair: gears.GearPair, places: int) -> Array:
 
 
 def _rise(film: ehl.ThermalFilm, figure: str, bulk: tuple[float, float]) -> float:
-    """Greatest rise of the oil, or of either surface above its bulk [K]."""
+    """Maximum rise of the oil, or of either surface above its bulk [K]."""
     if figure == "oil_rise":
         return film.oil_temperature_rise
     assert film.temperature is not None

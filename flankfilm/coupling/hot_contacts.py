@@ -24,13 +24,13 @@ class HeatScreen:
     no_error = "not estimated; both films have an error"
 
     rho1: float = quantity("m", "curvature radius of the pinion's flank at the contact", shown="mm")
-    isothermal_thickness: float = quantity("m", "least film without heat", shown="um")
-    thickness: float = quantity("m", "least film with heat", shown="um")
+    isothermal_thickness: float = quantity("m", "minimum film without heat", shown="um")
+    thickness: float = quantity("m", "minimum film with heat", shown="um")
     film: ehl.ThermalFilm = part("film with heat")
 
     @property
     def change(self) -> float:
-        """What heat and shear change the least film by, relative."""
+        """What heat and shear change the minimum film by, relative."""
         return self.thickness / self.isothermal_thickness - 1.0
 
 
@@ -45,7 +45,7 @@ def heat_screen(
     tolerance: float = COARSEST,
     supply: Held = None,
 ) -> HeatScreen:
-    """Solve the contact of a path where load times sliding speed is greatest, with heat and without.
+    """Solve the contact of a path where load times sliding speed is largest, with heat and without.
 
     Heat takes most of the film there: at the ends of the path, or where a single pair begins to carry. Formulas for
     the part that it takes are of the inlet's shear alone and four times too pessimistic.

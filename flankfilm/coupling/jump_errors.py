@@ -2,7 +2,7 @@
 
 The fold of a pair on rigid shafts is carried to another stiffness by Newton's method on the fold itself
 (`dynamics.carried_point`). In several freedoms a branch that begins on the motion that ends leads to the fold with a
-stiffness that differs little, and jumps of the longer series are those of its own branches that are alike.
+stiffness that differs little, and jumps of the longer series are those of the similar branches of that series.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Order of a series by its jumps: the least whose jump speeds err by no more than a tolerance.
+"""Order of a series by its jumps: the smallest whose jump speeds err by no more than a tolerance.
 
 It begins with the order that leaves out no more than a share of the curve and of the motion. Where a jump of that
-series errs by more than the tolerance, or the longer series has none there, or has jumps of its own that more than
-the tolerance parts from the next fold, the least order is taken with which all jumps of the longer series lie within
+series errs by more than the tolerance, or the longer series has none there, or has further jumps that more than
+the tolerance parts from the next fold, the lowest order is taken with which all jumps of the longer series lie within
 the tolerance of theirs, and the diagram is built again.
 """
 
@@ -69,14 +69,14 @@ def jumps_to_tolerance(
     searches: int = 9,
     max_period: int = 8,
 ) -> OrderedJumps:
-    """Diagram of a pair with the least order that its jump speeds allow, from that of a series on.
+    """Diagram of a pair with the lowest order that its jump speeds allow, from that of a series on.
 
     Parameters
     ----------
     motion_of : callable
         Gives the oscillator of a series.
     series : MeshSeries
-        Of a mesh cycle, with the least order that is tried.
+        Of a mesh cycle, with the lowest order that is tried.
     tolerance : float
         Relative error that the jump speeds may have.
     speed, frequency, searches, max_period
@@ -128,7 +128,7 @@ def _within(jump: Jump, tolerance: float) -> bool:
 
 
 def _next_order(motion: PairOscillator, found: SpeedDiagram, tolerance: float) -> int:
-    """Least higher order with which all jumps of the longer series lie within the tolerance; at most its own."""
+    """Lowest higher order with which all jumps of the longer series lie within the tolerance; at most its own."""
     longer = longer_motion(motion, found.diagram.bounds)
     assert longer is not None
     others = max(

@@ -51,7 +51,7 @@ class SpeedDiagram:
         "jump frequencies with another law of stiffness or a longer series, by name"
     )
     force_frequency: Array = quantity("1", "mesh over natural frequency", "force")
-    force_factor: Array = quantity("1", "greatest force of a stable motion over the mean force", "force")
+    force_factor: Array = quantity("1", "maximum force of a stable motion over the mean force", "force")
     force_factor_iso6336: Array = quantity("1", "K_v after ISO 6336-1, method B; nan without a pair", "force")
     half_backlash: float = quantity("1", "half the backlash D")
     longer_order: int | None = quantity(
@@ -60,7 +60,7 @@ class SpeedDiagram:
     with_longer: dynamics.Diagram | None = part("branches of period 1 with the longer series")
     missed: tuple[MissedJump, ...] = part("jumps of period 1 that only the longer series has")
     truncation: Mapping[str, float] = part(
-        "relative change of ranges and greatest force by the longer series, motions of period 1; infinite where unknown"
+        "relative change of ranges and maximum force by the longer series, motions of period 1; infinite where unknown"
     )
     error: float
     cost: Cost
@@ -84,7 +84,7 @@ class SpeedDiagram:
 
     @described("1", error="truncation")
     def greatest_force(self) -> float:
-        """Greatest force of a stable motion over the mean force; nan without a mean force."""
+        """Maximum force of a stable motion over the mean force; nan without a mean force."""
         return float(np.max(self.force_factor)) if self.force_factor.size else math.nan
 
     @property
@@ -194,7 +194,7 @@ def _jump(
     """Carry the stiffness' errors through the exact derivatives of a jump's speed, and the jump to more harmonics.
 
     The speed is the frequency times sqrt(k_m): half the relative error of the mean stiffness, less what the mean
-    force, which is over k_m, changes of the frequency. The amplitudes over the mean err by errors of their own.
+    force, which is over k_m, changes of the frequency. The amplitudes over the mean have separate errors.
     """
     rising, here = rises(stretch, point), point.parameter
     series, oscillator = motion.series, motion.oscillator

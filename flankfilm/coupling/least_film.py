@@ -1,6 +1,6 @@
-"""Least film over the smooth parts of the path, from films at equal steps, and what sampling makes of it.
+"""Minimum film over the smooth parts of the path, from films at equal steps, and what sampling makes of it.
 
-Films stand at the middles of equal steps, so that the least one may lie between two of them, or half a step beyond the
+Films stand at the middles of equal steps, so that the minimum may lie between two of them, or half a step beyond the
 first or last of a part: at the ends of the path, and where the load steps since a pair comes or goes.
 """
 
@@ -13,7 +13,7 @@ import numpy as np
 from base import Array
 
 STEP = 0.05
-"""Least change of the load's logarithm between two films that may be a step of it."""
+"""Smallest change of the load's logarithm between two films that may be a step of it."""
 
 STEEPER = 4.0
 """How much more a step changes than its neighbours do: the load of relieved teeth grows without one."""
@@ -31,7 +31,7 @@ def parts_of(load: Array) -> list[slice]:
 
 
 def least_of(film: Array, load: Array) -> tuple[float, float]:
-    """Least film [m] of smooth parts, and how far the parabolas that give it may be off [m].
+    """Minimum film [m] of smooth parts, and how far the parabolas that give it may be off [m].
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def least_of(film: Array, load: Array) -> tuple[float, float]:
 
 
 def _candidates(film: Array) -> list[tuple[float, float]]:
-    """Least values within and at both ends of a smooth part, each with its error."""
+    """Minimum values within and at both ends of a smooth part, each with its error."""
     if film.size < 3:
         return [(float(film.min()), float(np.ptp(film)))]
     found = []

@@ -181,7 +181,7 @@ def _solved(rounds: LossRounds, bulk: tuple[float, float]) -> MeshLosses:
 
 
 def _message(error: float, carried: float) -> str:
-    """What a user should know of an error above the tolerance."""
+    """Remark for the user on an error above the tolerance."""
     if carried > 0.5 * error:
         return f"errs by {error:.1e}, most of it what is interpolated between films of the face's cells"
     return f"errs by {error:.1e}: {MORE}"

@@ -52,21 +52,21 @@ class LossesAlongPath:
     sliding_loss: Array = quantity("W", "power lost by sliding", "point", error="friction_error")
     rolling_loss: Array = quantity("W", "power lost by the oil's flow under its pressure", "point")
     oil_temperature_rise: Array = quantity(
-        "K", "greatest oil temperature above the mean of the flanks' bulk", "point", error="temperature_error"
+        "K", "highest oil temperature above the mean of the flanks' bulk", "point", error="temperature_error"
     )
     surface_temperature_rise: Array = quantity(
         "K",
-        "greatest temperature of pinion's and wheel's flank above its bulk",
+        "maximum temperature of pinion's and wheel's flank above its bulk",
         "gear point",
         no_error="that of the oil's rise at the same contact, temperature_error, holds for both",
     )
-    contact_temperature: Array = quantity("K", "greatest temperature of the flanks", "point")
+    contact_temperature: Array = quantity("K", "maximum temperature of the flanks", "point")
     flash_temperature: Array = quantity(
         "K", "flash temperature after Blok beside it", "point", no_error=_CLOSED_FORM
     )
-    minimum_thickness: Array = quantity("m", "least film", "point", shown="um", error="film_error")
+    minimum_thickness: Array = quantity("m", "minimum film", "point", shown="um", error="film_error")
     film_ratio: Array | None = quantity(
-        "1", "film ratio Lambda, least film over sigma; None of smooth flanks", "point", error="film_error"
+        "1", "film ratio Lambda, minimum film over sigma; None of smooth flanks", "point", error="film_error"
     )
     asperity_share: Array | None = quantity(
         "1", "asperities' share of the load; None of smooth flanks", "point"
@@ -85,17 +85,17 @@ class LossesAlongPath:
 
     @described("Pa m/s", no_error=HERTZ)
     def greatest_pressure_times_sliding(self) -> float:
-        """Greatest Hertz pressure times sliding speed of the contacts."""
+        """Maximum Hertz pressure times sliding speed of the contacts."""
         return float(self.pressure_times_sliding.max())
 
     @described("m", shown="um")
     def least_film(self) -> float:
-        """Least film of the contacts."""
+        """Minimum film of the contacts."""
         return float(self.minimum_thickness.min())
 
     @described("K")
     def greatest_contact_temperature(self) -> float:
-        """Greatest temperature of the flanks at the contacts."""
+        """Maximum temperature of the flanks at the contacts."""
         return float(self.contact_temperature.max())
 
 
@@ -145,7 +145,7 @@ def losses_along(pair: gears.GearPair, found: HeatedFilms, bulk: tuple[float, fl
 
 
 def _surface_rises(film: ehl.ThermalFilm, bulk: tuple[float, float]) -> tuple[float, float]:
-    """Greatest rise of both surfaces above their bulk [K]."""
+    """Maximum rise of both surfaces above their bulk [K]."""
     assert film.temperature is not None
     return float(film.temperature[:, 0].max() - bulk[0]), float(film.temperature[:, -1].max() - bulk[1])
 

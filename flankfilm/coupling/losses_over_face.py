@@ -39,16 +39,16 @@ class FaceLosses(FaceCells):
         "1", "coefficient of friction of each cell", "position pair cell", no_error=_AS_FILMS
     )
     minimum_thickness: Array = quantity(
-        "m", "least film with heat of each cell", "position pair cell", shown="um", no_error=_AS_FILMS
+        "m", "minimum film with heat of each cell", "position pair cell", shown="um", no_error=_AS_FILMS
     )
     oil_temperature_rise: Array = quantity(
         "K",
-        "greatest oil temperature of each cell above the mean of the flanks' bulk",
+        "highest oil temperature of each cell above the mean of the flanks' bulk",
         "position pair cell",
         no_error=_AS_FILMS,
     )
     contact_temperature: Array = quantity(
-        "K", "greatest temperature of the flanks of each cell", "position pair cell", no_error=_AS_FILMS
+        "K", "maximum temperature of the flanks of each cell", "position pair cell", no_error=_AS_FILMS
     )
     sliding_loss: Array = quantity(
         "W/m", "power lost by sliding per length of face", "position pair cell", no_error=_AS_FILMS
@@ -59,7 +59,7 @@ class FaceLosses(FaceCells):
     films: int = quantity("1", "films solved, over places of the path and line loads", no_error=EXACT)
     table_error: float = quantity(
         "1",
-        "relative error of the mean losses by what is interpolated between places and loads",
+        "relative error of the mean losses from the interpolation between places and loads",
         no_error=ITSELF,
     )
 
@@ -71,7 +71,7 @@ class FaceLosses(FaceCells):
 
     @described("K")
     def greatest_cell_temperature(self) -> float:
-        """Greatest temperature of the flanks of all cells."""
+        """Maximum temperature of the flanks of all cells."""
         return float(np.nanmax(self.contact_temperature))
 
 

@@ -105,10 +105,10 @@ class MeshLosses:
 
     @described("K")
     def greatest_contact_temperature(self) -> float:
-        """Greatest temperature of the flanks."""
+        """Maximum temperature of the flanks."""
         return self.path.greatest_contact_temperature
 
     @described("m", shown="um")
     def least_film(self) -> float:
-        """Least film of the contacts."""
+        """Minimum film of the contacts."""
         return self.path.least_film

@@ -24,7 +24,7 @@ FINER = 8
 """Times as many positions that means are taken over, friction and rolling being carried between the films."""
 
 FINER_FACE = 3
-"""The same where the load varies along the face, whose cells take their time; that of films is told as an error."""
+"""The same where the load varies along the face, whose cells take their time; that of films is reported as an error."""
 
 MOST_ROUNDS = 12
 

@@ -42,7 +42,7 @@ def lubricate_face(
 
     Films are functions of place and line load alone, so that a table of them is solved once and no rounds are needed:
     load share and films agree to the last digit of the table. The film along the path is solved at the most loaded cell
-    of each contact, where it is least.
+    of each contact, where it is smallest.
     """
     watch = Stopwatch()
     table = film_table(teeth.pair, dry, speed, lubricant, model, resolution.films)
@@ -75,7 +75,7 @@ def lubricate_face(
 
 
 def _least(thickness: Array) -> Array:
-    """Least over the cells (positions, pairs); nan where none is known."""
+    """Smallest over the cells (positions, pairs); nan where none is known."""
     found = np.where(np.isfinite(thickness), thickness, np.inf).min(axis=-1)
     return np.where(np.isfinite(found), found, np.nan)
 

@@ -31,7 +31,7 @@ class LubricatedCycle(MeshCycle):
     _: KW_ONLY
     least_film: Array = quantity(
         "m",
-        "least film of each pair; nan where unloaded",
+        "minimum film of each pair; nan where unloaded",
         "position pair",
         shown="um",
         no_error="not estimated in single positions; thinnest_film has one where films are solved",
@@ -39,7 +39,7 @@ class LubricatedCycle(MeshCycle):
     rounds: int = quantity("1", "times that films and load share were brought into agreement", no_error=EXACT)
     mismatch: float = quantity("1", "last change of a pair's force over the whole force", no_error=ITSELF)
     dry: MeshCycle = part("the cycle without film")
-    film: FilmAlongPath = part("film along the path, with the error of its own")
+    film: FilmAlongPath = part("film along the path, with a separate error")
     otherwise: Mapping[str, MeshCycle] = part(
         "the mesh with other films, by name; empty unless films are starved"
     )
@@ -58,12 +58,12 @@ class LubricatedCycle(MeshCycle):
 
     @described("m", shown="um", error="thinnest_film_error", no_error=FORMULA)
     def thinnest_film(self) -> float:
-        """Least film of all pairs along the path."""
+        """Minimum film of all pairs along the path."""
         return self.film.least_film
 
     @property
     def thinnest_film_error(self) -> float | None:
-        """Relative error of the least film; None by formula."""
+        """Relative error of the minimum film; None by formula."""
         return self.film.least_film_error
 
     @described("1", shown="%", no_error=DIFFERENCE)

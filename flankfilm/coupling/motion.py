@@ -85,7 +85,7 @@ class SpeedSweep:
     )
     half_backlash: float = quantity("1", "half the backlash D", no_error=SCALED)
     force_factor: Mapping[str, Array] = quantity(
-        "1", "greatest force over the mean force", "frequency", error="sampling_error"
+        "1", "maximum force over the mean force", "frequency", error="sampling_error"
     )
     separated: Mapping[str, Array] = quantity(
         "1",
@@ -101,7 +101,7 @@ class SpeedSweep:
         "1", "largest relative change of force and spread with half as many samples of a period"
     )
     grazing_budget: Mapping[str, float] = part(
-        "source of error to relative error of the least speed at which contact is lost: stiffness, truncation, flow"
+        "source of error to relative error of the lowest speed at which contact is lost: stiffness, truncation, flow"
     )
     longer_order: int | None = quantity(
         "1",
@@ -121,7 +121,7 @@ class SpeedSweep:
     )
     force_change: Mapping[str, Array] | None = quantity(
         "1",
-        "relative change of the greatest force there by the longer series; nan where the motion does not repeat, "
+        "relative change of the maximum force there by the longer series; nan where the motion does not repeat, "
         "infinite where there is none of the same label",
         "checked",
         no_error=ITSELF,
@@ -139,12 +139,12 @@ class SpeedSweep:
 
     @property
     def least_grazing(self) -> float | None:
-        """Least frequency at which contact is lost."""
+        """Lowest frequency at which contact is lost."""
         return float(self.grazings.min()) if self.grazings.size else None
 
     @property
     def least_grazing_error(self) -> float | None:
-        """Relative error of the least speed at which contact is lost; None where there is none, or it is not known."""
+        """Relative error of the lowest speed at which contact is lost; None where there is none, or it is not known."""
         known = self.grazing_budget
         return math.fsum(known.values()) if "stiffness" in known or set(known) == {"flow"} else None
 
@@ -236,7 +236,7 @@ def speed_sweep(
 def _first_loss(
     motion: PairOscillator, touched: Array, left_out: Array | None, flow: float
 ) -> Mapping[str, float]:
-    """Error budget of the least speed at which contact is lost; empty where it never is."""
+    """Error budget of the lowest speed at which contact is lost; empty where it never is."""
     if not touched.size:
         return {}
     first = int(np.argmin(touched))

@@ -202,9 +202,9 @@ def pair_oscillator(
 ) -> PairOscillator:
     """Oscillator of a pair along the line of action, driven by its mesh stiffness.
 
-    Its coordinate is the turn of rigid inertias, so that the deflection of finite elements is measured against the
+    Its coordinate is the rotation of rigid inertias, so that the deflection of finite elements is measured against the
     bodies, whatever it was measured against before, unless another reference is asked for. Closed forms,
-    independent pairs and given series have no turn that all pairs share, and stay as they are; the message says
+    independent pairs and given series have no rotation that all pairs share, and are used unchanged; the message says
     which it was.
 
     On the far side of the backlash the flanks that the load does not press bear with the same k(t). Theirs is its
@@ -253,7 +253,7 @@ def pair_oscillator(
     series = _measured(stiffness, reference, extra_inertia)
     said = "" if series.reference is None else f"stiffness measured against {MEANINGS[series.reference]}"
     if pair.backlash < -1e-12 * pair.module:
-        allowed = "must be at least 0 for the motion, in which back flanks touch by turns"
+        allowed = "must be at least 0 for the motion, in which back flanks touch alternately"
         remedy = "give more backlash; the mesh cycle of pressed teeth needs no motion"
         raise InputError.at("pair.backlash", f"{1e6 * pair.backlash:.4g} um", allowed, remedy)
     force = abs(pair.normal_force(torque))

@@ -34,14 +34,14 @@ class PassageFilm:
 
     no_error = "not estimated: the difference of films that have errors"
 
-    time: Array = quantity("s", "time since the pair came to the first place", "instant", no_error=EXACT)
+    time: Array = quantity("s", "time since the pair reached the first place", "instant", no_error=EXACT)
     rho1: Array = quantity(
         "m", "curvature radius of the pinion's flank at the contact", "instant", shown="mm", no_error=EXACT
     )
     load: Array = quantity("N/m", "force per length of face", "instant", shown="N/mm", no_error=HERTZ)
-    least: Array = quantity("m", "least film over time", "instant", shown="um", error="error")
+    least: Array = quantity("m", "minimum film over time", "instant", shown="um", error="error")
     steady_least: Array = quantity(
-        "m", "least film of the steady contact", "instant", shown="um", error="error"
+        "m", "minimum film of the steady contact", "instant", shown="um", error="error"
     )
     central: Array = quantity("m", "central film over time", "instant", shown="um", error="error")
     steady_central: Array = quantity(
@@ -58,12 +58,12 @@ class PassageFilm:
 
     @described("1", "instant", shown="%")
     def difference(self) -> Array:
-        """Least film over that of the steady contact, less 1."""
+        """Minimum film over that of the steady contact, less 1."""
         return self.least / self.steady_least - 1.0
 
     @described("1", shown="%")
     def greatest_difference(self) -> float:
-        """Greatest difference of the least film from the steady one, with its sign, where the way in is forgotten."""
+        """Largest difference of the minimum film from the steady one, with its sign, where the way in is forgotten."""
         told = np.where(self.known > 0.0, self.difference, 0.0)
         return float(told[np.argmax(np.abs(told))])
 
@@ -75,12 +75,12 @@ class PassageFilm:
 
     @described("m", shown="um", error="error")
     def thinnest(self) -> float:
-        """Least film on the way, where the way in is forgotten."""
+        """Minimum film on the way, where the way in is forgotten."""
         return float(np.min(self.least[self.known > 0.0]))
 
     @described("m", shown="um", error="error")
     def steady_thinnest(self) -> float:
-        """Least of the steady films at the same places."""
+        """Smallest of the steady films at the same places."""
         return float(np.min(self.steady_least[self.known > 0.0]))
 
 

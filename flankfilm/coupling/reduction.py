@@ -25,13 +25,13 @@ SPEEDS = 200
 """Speeds over the range, besides those at which a harmonic meets a mode, at which forces are compared."""
 
 FLOOR = 0.1
-"""Forces are compared with their swing at each speed, or with this part of the greatest where that is more."""
+"""Forces are compared with their swing at each speed, or with this part of the largest where that is more."""
 
 BEYOND = 3.0
 """Frequencies that are looked at, over the highest that harmonics reach."""
 
 FADED = 0.05
-"""Harmonics whose force is less than this part of the tolerance, over the greatest, count as none."""
+"""Harmonics whose force is less than this part of the tolerance, over the largest, count as none."""
 
 MOST_MODES = 150
 
@@ -82,7 +82,7 @@ class Reduction(NamedTuple):
     retained : ndarray of bool, shape (m,)
         Whether a mode is among the shapes.
     error : float
-        Greatest change of a force's swing by what is left out, within the speeds.
+        Largest change of a force's swing from what is left out, within the speeds.
     valid_to : float
         Mesh frequency up to which this is within the tolerance [rad/s]; infinite where nothing is left out.
     """
@@ -110,7 +110,7 @@ def reduced_train(
     damping : ShaftDamping
     excitation : MeshExcitation
     frequencies : (float, float)
-        Least and greatest mesh frequency [rad/s].
+        Lowest and highest mesh frequency [rad/s].
     tolerance : float
         Of the swing of forces; see `FLOOR`.
     """
@@ -180,7 +180,7 @@ class _Forced:
 
     @property
     def importance(self) -> Array:
-        """Greatest force of what a mode adds to its static deflection, over the force's scale, within the speeds."""
+        """Maximum force of what a mode adds to its static deflection, over the force's scale, within the speeds."""
         more = (self.answer - 1.0 / self.squares[:, None, None]) * self.driven[:, None, None]
         found = []
         for mode in range(len(self.squares)):
@@ -203,7 +203,7 @@ class _Forced:
         return left @ turn, squares
 
     def changes(self, kept: Chosen) -> tuple[float, Array]:
-        """Greatest change of a force with these modes alone within the speeds, and the greatest at each."""
+        """Largest change of a force with these modes alone within the speeds, and the largest at each."""
         rest, squares = self.rest(kept)
         shapes = np.column_stack([self.modes[:, kept], rest])
         answer = np.concatenate([self.answer[kept], self._answer(squares, self._rates(rest))])

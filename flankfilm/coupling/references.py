@@ -1,4 +1,4 @@
-"""Mesh stiffness by what the deflection is measured against, beside ISO 6336-1, and what the deflection is made of."""
+"""Mesh stiffness for each reference of the deflection, beside ISO 6336-1, and the parts of the deflection."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from flankfilm.coupling.cycle import MeshCycle
 
 MEANINGS: Mapping[str, str] = {
-    "bore": "the turn of the bores: all wind-up of the hubs included",
-    "body": "the turn of the bodies, whose inertia balances the torque",
-    "teeth": "the turn of the root circles: no wind-up of the hubs",
+    "bore": "the rotation of the bores: all wind-up of the hubs included",
+    "body": "the rotation of the bodies, whose inertia balances the torque",
+    "teeth": "the rotation of the root circles: no wind-up of the hubs",
 }
 """What a deflection is measured against, in words."""
 
@@ -46,13 +46,13 @@ class StiffnessReferences:
     reference: tuple[str, ...] = quantity("", "what the deflection is measured against", "reference")
     mean_stiffness: Array = quantity(
         "N/m",
-        "mean mesh stiffness (tangent) by what the deflection is measured against",
+        "mean mesh stiffness (tangent) for each reference of the deflection",
         "reference",
         error="mean_error",
     )
     mean_secant_stiffness: Array = quantity(
         "N/m",
-        "mean mesh stiffness (secant) by what the deflection is measured against",
+        "mean mesh stiffness (secant) for each reference of the deflection",
         "reference",
         error="mean_error",
     )

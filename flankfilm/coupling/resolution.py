@@ -1,4 +1,4 @@
-"""What each part of a lubricated mesh cycle may err by, from one tolerance of the whole, for the least cost."""
+"""What each part of a lubricated mesh cycle may err by, from one tolerance of the whole, for the lowest cost."""
 
 from __future__ import annotations
 
@@ -98,11 +98,11 @@ def film_tolerance(shares: Mapping[str, float], change: float, wanted: float = C
     Parameters
     ----------
     shares : mapping
-        Split of the tolerance by stages; its share of the films counts by what they change of the stiffness.
+        Split of the tolerance by stages; its share of the films counts by their change of the stiffness.
     change : float
         As of `film_law_of_cost`.
     wanted : float
-        Tolerance of the films as figures of their own.
+        Tolerance of the films as separate figures.
     """
     return min(wanted, step_below(shares[FILMS.name] / change))
 

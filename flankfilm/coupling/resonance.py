@@ -1,4 +1,4 @@
-"""What a sweep's settled motions do to the teeth: greatest force, time without contact, vibration."""
+"""What a sweep's settled motions do to the teeth: maximum force, time without contact, vibration."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ class Vibration(NamedTuple):
     Attributes
     ----------
     force : float
-        Greatest force over the mean force.
+        Maximum force over the mean force.
     separated : float
         Part of the time in which the driving flanks do not touch.
     spread : float
         Root mean square of the displacement about its mean; in several freedoms of what the backlash limits.
     change : float
-        Largest relative change of force, spread and parts with half as many samples; parts over their greatest.
+        Largest relative change of force, spread and parts with half as many samples; parts over their largest.
     parts : ndarray, shape (3, parts)
-        Mean, root mean square about it, and greatest modulus of what each part of a drive train carries.
+        Mean, root mean square about it, and maximum modulus of what each part of a drive train carries.
     """
 
     force: float
@@ -133,10 +133,10 @@ def vibration(
 
 
 def _figures(force: Array, x: Array) -> tuple[float, float]:
-    """Greatest force, and root mean square of the displacement about its mean over whole periods."""
+    """Maximum force, and root mean square of the displacement about its mean over whole periods."""
     return float(np.max(force)), float(np.std(x[:-1]))
 
 
 def _of_parts(curves: Array) -> Array:
-    """Mean, root mean square about it, and greatest modulus of curves, one row each."""
+    """Mean, root mean square about it, and maximum modulus of curves, one row each."""
     return np.array([curves.mean(axis=1), curves.std(axis=1), np.abs(curves).max(axis=1)])

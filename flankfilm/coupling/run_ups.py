@@ -38,10 +38,10 @@ class SpeedRunUp:
         error="rms_error",
     )
     peak: Mapping[str, Array] = quantity(
-        "1", "greatest displacement over the length scale", "block", error="peak_error"
+        "1", "maximum displacement over the length scale", "block", error="peak_error"
     )
     force_factor: Mapping[str, Array] = quantity(
-        "1", "greatest force over the mean force", "block", error="peak_error"
+        "1", "maximum force over the mean force", "block", error="peak_error"
     )
     force_rms: Mapping[str, Array] = quantity(
         "1", "root mean square of the force about its mean, over the mean force", "block", error="rms_error"
@@ -63,7 +63,7 @@ class SpeedRunUp:
         "", "bearings of a drive train, in the order of their forces", "bearing"
     )
     bearing_force: Mapping[str, Array] = quantity(
-        "N", "greatest modulus of the force of bearings", "block bearing", error="error"
+        "N", "maximum modulus of the force of bearings", "block bearing", error="error"
     )
     bearing_force_swing: Mapping[str, Array] = quantity(
         "N", "root mean square about the mean force of bearings", "block bearing", error="error"
@@ -72,7 +72,7 @@ class SpeedRunUp:
         "", "shafts and couplings of a drive train, in the order of their torques", "shaft"
     )
     shaft_torque: Mapping[str, Array] = quantity(
-        "N m", "greatest modulus of the torque of shafts and couplings", "block shaft", error="error"
+        "N m", "maximum modulus of the torque of shafts and couplings", "block shaft", error="error"
     )
     shaft_torque_swing: Mapping[str, Array] = quantity(
         "N m", "root mean square about the mean torque of shafts and couplings", "block shaft", error="error"
@@ -91,10 +91,10 @@ class SpeedRunUp:
         "1", "estimated relative error of each block's peaks, by steps of the speed and by samples", "block"
     )
     greatest_error: float = quantity(
-        "1", "estimated relative error of the greatest displacement, force or torque of a direction"
+        "1", "estimated relative error of the maximum displacement, force or torque of a direction"
     )
     error: float = quantity(
-        "1", "greatest of the blocks' errors: where the motion jumps it may do so a block earlier or later"
+        "1", "largest of the blocks' errors: where the motion jumps it may do so a block earlier or later"
     )
     cost: Cost
     converged: bool = quantity("1", "whether the motion stayed bounded in both directions", no_error=EXACT)
@@ -102,12 +102,12 @@ class SpeedRunUp:
 
     @described("N", error="greatest_error")
     def greatest_bearing_force(self) -> float | None:
-        """Greatest force of a bearing in run-up and coast-down; None without bearings."""
+        """Maximum force of a bearing in run-up and coast-down; None without bearings."""
         return greatest(self.bearing_force)
 
     @described("N m", error="greatest_error")
     def greatest_shaft_torque(self) -> float | None:
-        """Greatest torque of a shaft or coupling in run-up and coast-down; None without one that yields."""
+        """Maximum torque of a shaft or coupling in run-up and coast-down; None without one that yields."""
         return greatest(self.shaft_torque)
 
 

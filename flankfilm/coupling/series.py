@@ -5,7 +5,7 @@ What a series of order n leaves out of the curve is the root mean square of the 
 :math:`\kappa_j` times its static deflection; to first order, about a mesh of mean stiffness in contact, it answers with
 the amplitude :math:`\kappa_j H(j \omega)`, :math:`H(r) = [(1-r^2)^2 + (2 \zeta r)^2]^{-1/2}`. Where a wanted range of
 frequencies passes :math:`j \omega = 1` that is :math:`\kappa_j / (2 \zeta)`: harmonics far too small for the curve
-make resonances of their own at low speed. Both estimates have to stay below the share.
+make separate resonances at low speed. Both estimates have to stay below the share.
 """
 
 from __future__ import annotations
@@ -205,7 +205,7 @@ def _tails(squares: Array) -> Array:
 
 
 def least_order(found: LeftOut, share: float) -> int:
-    """Least order that leaves out no more than a share; the highest where none does."""
+    """Lowest order that leaves out no more than a share; the highest where none does."""
     most = min(MOST_HARMONICS, found.curve.size - 1)
     enough = np.flatnonzero(found.largest[1 : most + 1] <= share)
     return int(enough[0]) + 1 if enough.size else most

@@ -196,7 +196,7 @@ def _no_hertz(rho1: Array, force: Array) -> tuple[Array, Array]:
 
 
 def _relief(pair: gears.GearPair, rho1: Array) -> Array:
-    """Clearance that tip relief of both gears leaves [m], nan staying nan, least zero at each position."""
+    """Clearance that tip relief of both gears leaves [m], nan where it was, with a minimum of zero at each position."""
     pinion, wheel = pair.teeth_profiles
     gap = pinion.relief(rho1) + wheel.relief(pair.line_of_action - rho1)
     return np.asarray(gap - np.nanmin(gap, axis=1, keepdims=True))

@@ -1,4 +1,4 @@
-"""Ranges of speed in which a stable motion does something, and the greatest forces of stable motions."""
+"""Ranges of speed in which a stable motion does something, and the maximum forces of stable motions."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def back_contact_ranges(stable: Iterable[Stretch]) -> Ranges:
 def force_factors(
     oscillator: PeriodicOscillator, found: dynamics.Diagram, load: float, longest: int = 2
 ) -> Array:
-    """Frequency, greatest force over the mean force and period along stable branches of short period, by frequency.
+    """Frequency, maximum force over the mean force and period along stable branches of short period, by frequency.
 
     `load` is the mean force of the mesh.
 
@@ -74,7 +74,7 @@ def standard_factors(motion: PairOscillator, frequency: Array) -> Array:
 def changes(
     found: tuple[dynamics.Diagram, dynamics.Diagram], forces: tuple[Array, Array]
 ) -> Mapping[str, float]:
-    """Relative changes of ranges and of the greatest force from one series to another, motions of period 1 alone.
+    """Relative changes of ranges and of the maximum force from one series to another, motions of period 1 alone.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ CHECKED = 12
 """Values of a sweep, evenly over the range, at which motions are computed with the longer series as well."""
 
 LEAST_HARMONICS = 32
-"""Least order of the longer series: forces follow the stiffness at every instant, and need more than displacements."""
+"""Lowest order of the longer series: forces follow the stiffness at every instant, and need more than displacements."""
 
 NEAR, POINTS = 0.1, 41
 """Part of the frequency on both sides in which the longer series' loss of contact is looked for, and at how many."""
@@ -44,7 +44,7 @@ def grazing_errors(longer: Longer, grazings: Array) -> Array:
 
 
 def checked_values(count: int, forces: Mapping[str, Array]) -> Integers:
-    """Values of a sweep that are computed once more: evenly, and where the forces of either direction are greatest."""
+    """Values of a sweep that are computed once more: evenly, and where the forces of either direction are largest."""
     evenly = np.linspace(0, count - 1, min(CHECKED, count)).round().astype(np.int64)
     greatest = [int(np.nanargmax(force)) for force in forces.values() if np.isfinite(force).any()]
     return np.unique(np.concatenate([evenly, np.array(greatest, dtype=np.int64)]))
@@ -58,9 +58,9 @@ class MotionChanges(NamedTuple):
     Attributes
     ----------
     force, spread : ndarray, shape (n,)
-        Of the greatest force and of the displacement's root mean square.
+        Of the maximum force and of the displacement's root mean square.
     parts : ndarray, shape (n, 3, parts)
-        Of mean, root mean square and greatest of what each part of a drive train carries, all over the greatest.
+        Of mean, root mean square and largest of what each part of a drive train carries, all over the largest.
     """
 
     force: Array

@@ -1,7 +1,7 @@
-r"""How a tolerance is split among the stages of a computation: for the least cost.
+r"""How a tolerance is split among the stages of a computation: for the lowest cost.
 
 A stage that may err by :math:`e` costs :math:`c(e) = s \, (e/e_0)^{-p}` below the error :math:`e_0` of its coarsest
-resolution, and :math:`s` above: nothing is cheaper than the coarsest. The split makes :math:`\sum c_i(e_i)` least
+resolution, and :math:`s` above: nothing is cheaper than the coarsest. The split makes :math:`\sum c_i(e_i)` smallest
 with :math:`\sum e_i = T`. Lagrange's condition, one slope of the cost for all, gives
 
 .. math:: e_i = \min\left(e_{0i}, \; e_{0i} \left(\frac{s_i \, p_i}{\lambda \, e_{0i}}\right)^{1/(1+p_i)}\right),
@@ -34,7 +34,7 @@ class CostLaw:
     power : float
         p, positive.
     finest : float
-        Least relative error that the stage can reach, below `coarsest`.
+        Smallest relative error that the stage can reach, below `coarsest`.
     """
 
     name: str
@@ -49,7 +49,7 @@ class CostLaw:
 
 
 def split(tolerance: float, laws: Sequence[CostLaw]) -> dict[str, float] | None:
-    """Split a tolerance among stages for the least cost; None where it lies below all that they can reach.
+    """Split a tolerance among stages for the lowest cost; None where it lies below all that they can reach.
 
     Parameters
     ----------

@@ -139,7 +139,7 @@ def lowest_modes(stiffness: Any, mass: Any, count: int, about: float) -> tuple[A
     stiffness, mass : sparse array, shape (n, n)
     count : int
     about : float
-        Square of a frequency in the middle of those wanted, by which a motion that nothing holds is told from others.
+        Square of a frequency in the middle of those wanted, by which a free motion is distinguished from others.
     """
     n = stiffness.shape[0]
     if n <= DENSE or 3 * count > n:

@@ -25,7 +25,7 @@ BEYOND = 4
 """Harmonics beyond the longer series that count by derivatives."""
 
 LEAST_ORDER = 8
-"""Least order of the longer series."""
+"""Lowest order of the longer series."""
 
 FADED = 0.05
 """What the longer series may leave out of the motion, over what the series leaves out."""
@@ -69,7 +69,7 @@ class Longer:
         return dynamics.carried_point(oscillator, "frequency", point, self.oscillator.contact_stiffness)
 
     def truncation(self, point: dynamics.SpecialPoint, carried: dynamics.SpecialPoint | None) -> float:
-        """Relative error of a jump's frequency by what its series leaves out; infinite where there is no such jump."""
+        """Relative error of a jump's frequency from the truncated series; infinite where there is no such jump."""
         if carried is None:
             return math.inf
         names = [f"stiffness.amplitudes[{self.order + j}]" for j in range(len(self.beyond))]

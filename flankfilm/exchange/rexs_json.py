@@ -15,7 +15,7 @@ _NO_VALUE = ("id", "unit")
 
 
 def model_of_json(content: bytes, name: str) -> Model:
-    """Read a model as JSON; numbers stay as they are written, until an attribute that needs one asks.
+    """Read a model as JSON; numbers remain text until an attribute that needs one asks.
 
     Parameters
     ----------

@@ -3,7 +3,7 @@
 Rows are separated by commas, semicolons or tabs; with the latter two a comma may be the decimal sign. Lines that begin
 with # are remarks. The first row names the columns: a position (``roll_deg``, ``diameter_mm``, ``roll_length_mm``), and
 
-- ``tooth`` and a value: rows of all teeth, one below the other, each tooth with positions of its own;
+- ``tooth`` and a value: rows of all teeth, one below the other, each tooth with separate positions;
 - a value: one curve for all teeth;
 - numbers of teeth (``1``, ``tooth_1``, ``tooth_1_um``): a column for each, in micrometres, at common positions.
 

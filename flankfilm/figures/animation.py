@@ -28,7 +28,7 @@ MOVING = (".gif", ".webp")
 STILL = (".png", ".jpg", ".webp")
 
 SHOWN = 0.12
-"""What the greatest deflection is drawn as, in modules."""
+"""What the maximum deflection is drawn as, in modules."""
 
 STRESS, FLANKS_FIELD = "von_mises_Pa", "pressure_Pa"
 """Fields that are drawn unless one is asked for: of even loads, and of loads that vary along the face."""
@@ -260,7 +260,7 @@ def _round(value: float) -> float:
 
 
 def _in_a_process(view: View, patience: float | None = PATIENCE) -> None:
-    """Draw in a process of its own, which a missing OpenGL may kill."""
+    """Draw in a separate process, which a missing OpenGL may kill."""
     command = python(*module("flankfilm.figures.rendering"))
     try:
         done = subprocess.run(

@@ -59,7 +59,7 @@ def error_against_cost(case: CaseResult, peers: Sequence[PeerRow] = ()) -> Figur
 
 
 def _groups(rows: Sequence[Row]) -> list[tuple[str, ...]]:
-    """Quantities that share a row of panels: all where each series has one of its own, else each alone."""
+    """Quantities that share a row of panels: all where each series has one, else each alone."""
     pairs = {(r.series, r.quantity) for r in rows if r.quantity}
     quantities = tuple(dict.fromkeys(r.quantity for r in rows if r.quantity))
     alone = len(pairs) == len(quantities) == len({series for series, _ in pairs})
@@ -81,7 +81,7 @@ def _look(place: int) -> dict[str, Any]:
 
 
 def _drawn(rows: Sequence[Row | PeerRow], name: str) -> list[float]:
-    """Errors of one name as they are drawn."""
+    """Errors of one name in the form that is drawn."""
     return [max(getattr(row, name), LEAST) for row in rows]
 
 

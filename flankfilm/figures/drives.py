@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 DRIVE = 'run a scene with [shafts] that wants "sweep"'
 
 WAYS = {"up": "rising", "down": "falling"}
-FORCE = "greatest force\nover mean [-]"
+FORCE = "maximum force\nover mean [-]"
 PARTS = {
-    "bearing": ("bearing_force", "greatest force\nof a bearing"),
-    "shaft": ("shaft_torque", "greatest torque"),
+    "bearing": ("bearing_force", "maximum force\nof a bearing"),
+    "shaft": ("shaft_torque", "maximum torque"),
 }
 """What carries, its figure and how that is called."""
 
 
 def drive_sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw the greatest mesh force, and what every bearing, shaft and coupling carries at most, over the speed.
+    """Draw the maximum mesh force, and what every bearing, shaft and coupling carries at most, over the speed.
 
     Both sweeps: rising speeds full, falling ones dashed. Grey lines stand where the mesh frequency is a natural one.
 
@@ -47,7 +47,7 @@ def drive_sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
 
 
 def drive_run_up(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw the greatest mesh force and what bearings, shafts and couplings carry at most in run-up and coast-down.
+    """Draw the maximum mesh force and what bearings, shafts and couplings carry at most in run-up and coast-down.
 
     Run-up full, coast-down dashed. Grey lines stand where the mesh frequency is a natural one.
 
@@ -68,7 +68,7 @@ def drive_run_up(results: xr.Dataset, *, style: Style | None = None) -> Figure:
 
 
 def drive_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw the greatest force of a bearing and the greatest torque of a shaft over the speed, at each torque.
+    """Draw the maximum force of a bearing and the maximum torque of a shaft over the speed, at each torque.
 
     Of the sweeps up and down the greater. Grey lines stand where the mesh frequency is a natural one at the scene's
     torque.

@@ -33,7 +33,7 @@ FILMS = ("line_load", "minimum_thickness")
 """Figures of the cells' films that are painted."""
 
 TIMES_LEAST = 1.5
-"""How many times the least film colours tell apart."""
+"""How many times the minimum film colours resolve."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class FlankMap:
 
     @classmethod
     def of(cls, travel: Reading, face: Reading, values: Reading) -> FlankMap:
-        """Gather pairs at all positions by where they touch; the greatest where several teeth come by.
+        """Gather pairs at all positions by where they touch; the largest where several teeth come by.
 
         Parameters
         ----------
@@ -126,9 +126,9 @@ def flank_map(results: xr.Dataset, *, prefix: str = "dry_face", style: Style | N
 
 
 def film_map(results: xr.Dataset, *, prefix: str = "film_face", style: Style | None = None) -> Figure:
-    """Draw least film and Hertz pressure with films over path and face.
+    """Draw minimum film and Hertz pressure with films over path and face.
 
-    Films of cells that bear little are many times as thick: colours end half as thick again as the least.
+    Films of cells that bear little are many times as thick: colours end half as thick again as the smallest.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ def face_loads(found: fem.FaceLoads) -> Figure:
 
 
 def face_films(found: coupling.FaceFilms) -> Figure:
-    """Draw line load and least film over path and face."""
+    """Draw line load and minimum film over path and face."""
     span = _thin(read_figure(found, "minimum_thickness"))
     with sheet(None, len(FILMS), height=2.3 * len(FILMS), legend=0) as (drawn, panels):
         _painted(panels, found, FILMS, {"minimum_thickness": span})
@@ -238,7 +238,7 @@ def _by_models(face: Reading, load: Reading, labels: tuple[str, ...], style: Sty
 
 
 def _thin(film: Reading) -> tuple[float, float]:
-    """Span of the films that count: from the least to some times as much, if there are any so thick."""
+    """Span of the films that count: from the smallest to some times as much, if there are any so thick."""
     least, most = float(np.nanmin(film.values)), float(np.nanmax(film.values))
     return least, min(TIMES_LEAST * least, most)
 

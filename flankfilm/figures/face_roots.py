@@ -1,4 +1,4 @@
-"""Root stress over the face: greatest tension of a passing tooth over its way and the face, and over a whole cycle."""
+"""Root stress over the face: maximum tension of a passing tooth over its way and the face, and over a whole cycle."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 NEEDED = 'run a scene that wants "root-stress" and whose pair has a lead or an alignment'
 
 FEW = 0.2
-"""Part of the greatest tension below which an instant of a tooth is left out at both ends of its way."""
+"""Part of the maximum tension below which an instant of a tooth is left out at both ends of its way."""
 
 SHOWN = ("travel", "face_position", "tension", "cycle_tension")
 
 
 def root_face_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw the greatest tension at the roots over the way of a tooth and the face, and that of a cycle over the face.
+    """Draw the maximum tension at the roots over the way of a tooth and the face, and that of a cycle over the face.
 
     Parameters
     ----------
@@ -42,14 +42,14 @@ def root_face_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
             travel, face, tension, most = (read(results, name) for name in names[gear])
             _paint(axes, gear, travel, face, tension)
             panels[2].plot(face.values, most.values, color=colour, label=gear)
-        panels[2].set(xlabel="place on the face [mm]", ylabel=f"greatest of a\ncycle [{most.unit}]")
+        panels[2].set(xlabel="place on the face [mm]", ylabel=f"maximum of a\ncycle [{most.unit}]")
         from_zero(panels[2])
         legend_over(panels[2], 2)
     return drawn
 
 
 def face_root_stress(found: FaceRootStress) -> Figure:
-    """Draw one gear's greatest tension over the way of a tooth and the face, and that of a cycle over the face."""
+    """Draw one gear's maximum tension over the way of a tooth and the face, and that of a cycle over the face."""
     travel, face, tension, most = (read_figure(found, name) for name in SHOWN)
     with sheet(None, 2, height=4.6, legend=0, sharex=False) as (drawn, panels):
         _paint(panels[0], "root", travel, face, tension)

@@ -58,7 +58,7 @@ def losses_along_path(results: xr.Dataset, *, style: Style | None = None) -> Fig
 
 
 def temperatures_along_path(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw by what oil and flanks are warmer in each contact, and the film with and without heat below.
+    """Draw the rise of oil and flanks in each contact, and the film with and without heat below.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def temperatures_along_path(results: xr.Dataset, *, style: Style | None = None) 
     """
     need(results, LOSSES, "losses_path_rho1", "path_point_rho1")
     at, flanks = travel(results, "losses_path_rho1"), read(results, "losses_path_surface_temperature_rise")
-    rises = {"oil, greatest": read(results, "losses_path_oil_temperature_rise")}
+    rises = {"oil, maximum": read(results, "losses_path_oil_temperature_rise")}
     rises |= {
         f"flank of the {gear}": Reading(flanks.values[k], flanks.meaning, flanks.unit)
         for k, gear in enumerate(GEARS)
@@ -77,7 +77,7 @@ def temperatures_along_path(results: xr.Dataset, *, style: Style | None = None) 
     rises[BLOK] = read(results, "losses_path_flash_temperature")
     with sheet(style, 2, height=4.8, height_ratios=(3, 2), legend=2) as (drawn, (upper, lower)):
         curves(upper, at, rises, "rise above the bulk temperature")
-        films = {"least film with heat": (at, read(results, "losses_path_minimum_thickness"))}
+        films = {"minimum film with heat": (at, read(results, "losses_path_minimum_thickness"))}
         if "film_minimum_thickness" in results:
             isothermal = read(results, "film_minimum_thickness")
             films["isothermal"] = travel(results, "film_rho1"), isothermal
@@ -85,7 +85,7 @@ def temperatures_along_path(results: xr.Dataset, *, style: Style | None = None) 
             films.items(), colours(6)[4:], ("-", "--"), strict=False
         ):
             lower.plot(places, film.values, color=colour, linestyle=dash, label=label)
-            lower.set(ylabel=film.named("least film"))
+            lower.set(ylabel=film.named("minimum film"))
         from_zero(upper, lower)
         over_path(results, upper, lower)
         if len(films) > 1:
@@ -122,7 +122,7 @@ def temperature_field(results: xr.Dataset, *, style: Style | None = None) -> Fig
 
 
 def _pressure_beside(axes: Axes, x: Array, pressure: Reading) -> None:
-    """Draw the pressure on an axis of its own at the right."""
+    """Draw the pressure on a separate axis at the right."""
     other = axes.twinx()
     other.grid(visible=False)
     other.spines["right"].set_visible(True)

@@ -113,7 +113,7 @@ def portraits(results: xr.Dataset, *, style: Style | None = None) -> Figure:
 
 
 def resonance(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw greatest force, time without contact and vibration of the sweeps up and down over the speed.
+    """Draw maximum force, time without contact and vibration of the sweeps up and down over the speed.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def resonance(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     length, force, at = scale(results, "length"), scale(results, "force"), over_speed(results, "sweep")
     shown = {"force_factor": force, "separated": None, "spread": length}
     labels = {
-        "force_factor": "greatest force" if force.unit == "N" else "greatest force\nover mean",
+        "force_factor": "maximum force" if force.unit == "N" else "maximum force\nover mean",
         "separated": "time without\ncontact",
         "spread": "displacement,\nroot mean square",
     }
@@ -234,7 +234,7 @@ def _forces(axes: Axes, results: xr.Dataset) -> None:
     axes.set(ylabel=factor.label)
     mean = scale(results, "force")
     if mean.unit == "N":
-        beside(axes, 1.0 / float(mean.values), mean.named("greatest force"))
+        beside(axes, 1.0 / float(mean.values), mean.named("maximum force"))
     legend_over(axes, 2)
 
 

@@ -116,7 +116,7 @@ def multi_sweep(found: dynamics.MultiSweep) -> Figure:
 
 
 def basins(found: dynamics.BasinResult) -> Figure:
-    """Colour the starting states by the attractor that they come to; white where they come to none."""
+    """Colour the starting states by the attractor that they reach; white where they reach none."""
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
@@ -171,14 +171,14 @@ def locus(found: Any) -> Figure:
 
 
 def speed_sweep(found: SpeedSweep) -> Figure:
-    """Draw greatest force and time without contact over the speed, up and down."""
+    """Draw maximum force and time without contact over the speed, up and down."""
     x = read_figure(found, "frequency" if found.speed is None else "speed")
     with sheet(None, 2, height=4.4) as (drawn, panels):
         for axes, name, scale, label in zip(
             panels,
             ("force_factor", "separated"),
             (1.0, 100.0),
-            ("greatest over mean force [-]", "time without contact [%]"),
+            ("maximum over mean force [-]", "time without contact [%]"),
             strict=True,
         ):
             for (way, values), colour, dash in zip(

@@ -53,9 +53,9 @@ WORDS = {
     "rho1": "radius of the pinion's flank",
     "rho2": "radius of the wheel's flank",
     "central": "central film",
-    "least": "least film",
+    "least": "minimum film",
     "steady_central": "central film, steady",
-    "steady_least": "least film, steady",
+    "steady_least": "minimum film, steady",
 }
 """Names of curves that are not their field's."""
 
@@ -124,7 +124,7 @@ def losses_along_path(found: LossesAlongPath) -> Figure:
         pressed.plot(x.values, times, color=colours(1)[0])
         pressed.set_ylabel("pressure times\nsliding [MPa m/s]")
         if found.film_ratio is None:
-            _curve(film, x, read_figure(found, "minimum_thickness"), "least film [µm]")
+            _curve(film, x, read_figure(found, "minimum_thickness"), "minimum film [µm]")
         else:
             _curve(film, x, read_figure(found, "film_ratio"), "film ratio Λ [-]")
         from_zero(*panels)
@@ -202,7 +202,7 @@ def film_response(found: FilmResponse) -> Figure:
 
 
 def root_stress(found: RootStress) -> Figure:
-    """Follow one tooth of each gear through its mesh: greatest tension and least stress of its fillets."""
+    """Follow one tooth of each gear through its mesh: maximum tension and minimum stress of its fillets."""
     with sheet(None, 2, height=4.6) as (drawn, panels):
         for axes, gear, name in zip(panels, (found.pinion, found.wheel), ("pinion", "wheel"), strict=True):
             order = np.argsort(gear.tooth_position, axis=None, kind="stable")
@@ -210,7 +210,7 @@ def root_stress(found: RootStress) -> Figure:
             for stress, colour, label in zip(
                 (gear.tension_Pa, gear.compression_Pa),
                 colours(2),
-                ("greatest, under the loaded flank", "least, on the other side"),
+                ("maximum, under the loaded flank", "minimum, on the other side"),
                 strict=True,
             ):
                 axes.plot(at, 1e-6 * stress.ravel()[order], color=colour, label=label)

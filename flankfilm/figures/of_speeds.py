@@ -55,12 +55,12 @@ def _lines(order: Array, displacement: Array, force: Array, across: str, forces:
 
 
 def run_up(found: dynamics.RunUp) -> Figure:
-    """Draw root mean square, peak and greatest force over the frequency."""
+    """Draw root mean square, peak and maximum force over the frequency."""
     with sheet(None, 3, height=5.0, legend=0) as (drawn, panels):
         for axes, values, label in zip(
             panels,
             (found.rms, found.peak, found.force_peak),
-            ("X, root mean\nsquare [-]", "greatest X [-]", "greatest mesh\nforce [-]"),
+            ("X, root mean\nsquare [-]", "maximum X [-]", "maximum mesh\nforce [-]"),
             strict=True,
         ):
             axes.plot(found.frequency, values, color=colours(1)[0])
@@ -70,12 +70,12 @@ def run_up(found: dynamics.RunUp) -> Figure:
 
 
 def speed_run_up(found: SpeedRunUp) -> Figure:
-    """Draw greatest force and vibration over the speed, up and down."""
+    """Draw maximum force and vibration over the speed, up and down."""
     with sheet(None, 2, height=4.2, legend=2) as (drawn, panels):
         for axes, figure, label in zip(
             panels,
             (found.force_factor, found.spread),
-            ("greatest force\nover mean [-]", "displacement, root\nmean square [-]"),
+            ("maximum force\nover mean [-]", "displacement, root\nmean square [-]"),
             strict=True,
         ):
             for way, colour, dash in zip(("up", "down"), colours(2), ("-", "--"), strict=True):

@@ -1,4 +1,4 @@
-"""Draws the loaded teeth with VTK, in a process of its own: ``python -m flankfilm.figures.rendering``.
+"""Draws the loaded teeth with VTK, in a separate process: ``python -m flankfilm.figures.rendering``.
 
 A machine without OpenGL ends the process that draws, with a signal rather than an exception; `animation` starts
 this one, and reports what happened to it.

@@ -24,7 +24,7 @@ DECADES = 3.0
 
 
 def run_up(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw greatest force, vibration and time without contact over the speed, up and down.
+    """Draw maximum force, vibration and time without contact over the speed, up and down.
 
     Parameters
     ----------
@@ -36,8 +36,8 @@ def run_up(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     need(results, RUN_UP, "run_up_force_factor_up", "run_up_spread_up")
     force, length = scale(results, "force"), scale(results, "length")
     shown = (
-        ("force_factor", force, "greatest force" if force.unit == "N" else "greatest force\nover mean"),
-        ("peak", length, "greatest\ndisplacement"),
+        ("force_factor", force, "maximum force" if force.unit == "N" else "maximum force\nover mean"),
+        ("peak", length, "maximum\ndisplacement"),
         ("spread", length, "displacement,\nroot mean square"),
         ("separated", None, "time without\ncontact"),
     )

@@ -103,6 +103,6 @@ def bar_of(view: View, title: str, colour: str) -> dict[str, Any]:
 
 
 def note_scale(plotter: Any, view: View, colour: str) -> None:
-    """Note by what displacements are exaggerated."""
+    """Note the factor of the displacements."""
     text, corner = f"displacements x {view.scale:g}", (view.size[1] // 40, view.size[1] - view.size[1] // 15)
     plotter.add_text(text, position=corner, font_size=view.size[1] // 56, color=colour, name="scale")

@@ -1,1 +1,1 @@
-"""Looks for the best of a scene's keys within bounds: one figure least, or several traded off."""
+"""Looks for the best of a scene's keys within bounds: one figure minimised, or several traded off."""

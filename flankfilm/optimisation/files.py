@@ -33,7 +33,7 @@ def summary(found: Optimum) -> list[str]:
             f"{100 * abs(saved):.0f} % {'less' if saved >= 0 else 'more'} in all than with every point at the second"
         )
     if len(found.best) > 1:
-        lines.append(f"{len(found.best)} points on the front, from the least {task.objectives[0]}:")
+        lines.append(f"{len(found.best)} points on the front, from the minimum {task.objectives[0]}:")
     for place in found.best[:10]:
         point = found.evaluations[place]
         keys = ", ".join(f"{k} = {v:.6g}" for k, v in zip(task.keys, point.values, strict=True))

@@ -107,7 +107,7 @@ class Optimum:
         return self.error_of(self.task.objectives[0], self.evaluations[self.best[0]].result)
 
     def error_of(self, objective: str, result: RowResult) -> float:
-        """Relative error of an objective at a point; the scene's tolerance where the point has none of its own."""
+        """Relative error of an objective at a point; the scene's tolerance where the point has none."""
         return error_of(self.task, objective, result)
 
     @property
@@ -143,7 +143,7 @@ class Optimum:
 
     @property
     def tied(self) -> NDArray[np.intp]:
-        """Evaluations that cannot be told from the best by more than the objectives' errors, the best included."""
+        """Evaluations that differ from the best by no more than the objectives' errors, the best included."""
         objectives, allowed = self._judged()
         found = np.zeros(len(self.evaluations), dtype=bool)
         for place in self.best:
@@ -154,7 +154,7 @@ class Optimum:
         return np.flatnonzero(found & allowed)
 
     def tied_ranges(self) -> dict[str, tuple[float, float]]:
-        """Least and greatest value of every varied key among the designs that tie."""
+        """Minimum and maximum value of every varied key among the designs that tie."""
         values = np.array([self.evaluations[i].values[: len(self.task.asked.vary)] for i in self.tied])
         ends = zip(values.min(axis=0).tolist(), values.max(axis=0).tolist(), strict=True)
         return dict(zip(self.task.asked.vary, ends, strict=True))

@@ -31,7 +31,7 @@ MARGIN = 1e-5
 
 
 class Evaluate(Protocol):
-    """Gives what a search wants to know of points of the unit cube."""
+    """Gives what a search needs of points of the unit cube."""
 
     def __call__(self, units: Array, tolerance: float, /) -> tuple[Array, Array]:
         """Objectives (points, m) and limits (points, k; allowed where <= 0) at a tolerance."""

@@ -1,4 +1,4 @@
-"""The optimisation file: a scene, the keys that may change and their bounds, what is wanted least, and limits."""
+"""The optimisation file: a scene, the keys that may change and their bounds, the outputs to minimise, and limits."""
 
 from __future__ import annotations
 
@@ -56,10 +56,10 @@ class OptimisationFile(RowsFile):
     start: ClassVar[str] = "start from the optimisation in docs/howto/optimise.md"
 
     minimise: Annotated[tuple[str, ...], Field(strict=False, max_length=5)] = Field(
-        default=(), description="outputs wanted least; with several in all, their trade-off is sought"
+        default=(), description="outputs to minimise; with several in all, their trade-off is sought"
     )
     maximise: Annotated[tuple[str, ...], Field(strict=False, max_length=5)] = Field(
-        default=(), description="outputs wanted greatest"
+        default=(), description="outputs to maximise"
     )
     evaluations: int = Field(default=300, ge=16, le=1_000_000, description="scenes computed at most")
     population: int = Field(
@@ -77,7 +77,7 @@ class OptimisationFile(RowsFile):
         if not self.minimise and not self.maximise:
             raise refused("needs an output", 'such as ["transmission_error_um"]', where="minimise")
         if both := set(self.minimise) & set(self.maximise):
-            allowed = "is to be least and greatest at once"
+            allowed = "is to be minimised and maximised at once"
             raise refused(allowed, "take it out of one", where="maximise", value=", ".join(sorted(both)))
         return self
 

@@ -43,7 +43,7 @@ def error_said(objective: str, found: Optimum) -> str:
 
 
 def tied(found: Optimum) -> str:
-    """How many designs cannot be told from the best, and where they lie."""
+    """How many designs cannot be distinguished from the best, and where they lie."""
     best, every = len(found.best), len(found.tied)
     errors = " and ".join(dict.fromkeys(error_said(name, found) for name in found.task.objectives))
     whose = "the best" if best == 1 else "the front"
@@ -51,9 +51,9 @@ def tied(found: Optimum) -> str:
         return f"no other design that was computed ties with {whose}, within {errors}"
     ranges = ", ".join(_range(key, *ends) for key, ends in found.tied_ranges().items())
     if best == 1:
-        return f"{counted(every, 'design')} tie, told apart by no more than {errors}: {ranges}"
+        return f"{counted(every, 'design')} tie, they differ by no more than {errors}: {ranges}"
     off = counted(every - best, "design")
-    return f"{off} off the front, told apart from it by no more than {errors}; with it: {ranges}"
+    return f"{off} off the front, which differ from it by no more than {errors}; with it: {ranges}"
 
 
 def _range(key: str, low: float, high: float) -> str:

@@ -29,8 +29,8 @@ COLUMNS: Mapping[str, tuple[str, str]] = {
     "kind": ("U16", "kind of special point"),
     "motion": ("U24", "motion n-p-q"),
     "frequency": ("f8", "mesh frequency over natural frequency"),
-    "from_frequency": ("f8", "least mesh frequency over natural frequency"),
-    "to_frequency": ("f8", "greatest mesh frequency over natural frequency"),
+    "from_frequency": ("f8", "lowest mesh frequency over natural frequency"),
+    "to_frequency": ("f8", "highest mesh frequency over natural frequency"),
     "displacement": ("f8", "displacement at tau = 0"),
     "velocity": ("f8", "velocity at tau = 0"),
     "stable": ("i8", "1 where stable"),
@@ -41,7 +41,7 @@ COLUMNS: Mapping[str, tuple[str, str]] = {
     "width": ("f8", "relative distance to the next fold of the same branch"),
     "error": ("f8", "relative error of the jump's speed; infinite where it is unknown"),
     **{f"error_by_{source}": ("f8", f"part of the relative error: {source}") for source in SOURCES},
-    "factor": ("f8", "greatest force over mean force"),
+    "factor": ("f8", "maximum force over mean force"),
     "factor_iso6336": ("f8", "K_v after ISO 6336-1, method B"),
 }
 """Type and meaning of the columns; all numbers are pure."""
@@ -52,7 +52,7 @@ REASONS: Mapping[str, str] = {
     "longer_frequency": LONGER,
     "factor_iso6336": STANDARD,
 }
-"""Why columns have no error of their own, where their table's reason is another one."""
+"""Why columns have no separate error, where their table's reason is another one."""
 
 
 def branch_tables(found: SpeedDiagram) -> list[xr.Dataset]:
@@ -130,14 +130,14 @@ def _truncated(found: SpeedDiagram) -> list[xr.Dataset]:
         figure_of(
             "greatest_force",
             "1",
-            "greatest force of a stable motion over the mean force",
+            "maximum force of a stable motion over the mean force",
             "",
             found.greatest_force,
         ),
         figure_of(
             "greatest_force_error",
             "1",
-            "relative change of the greatest force by the longer series; infinite where it is unknown",
+            "relative change of the maximum force by the longer series; infinite where it is unknown",
             "",
             found.truncation["greatest_force"],
             no_error=ITSELF,

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["fillet_stress", "passage"]
 
-FLAT = "not estimated: where the stress is greatest it is flat"
+FLAT = "not estimated: where the stress is largest it is flat"
 
 TANGENT = "angle of the fillet's tangent to the tooth's centre line"
 
@@ -35,7 +35,7 @@ def passage(gear: GearRootStress) -> tuple[Quantity, ...]:
 
     travel = gear.tooth_position.ravel()[order]
     tension = "largest principal stress along the fillet under the loaded flank"
-    compression = "least principal stress along the other fillet"
+    compression = "minimum principal stress along the other fillet"
     return (
         figure_of(
             "travel",
@@ -55,9 +55,9 @@ def fillet_stress(gear: GearRootStress) -> tuple[Quantity, ...]:
     amplitude, mean = gear.fatigue()
     loaded, other = "stress under the loaded flank", "stress on the other side"
     stresses = {
-        "loaded_side": (f"{loaded} at the instant of the greatest tension", gear.greatest_tension.along_Pa),
+        "loaded_side": (f"{loaded} at the instant of the maximum tension", gear.greatest_tension.along_Pa),
         "other_side": (
-            f"{other} at the instant of the greatest compression",
+            f"{other} at the instant of the maximum compression",
             gear.greatest_compression.along_Pa,
         ),
         "loaded_side_amplitude": (f"amplitude of the {loaded} over a passage", amplitude[0]),

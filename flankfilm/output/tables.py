@@ -90,7 +90,7 @@ def _aside(dim: str, prefix: str) -> bool:
 
 
 def _entry(data: xr.Dataset, dim: str, place: int, prefix: str) -> str:
-    """What tells an entry of an axis from the others: its name where it has one, else its place."""
+    """What distinguishes an entry of an axis from the others: its name where it has one, else its place."""
     if dim in COMMON:
         return COMMON[dim][place]
     names = f"{dim}s"

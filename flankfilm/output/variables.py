@@ -122,7 +122,7 @@ def figure_of(
 
 
 def of_list(prefix: str, axis: str, records: Sequence[object]) -> xr.Dataset:
-    """Variables of single numbers of equal records, one entry a record, along an axis of their own.
+    """Variables of single numbers of equal records, one entry a record, along a separate axis.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 The error of the mean stiffness is at most the sum of what the models' simplifications change and of what meshes,
 positions, films and a cut series leave. Each pair of a stiffness and a film model leaves another part of the
-tolerance to the stages it has, which split it for the least cost (`flankfilm.coupling.tolerance`); the
+tolerance to the stages it has, which split it for the lowest cost (`flankfilm.coupling.tolerance`); the
 cheapest pair is taken.
 """
 

@@ -68,7 +68,7 @@ def films(scene: Scene, foreseen: Callable[[], FilmChange | None]) -> Options:
 
 
 def _solved(change: float = ASSUMED_CHANGE, tolerance: float = 1.0) -> Option:
-    """Films solved: their relative error, at most `tolerance`, counts by what they change of the stiffness."""
+    """Films solved: their relative error, at most `tolerance`, counts by their change of the stiffness."""
     change = max(change, LEAST_CHANGE)
     return Option("ehl", 0.0, (film_law_of_cost(change, tolerance),), change=change)
 

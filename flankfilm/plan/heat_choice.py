@@ -41,11 +41,11 @@ def heat_choice(scene: Scene, solved: bool, screen: Callable[[float], HeatScreen
     try:
         found = screen(max(0.5 * scene.tolerance, COARSEST))
     except SolverError as fault:
-        return Decision(
-            SUBJECT, "off", False, f"not weighed; the film with heat that would tell has none: {fault}"
-        )
+        return Decision(SUBJECT, "off", False, f"not weighed; the film with heat has no solution: {fault}")
     change, limit = found.change, scene.tolerance
-    where = f"{signed(change)} of the least film at rho1 = {1e3 * found.rho1:.4g} mm, where most power slides"
+    where = (
+        f"{signed(change)} of the minimum film at rho1 = {1e3 * found.rho1:.4g} mm, where most power slides"
+    )
     if abs(change) > limit:
         why = f"{where}, above the tolerance of {per_cent(limit)}: with heat"
         return Decision(SUBJECT, "on", False, why, abs(change), limit)

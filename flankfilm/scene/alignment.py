@@ -53,7 +53,7 @@ class AlignmentSection(Section):
         such_as=0,
     )
     in_plane_tolerance_um: float = key(
-        "by what in_plane_um may be more or less, of the output robust_face_load_factor of studies and optimisations",
+        "how much in_plane_um may be more or less, for the output robust_face_load_factor of studies and optimisations",
         0.0,
         of=None,
         limit=TOLERANCE,

@@ -33,7 +33,7 @@ OSCILLATOR = (
     "error_amplitude_um",
     "length_scale_um",
 )
-"""Keys that the oscillator takes as they are, in SI; amplitudes and phases of an error are lists."""
+"""Keys that the oscillator takes unchanged, in SI; amplitudes and phases of an error are lists."""
 
 _NUMBER = Limit(0.0, 1e6)
 """Of a dimensionless quantity, to catch a number with a unit."""
@@ -140,7 +140,7 @@ class DynamicsSection(Section):
         "force over deflection, or the slope for small vibration", "secant", shown=True
     )
     stiffness_reference: Literal["body", "bore", "teeth"] | None = key(
-        "what the deflection by finite elements is measured against: the turn of the bodies, whose inertia "
+        "what the deflection by finite elements is measured against: the rotation of the bodies, whose inertia "
         "balances the torque, of the bores, or of the root circles; body if left out",
         None,
         such_as="bore",
@@ -213,7 +213,7 @@ class DynamicsSection(Section):
 
     @property
     def known_damping(self) -> float:
-        """Greatest damping ratio before anything is computed: 0 for films', too small to decide steps of time."""
+        """Maximum damping ratio before anything is computed: 0 for films', too small to decide steps of time."""
         pressed = 0.0 if isinstance(self.damping_ratio, str) else self.damping_ratio
         return max(pressed, self.free_damping_ratio or 0.0)
 
@@ -229,7 +229,7 @@ class DynamicsSection(Section):
             if given := self.given("error_amplitude", "error_amplitude_um"):
                 raise refused(f"must not have {given[0]} beside error_curve; leave one of them out")
             if any(self.error_phase_deg):
-                raise refused("must not have error_phase_deg beside error_curve, which has phases of its own")
+                raise refused("must not have error_phase_deg beside error_curve, which has separate phases")
         elif len(self.error_phase_deg) != len(amplitudes) and self.error_phase_deg != (0.0,):
             counts = f"{len(amplitudes)} and {len(self.error_phase_deg)}"
             raise refused(f"must have as many error_phase_deg as amplitudes of the error, not {counts}")

@@ -114,7 +114,7 @@ class LubricantSection(Section):
         such_as=5,
     )
     limiting_shear_ratio: float | None = key(
-        "greatest mean shear stress over the pressure, in films with heat; if left out typical of the base of a graded "
+        "maximum mean shear stress over the pressure, in films with heat; if left out typical of the base of a graded "
         "oil, else none",
         None,
         such_as=0.047,

@@ -19,7 +19,7 @@ FILES = {
     ("deviations", "map"): ("material_um", POSITIONS),
     ("wear",): ("depth_um", POSITIONS),
 }
-"""Tables of a gear that may name a file, what its values are, and by what they may be placed."""
+"""Tables of a gear that may name a file, what its values are, and how they may be placed."""
 
 
 CURVES = ("teeth", *POSITIONS, *PLACES, *dict.fromkeys(name for name, _ in FILES.values()), *POINTS)

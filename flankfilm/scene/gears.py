@@ -192,7 +192,7 @@ class PairSection(Section):
     module_mm: float = key("module of both gears", example=2.0)
     face_width_mm: float = key("width of the teeth in contact", example=40.0)
     rack: Literal["ISO 53 A", "ISO 53 B", "ISO 53 C", "ISO 53 D"] | RackSection = key(
-        "basic rack of both gears, or a table of its own dimensions", "ISO 53 A", of=None, shown=True
+        "basic rack of both gears, or a table of its dimensions", "ISO 53 A", of=None, shown=True
     )
     tool: ToolSection | None = key(
         "tool that cuts both gears, in place of the rack's dedendum and fillet radius", None

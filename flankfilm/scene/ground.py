@@ -15,7 +15,7 @@ __all__ = ["in_keys", "under_keys"]
 
 _NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 _LENGTH = Key("", unit="mm", scale=1e-3)
-"""How lengths are shown that have no key of their own."""
+"""How lengths are shown that have no key."""
 
 
 @contextmanager

@@ -111,7 +111,7 @@ class Key:
 
     @property
     def remark(self) -> str:
-        """The note as it stands behind bounds."""
+        """The note as it follows bounds."""
         return f" ({self.note})" if self.note else ""
 
 

@@ -13,7 +13,7 @@ BY_FINITE_ELEMENTS = {"vtk", "root-stress", "torques", "revolution"}
 """Wants that need the loaded contact by finite elements."""
 
 RANGED = ("sweep", "diagram", "run-up")
-"""Wants of motions over a range, which is a key of its own in [dynamics]."""
+"""Wants of motions over a range, which is a separate key in [dynamics]."""
 
 MOTIONS = (*RANGED, "spectrum", "dynamic-map")
 """Wants that need the oscillator."""
@@ -92,7 +92,7 @@ def _needed_sections(raw: Raw, listed: set[str]) -> Iterator[tuple[str, str]]:
 
 
 def _missing_keys(raw: Raw, listed: set[str]) -> Iterator[Fault]:
-    """Keys of sections that are there, needed by what is wanted."""
+    """Keys of sections that are there, needed by the wants."""
     operating, dynamics, stiffness = (_table(raw, n) for n in ("operating", "dynamics", "stiffness"))
     chosen = "film" in raw and _table(raw, "film").get("model", "auto") != "none"
     damped = bool(listed & set(MOTIONS)) and dynamics.get("damping_ratio") == "film"

@@ -14,7 +14,7 @@ from flankfilm.scene.section import Limits, Section, refused
 TORQUE = Limit(-1e9, 1e9, "N m")
 
 LEAST = 1e-9
-"""Least torque of either sign [N m]."""
+"""Minimum torque of either sign [N m]."""
 
 AMPLITUDE = Limit(-1000.0, 1000.0)
 """Of a given stiffness over its mean: no mesh has 1, and no motion is followed with a million."""
@@ -73,7 +73,7 @@ class StiffnessSection(Section):
     """Where the mesh stiffness comes from."""
 
     model: Literal["fem", "ishikawa", "weber-banaschek", "potential-energy", "given", "auto"] = key(
-        "finite elements, a closed form, a series of its own, or the cheapest within the tolerance",
+        "finite elements, a closed form, a given series, or the cheapest within the tolerance",
         "fem",
         shown=True,
     )

@@ -195,7 +195,7 @@ class ShaftsSection(Section):
         min_length=1,
     )
     damping_band: Band = key(
-        "least and greatest damping of shafts and bearings that is likely, over the given one: counts in the error "
+        "minimum and maximum damping of shafts and bearings that is likely, over the given one: counts in the error "
         "of peaks",
         DAMPING_BAND,
     )
@@ -238,7 +238,7 @@ class ShaftsSection(Section):
         if not low <= 1.0 <= high:
             raise refused(
                 "must hold 1, the damping that is given",
-                "Give the least and the greatest, 0.5 and 2",
+                "Give the smallest and the largest, 0.5 and 2",
                 where="damping_band",
                 value=f"{low:g} to {high:g}",
             )

@@ -93,7 +93,7 @@ def stage(
 
 @dataclass(frozen=True)
 class StageRun:
-    """How a stage came to its result.
+    """How a stage got its result.
 
     Attributes
     ----------

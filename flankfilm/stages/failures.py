@@ -54,7 +54,7 @@ def failure_of(name: str, title: str, error: PartError, known: Mapping[str, Fail
 
 
 def lines(failures: Iterable[Failure]) -> list[str]:
-    """A line for each part that failed by itself, each followed by what needs it."""
+    """A line for each part that failed by itself, each followed by the parts that need it."""
     known = list(failures)
     found = []
     for first in (one for one in known if not one.because):

@@ -59,7 +59,7 @@ def _series(run: Engine) -> coupling.MeshSeries:
     settings=lambda run: {"tolerance": run.scene.tolerance} if by_jumps(run) else {},
 )
 def BRANCHES(run: Engine) -> coupling.OrderedJumps:
-    """Branches with the least order of the series that the jump speeds allow, for an order to be found."""
+    """Branches with the lowest order of the series that the jump speeds allow, for an order to be found."""
     asked = required(dynamics_of(run).diagram, "dynamics.diagram", "the diagram", "add the range")
     return coupling.jumps_to_tolerance(
         lambda series: _oscillator(run, series), run[CURVE_SERIES], run.scene.tolerance, **ranged(asked)

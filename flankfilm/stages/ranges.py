@@ -37,7 +37,7 @@ def frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, float
 
 
 def speeds_looked_at(run: Engine, series: coupling.MeshSeries, speed: float) -> tuple[float, float] | None:
-    """Least and greatest pinion speed of sweep, diagram, run-up and operation [rad/s]; None without a range."""
+    """Lowest and highest pinion speed of sweep, diagram, run-up and operation [rad/s]; None without a range."""
     section = required(run.scene.dynamics, "[dynamics]", "a range of speed")
     asked = [one for one in (section.sweep, section.diagram, section.run_up) if one is not None]
     if not asked:

@@ -86,7 +86,7 @@ def RUN_UP(run: Engine) -> coupling.SpeedRunUp:
     kept="dynamics flankfilm gears fem meshes ehl",
 )
 def DYNAMIC_MAP(run: Engine) -> coupling.DynamicMap:
-    """Greatest force over the mean one, each torque with its own mesh cycle and the order of the scene's series."""
+    """Maximum force over the mean one, each torque with its own mesh cycle and the order of the scene's series."""
     scene = run.scene
     section = required(scene.dynamics, "[dynamics]", "the dynamic map")
     operating = required(scene.operating, "[operating]", "the dynamic map")

@@ -69,25 +69,25 @@ def _of_root(name: str, about: Figure, value: Take, said: str = EVEN) -> Named:
 
 
 def _of_roots() -> Iterator[Named]:
-    """Place of the greatest tension along the face, and the stress face-load factor, of both gears."""
+    """Place of the maximum tension along the face, and the stress face-load factor, of both gears."""
     for gear in GEARS:
         yield _of_root(
             f"root_face_position_{gear}",
             figures(RootPeak)["face_position"],
             attrgetter(f"stress.{gear}.greatest_tension.face_position"),
-            f"place along the face of the greatest tension at the root of the {gear}; nan where even",
+            f"place along the face of the maximum tension at the root of the {gear}; nan where even",
         )
         yield _of_root(
             f"root_face_factor_{gear}",
             figures(fem.FaceRootStress)["face_factor"],
             attrgetter(f"stress.{gear}.face.face_factor"),
-            f"greatest tension at the root of the {gear} over its mean over the face; nan where even",
+            f"maximum tension at the root of the {gear} over its mean over the face; nan where even",
         )
         yield _of_root(
             f"root_over_even_{gear}",
             figures(fem.FaceRootStress)["over_even"],
             attrgetter(f"stress.{gear}.face.over_even"),
-            f"greatest tension at the root of the {gear} over that of the same forces spread evenly; nan where even",
+            f"maximum tension at the root of the {gear} over that of the same forces spread evenly; nan where even",
         )
     about = figures(Iso6336FaceLoad)["K_Fbeta"]
     yield _of_root("iso_root_face_factor", about, lambda found: found.iso_face and found.iso_face.K_Fbeta)
@@ -104,8 +104,8 @@ def _of_shafts() -> Iterator[Named]:
             return float(np.max(np.abs(values[gear])))
 
         for figure, what in (
-            ("shaft_deflection", "greatest deflection along the line of action of the shaft of the"),
-            ("shaft_misalignment", "greatest misalignment over the face by the shaft of the"),
+            ("shaft_deflection", "maximum deflection along the line of action of the shaft of the"),
+            ("shaft_misalignment", "maximum misalignment over the face by the shaft of the"),
         ):
             yield _of_face(f"{figure}_{name}", figure, at_most, f"{what} {name}; nan where the load is even")
     yield _of_face("mean_tilt_stiffness", "tilt_stiffness", np.mean, STRAIGHT)
@@ -122,7 +122,7 @@ FACE_OUTPUTS: tuple[Named, ...] = (
         "face_pressure",
         "hertz_pressure",
         np.nanmax,
-        "greatest Hertz pressure; nan where even",
+        "maximum Hertz pressure; nan where even",
     ),
     _of_face("contact_pattern", "contact_pattern"),
     _of_face("face_load_factor_error", "error"),
@@ -134,7 +134,7 @@ FACE_OUTPUTS: tuple[Named, ...] = (
     ),
     _over_tolerance(
         "robust_face_load_factor_error",
-        Figure("1", "estimated relative error of the greatest face-load factor over the tolerance"),
+        Figure("1", "estimated relative error of the maximum face-load factor over the tolerance"),
         "error",
     ),
     _by_model(

@@ -38,7 +38,7 @@ def _gears() -> list[Named]:
         ("bulk_temperature", "bulk temperature of the {}'s flanks", "bulk_temperatures"),
         (
             "flank_temperature_rise",
-            "greatest rise of the {}'s flank above its bulk",
+            "maximum rise of the {}'s flank above its bulk",
             "path.surface_temperature_rise",
         ),
     )
@@ -52,7 +52,7 @@ def _gears() -> list[Named]:
 
 
 def _of_gear(figure: str, gear: int) -> Take:
-    """Greatest value of one gear."""
+    """Maximum value of one gear."""
     return lambda found: np.max(attrgetter(figure)(found)[gear])
 
 
@@ -70,10 +70,10 @@ LOSS_OUTPUTS: tuple[Named, ...] = (
     _losses("loss_factor"),
     _path("oil_temperature_rise", np.max, said="{} along the path"),
     _losses("greatest_contact_temperature", name="flank_temperature"),
-    _path("flash_temperature", np.max, said="greatest flash temperature after Blok along the path, a rise"),
+    _path("flash_temperature", np.max, said="maximum flash temperature after Blok along the path, a rise"),
     *_gears(),
     _path("least_film", name="least_film_with_heat", said="{} along the path, with heat and shear thinning"),
-    _path("film_ratio", np.min, "film_ratio_with_heat", "least {} along the path with heat; nan if smooth"),
+    _path("film_ratio", np.min, "film_ratio_with_heat", "minimum {} along the path with heat; nan if smooth"),
     _path("greatest_pressure_times_sliding", name="pressure_times_sliding"),
     _error("losses_error", "estimated relative error of mean friction and losses", attrgetter("error")),
     _error("efficiency_error", "estimated relative error of the mesh's efficiency", attrgetter("loss_error")),

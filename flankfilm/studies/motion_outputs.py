@@ -64,7 +64,7 @@ def _half_mean_error(motion: PairOscillator) -> float | None:
 
 
 def _greatest(values: Mapping[str, Array] | None) -> float | None:
-    """Greatest of both directions of a sweep, of the motions that are known; None without any."""
+    """Largest of both directions of a sweep, of the motions that are known; None without any."""
     known = [one[~np.isnan(one)] for one in (values or {}).values()]
     joined = np.concatenate(known) if known else np.zeros(0)
     return float(joined.max()) if joined.size else None
@@ -99,7 +99,7 @@ def _force_error(found: SpeedSweep | DriveSweep) -> float | None:
 
 
 def _loss_speed(found: SpeedSweep) -> float | None:
-    """Least pinion speed at which contact is lost, by the sweep's own speed over frequency."""
+    """Lowest pinion speed at which contact is lost, by the sweep's own speed over frequency."""
     least = found.least_grazing
     if least is None or found.speed is None:
         return None
@@ -107,7 +107,7 @@ def _loss_speed(found: SpeedSweep) -> float | None:
 
 
 def _first(rising: bool, curve: str) -> Callable[[SpeedDiagram], float | None]:
-    """Figure of the first jump that a rising, or a falling, speed comes to; None where no motion ends."""
+    """Figure of the first jump that a rising, or a falling, speed reaches; None where no motion ends."""
 
     def of(found: SpeedDiagram) -> float | None:
         values = getattr(found, curve)
@@ -157,7 +157,7 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
     ),
     _moved(
         "greatest_force_factor",
-        Figure("1", "greatest force over the mean force, of all motions of the sweep"),
+        Figure("1", "maximum force over the mean force, of all motions of the sweep"),
         lambda found: _greatest(found.force_factor),
     ),
     _moved(
@@ -172,7 +172,7 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
     ),
     _swept(
         "contact_loss_speed",
-        Figure("rad/s", "least pinion speed at which contact is lost; nan where it never is", shown="rpm"),
+        Figure("rad/s", "lowest pinion speed at which contact is lost; nan where it never is", shown="rpm"),
         _loss_speed,
     ),
     _swept(
@@ -229,13 +229,13 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
     ),
     output_of(
         "greatest_run_up_factor",
-        Figure("1", "greatest force over the mean force of run-up and coast-down"),
+        Figure("1", "maximum force over the mean force of run-up and coast-down"),
         "run-up",
         in_result(RUN_UP, lambda found: _greatest(found.force_factor)),
     ),
     output_of(
         "greatest_map_factor",
-        Figure("1", "greatest dynamic factor over speeds and torques"),
+        Figure("1", "maximum dynamic factor over speeds and torques"),
         "dynamic-map",
         in_result(DYNAMIC_MAP, attrgetter("greatest")),
     ),
@@ -253,7 +253,7 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
         "run_up_error",
         Figure(
             "1",
-            "estimated relative error of the greatest forces and torques of the run-up, by steps of the frequency and "
+            "estimated relative error of the maximum forces and torques of the run-up, by steps of the frequency and "
             "by samples",
         ),
         "run-up",
@@ -262,7 +262,7 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
     *_jumps(),
     output_of(
         "greatest_K_v",
-        Figure("1", "greatest dynamic factor K_v by ISO 6336-1, method B, over the diagram's range"),
+        Figure("1", "maximum dynamic factor K_v by ISO 6336-1, method B, over the diagram's range"),
         "diagram",
         in_result(
             DIAGRAM,

@@ -1,6 +1,6 @@
 """What a study can ask of a row: one number each, from the stages that it needs and no others.
 
-An output is a figure of a stage's result, or its least, largest or mean value; unit and meaning are the figure's own.
+An output is a figure of a stage's result, or its minimum, maximum or mean value; unit and meaning are the figure's own.
 """
 
 from __future__ import annotations
@@ -104,9 +104,9 @@ def _of_spike(value: Callable[[Any, Any], float]) -> Take:
 
 
 def _roots() -> Iterator[Named]:
-    """Greatest stresses along the fillets."""
+    """Maximum stresses along the fillets."""
     for gear, kind in product(("pinion", "wheel"), ("tension", "compression")):
-        meaning = f"greatest {kind} along the fillets of the {gear}"
+        meaning = f"maximum {kind} along the fillets of the {gear}"
         about = Figure("Pa", meaning, shown="MPa")
         stress = attrgetter(f"stress.{gear}.greatest_{kind}.stress_Pa")
         yield output_of(f"root_{kind}_{gear}", about, "root-stress", in_result(ROOT_STRESS, stress))
@@ -210,7 +210,7 @@ OUTPUTS: Mapping[str, Output] = dict(
             "{}, sliding of the dry contacts alone",
         ),
         _film("least_film"),
-        _film("central_thickness", np.min, "least_central_film", "least {} along the path"),
+        _film("central_thickness", np.min, "least_central_film", "minimum {} along the path"),
         output_of(
             "film_at_C",
             figures(FilmAlongPath)["central_thickness"],
@@ -244,17 +244,17 @@ OUTPUTS: Mapping[str, Output] = dict(
         ),
         _through(
             "neck_position",
-            Figure("1", "place of the least film at C, in half-widths after the middle"),
+            Figure("1", "place of the minimum film at C, in half-widths after the middle"),
             lambda film: film.minimum_position / film.contact.half_width,
         ),
         _through(
             "neck_depth",
-            Figure("1", "least over central film of the contact at C"),
+            Figure("1", "minimum over central film of the contact at C"),
             lambda film: film.minimum_thickness / film.central_thickness,
         ),
         _film("least_film_ratio", name="film_ratio", said="{}; nan if smooth"),
         _film("asperity_share", np.max, said="largest {} along the path; nan if smooth"),
-        _film("starvation", np.min, said="least {} along the path; nan if flooded"),
+        _film("starvation", np.min, said="minimum {} along the path; nan if flooded"),
         output_of(
             "film_error",
             Figure("1", "largest estimated relative error of the films; nan where unknown"),

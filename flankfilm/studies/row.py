@@ -58,7 +58,7 @@ class RowResult:
 
     @property
     def worth_another_try(self) -> bool:
-        """Whether it failed by what another time, or another machine, may have."""
+        """Whether it failed for want of what another time, or another machine, may have."""
         return self.fault.startswith(NOT_COMPUTED)
 
 

@@ -45,7 +45,7 @@ class Workers:
     def computed(self, rows: Iterable[Row]) -> Iterator[RowResult]:
         """Compute rows, in the order in which they are done.
 
-        Where a process dies, the rows that it may have had are computed again, each in a process of its own;
+        Where a process dies, the rows that it may have had are computed again, each in a separate process;
         one whose process dies again has failed.
         """
         left = list(rows)
@@ -97,7 +97,7 @@ def _result(row: Row, future: Future[RowResult]) -> RowResult:
 
 
 def _alone(row: Row) -> RowResult:
-    """Compute a row in a process of its own."""
+    """Compute a row in a separate process."""
     with executor("processes", 1) as pool:
         try:
             return pool.executor.submit(compute_row, row).result()

@@ -70,7 +70,7 @@ def verify_scene(
 
 
 def unknown_over_face(scene: Scene, pair: gears.GearPair) -> str:
-    """What of the stiffness knows no load that varies along the face; raises other faults of such a face."""
+    """Parts of the stiffness that take no load that varies along the face; raises other faults of such a face."""
     faults = [fault for fault in faults_of_face(scene, pair) if fault.where not in OF_OTHERS]
     unknown = [fault for fault in faults if fault.where.startswith("stiffness.")]
     if len(unknown) < len(faults):

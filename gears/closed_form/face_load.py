@@ -15,7 +15,7 @@ FACE_STIFFNESS = 0.85
 """c_gamma_beta over c_gamma_alpha."""
 
 LEAST_DEPTHS = 3.0
-"""Least face width over tooth depth that enters the exponent of the root stress."""
+"""Smallest face width over tooth depth that enters the exponent of the root stress."""
 
 _LIMITS = {
     "torque": Limit.above(0.0, 1e9, "N m", "give the pinion's torque, dynamic factors in it"),
@@ -27,7 +27,7 @@ _LIMITS = {
 class Iso6336FaceLoad:
     """Face-load factor for pitting after ISO 6336-1."""
 
-    K_Hbeta: float = quantity("1", "face-load factor: greatest over mean line load")
+    K_Hbeta: float = quantity("1", "face-load factor: maximum over mean line load")
     K_Fbeta: float = quantity("1", "face-load factor of the root stress: K_Hbeta to the power N_F")
     N_F: float = quantity("1", "its exponent, by the face width over the tooth depth")
     b_cal: float = quantity(

@@ -1,4 +1,4 @@
-"""Wind-up of a gear's body: the turn of a ring under the torque of its teeth, held at the bore or by its own inertia.
+"""Wind-up of a gear's body: rotation of a ring under the torque of its teeth, held at the bore or by its own inertia.
 
 In a ring the part of the tangential displacement that does not change with the angle knows only the torque that
 crosses each circle, M(r): r dphi/dr = M/(2 pi G b r^2). What the teeth do beyond the root circle, the plane's state

@@ -337,7 +337,7 @@ def test_weak_bearings_let_pressed_gears_part():
 
 def test_whatboth_sides_refuse(tight, loose):
     pair, bodies = tight
-    with pytest.raises(InputError, match="must not be 0 where no flank bears: there is play of 50 um"):
+    with pytest.raises(InputError, match="must not be 0 where no flank bears: there is backlash of 50 um"):
         fem.mesh_cycle(loose[0], 0.0, 4, loose[1])
     cycle = fem.mesh_cycle(pair, 10.0, 4, bodies)
     with pytest.raises(InputError, match="flanks that bear on both sides"):

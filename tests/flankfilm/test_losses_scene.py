@@ -130,7 +130,7 @@ def choice(text: str, change: float = -0.2, solved: bool = True):
 def test_heat_is_weighed_by_the_tolerance():
     on, asked = choice(QUICK)
     assert (on.choice, on.asked, on.effect, on.share) == ("on", False, 0.2, 0.1)
-    assert "-20 % of the least film" in on.line
+    assert "-20 % of the minimum film" in on.line
     assert asked == [0.05]
     off, _ = choice(QUICK, change=-0.06)
     assert (off.choice, off.effect) == ("off", 0.06)

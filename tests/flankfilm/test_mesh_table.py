@@ -46,7 +46,7 @@ def test_the_stiffness_is_measured_against_the_bodies():
     """As discs turn: by finite elements stiffer than against the bores, which wind up."""
     cycle = ff.mesh_cycle(PAIR, 600.0, positions=8, tolerance=0.05)
     table = mesh_table(PAIR, cycle, EXTRA)
-    assert table.reference.startswith("the turn of the bodies")
+    assert table.reference.startswith("the rotation of the bodies")
     assert table.mean_stiffness == pytest.approx(cycle.against("body", EXTRA).mean_stiffness, rel=1e-12)
     assert table.mean_stiffness > 1.05 * cycle.mean_stiffness
     assert table.relative_error == pytest.approx(cycle.against("body", EXTRA).error)

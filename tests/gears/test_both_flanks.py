@@ -121,7 +121,7 @@ def test_a_pair_that_hardly_touches_is_found():
 
 
 def test_without_force_and_with_play_there_is_no_answer():
-    with pytest.raises(LoadSharingError, match="must not be 0 where the gaps leave play"):
+    with pytest.raises(LoadSharingError, match="must not be 0 where the gaps leave backlash"):
         share_between(0.0, 1e-9 * np.eye(2), Nothing(), [1e-6, 1e-6], [1, -1])
 
 
