@@ -36,7 +36,7 @@ REFUSED = {  # pattern: what to write instead
     r"\bthe turn of\b": "rotation",
     r"\bplay\b": "backlash",
 }
-NOT_YET = {ROOT / "CHANGELOG.md", *(ROOT / "flankfilm" / "report").iterdir()}
+NOT_YET = frozenset((ROOT / "flankfilm" / "report").iterdir())
 WORDS = {re.compile(pattern, re.IGNORECASE): instead for pattern, instead in REFUSED.items()}
 NAMES = re.compile(
     r"`[^`]*`|\{[^{}]*\}|^\s*(\w+, )*\w+ : "
