@@ -171,7 +171,7 @@ def drive_flow(oscillator: DriveOscillator) -> DriveFlow:
 
 def tabulated(oscillator: DriveOscillator, cells: int, degree: int = DEGREE) -> DriveFlow:
     """Tables of a drive train, with so many cells per period."""
-    from dynamics.kernels.drives.expanding import tabulate
+    from dynamics.kernels.drives.tabulating import tabulate
 
     at, series = oscillator.coordinates, oscillator.mesh_stiffness
     h = oscillator.period / cells
