@@ -195,14 +195,14 @@ def test_four_freedoms_against_an_integrator(changes):
     "changes",
     [
         {"mean_force": [0.4, 0.0, 0.0, 0.48], "frequency": 0.11},  # never out of contact
-        {"frequency": 0.23},  # impacts in some strides
-        {"frequency": 0.23, "mean_force": [-0.4, 0.0, 0.0, -0.48]},  # on the other flanks
+        {"frequency": 0.23, "half_backlash": 0.05},  # impacts in some strides, on both flanks
+        {"frequency": 0.23, "mean_force": [-0.1, 0.0, 0.0, -0.12]},  # mostly on the other flanks
     ],
 )
 def test_strides_of_many_cells_are_the_cells_one_by_one(changes):
     """A motion that is followed for long takes eight cells at once where no impact can be; derivatives as well."""
-    drive = chain(**changes)
-    start = drive.rest_state() + 0.05 * KICK
+    drive = chain(free_mesh_damping=0.01, **changes)
+    start = drive.rest_state() + (1.0 if drive.frequency > 0.2 else 0.05) * KICK
     cells = drive_flow(drive)
     short = [cells.follow(start)]
     for _ in range(3):
