@@ -17,7 +17,7 @@ from fem.face_setting import FREE_ENDS, face_setting
 from fem.local_law import Film
 from fem.moving_contact import contacts_move
 from fem.pair_compliance import compliance as _compliance
-from fem.references import REFERENCES
+from fem.references import REFERENCES, default_reference
 from fem.setting import Deviations, Setting
 from fem.several_torques import one_or_several
 from fem.sharing import Solution, solve
@@ -46,7 +46,7 @@ def mesh_cycle(
     first_teeth: tuple[int, int] = (0, 0),
     tip_rounding: float | tuple[float, float] = 0.0,
     friction: float = 0.0,
-    reference: str = "bore",
+    reference: str | None = None,
     moving_contact: bool | None = None,
     base_pitch_difference: float = 0.0,
     alignment: Alignment | None = None,
@@ -93,10 +93,11 @@ def mesh_cycle(
         sum F_i (lever_i + mu sign(u1 - u2) arm_i) = torque. Only these lever arms are changed: that teeth
         also yield to the tangential forces is left out, up to 0.35 mu of a pair's deflection at A and E,
         nothing at C.
-    reference : {"bore", "body", "teeth"}
-        What D is measured against: the rotation of what holds the bores, of the bodies weighted by their inertia
-        (what motion needs), or of the root circles (what closed forms describe). No force depends on it
-        (``MeshCycle.against``). A compliance that leaves parts out measures its own way at "bore".
+    reference : {"body", "bore", "teeth"}, optional
+        What D is measured against: the rotation of the bodies weighted by their inertia (what motion needs, and the
+        default), of what holds the bores, or of the root circles (what closed forms describe). No force depends on it
+        (``MeshCycle.against``). A compliance that leaves hubs or coupling out measures its own way at "bore" and
+        where nothing is given.
     moving_contact : bool or None
         Whether contacts on the path move under load (``fem.moving_contact``), to the first order in the
         deflection over the module; a position is then that of the wheel, and the pinion takes up D. Otherwise
@@ -139,7 +140,7 @@ def mesh_cycle(
     >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
     >>> cycle = mesh_cycle(pair, torque=600.0, compliance=compliance(pair, tolerance=0.05))
     >>> round(cycle.mean_stiffness / 40e-3 / 1e9, 1)  # N/(mm um)
-    21.4
+    24.3
     """
     given = Setting(
         pair,
@@ -181,7 +182,8 @@ def mesh_cycle(
         cycle_of(side, bodies, film, tolerance, tables, contact, number, float(torque[k]), cost)
         for k, (side, contact, number) in sorted(found.items())
     )
-    return cycles if reference == "bore" else tuple(cycle.against(reference) for cycle in cycles)
+    named = reference or default_reference(bodies)
+    return cycles if named == "bore" else tuple(cycle.against(named) for cycle in cycles)
 
 
 def _solved(
@@ -198,13 +200,14 @@ def _check(
     given: Setting,
     torque: Array,
     compliance: Compliance | None,
-    reference: str,
+    reference: str | None,
     plane: str,
 ) -> None:
     found = Faults()
     if given.face is not None and (plane if compliance is None else compliance.plane) != "strain":
         found.add("plane", plane, 'must be "strain" where the face has cells', "leave plane out")
-    found.choice("reference", reference, REFERENCES)
+    if reference is not None:
+        found.choice("reference", reference, REFERENCES)
     if not torque.size:
         found.add("torque", "none", "must be at least one", "give torques in N m")
     for one in torque.tolist():

@@ -153,7 +153,7 @@ class MeshCycle(PairFigures, MeshFigures):
     opposite: OppositeFlanks | None = part("flanks on the other side, where they bear as well", default=None)
     face: FaceLoads | None = part("line loads over the face; None where they are even", default=None)
     reference: str = quantity(
-        "", 'what the deflection is measured against: "bore", "body" or "teeth"', default="bore"
+        "", 'what the deflection is measured against: "body", "bore" or "teeth"', default="bore"
     )
     bore_inertia: tuple[float, float] = quantity(
         "kg m2", 'inertia on the bores, for "body"', "gear", default=(0.0, 0.0), no_error=EXACT
@@ -187,8 +187,8 @@ class MeshCycle(PairFigures, MeshFigures):
 
         Parameters
         ----------
-        reference : {"bore", "body", "teeth"}
-            The rotation of what holds the bores, of the bodies weighted by their inertia, or of the root circles.
+        reference : {"body", "bore", "teeth"}
+            The rotation of the bodies weighted by their inertia, of what holds the bores, or of the root circles.
         bore_inertia : (float, float)
             What turns with the bores of pinion and wheel beside their own bodies, for "body" [kg m2].
 
@@ -212,7 +212,9 @@ class MeshCycle(PairFigures, MeshFigures):
         slope = 1.0 - less @ slopes  # dD'/dD
         secant = self.secant_stiffness / slope
         if self.force:
-            secant = self.force / (self.force / self.secant_stiffness - shift)
+            # of pressed flanks it starts where they rest, with moments about the wheel that are not zero
+            since = self.force * (less @ (slopes / slopes[0])) if self.pair.tight else shift
+            secant = self.force / (self.force / self.secant_stiffness - since)
         known = self.__dict__.get("_found")
         measured = replace(
             self,
@@ -230,7 +232,7 @@ class MeshCycle(PairFigures, MeshFigures):
         if known is not None:
             # copies that were pickled have nothing else, and all others need not solve the contact anew
             measured.__dict__["_found"] = (
-                known if isinstance(known, str) else measured_less(known, self.force, less)
+                known if isinstance(known, str) else measured_less(known, self.force, less, self.pair.tight)
             )
         return measured
 
@@ -265,11 +267,17 @@ class MeshCycle(PairFigures, MeshFigures):
     def model_error(self) -> float:
         """Estimated relative error by the model of the contacts, apart from `error`.
 
-        Of transmission error and secant stiffness: large strain, second order, the width of contacts in Hertz's law,
-        and the motion of contacts that stay.
+        Of transmission error and secant stiffness, against `reference`: large strain, second order, the width of
+        contacts in Hertz's law, and the motion of contacts that stay.
         Of the tangent about twice that. Found when it is first asked for.
         """
-        return float("nan") if self.loaded is None else self.loaded.model_error()
+        if self.loaded is None:
+            return float("nan")
+        found, held = self.loaded.model_error(), self.loaded.reference
+        if held in ("", self.reference):
+            return found
+        # of a smaller D the same error is a larger part
+        return found * float(np.max(self.secant_stiffness / self.against(held).secant_stiffness))
 
     @described("m", "position", shown="um", no_error=EXACT)
     def unloaded_transmission_error(self) -> Array:

@@ -192,10 +192,10 @@ class ContactProblem:
             behind[1],
         )
         curves = np.stack([moved, tangent, secant, *moments, *slopes])
-        return curves if self.turn is None else _less(curves, self.force, self.turn)
+        return curves if self.turn is None else _less(curves, self.force, self.turn, self.given.pair.tight)
 
 
-def measured_less(found: MeshArcs, force: float, turn: Array) -> MeshArcs:
+def measured_less(found: MeshArcs, force: float, turn: Array, pressed: bool = False) -> MeshArcs:
     """Arcs with a turn of pinion and wheel per force (2,) [m/N] left out of the deflection (``fem.references``).
 
     Parameters
@@ -205,10 +205,12 @@ def measured_less(found: MeshArcs, force: float, turn: Array) -> MeshArcs:
     force : float
         [N]
     turn : (2,) array
+    pressed : bool
+        Whether the teeth are pressed together without a torque already.
     """
 
     def less(arcs: Arcs) -> Arcs:
-        every = tuple(replace(arc, values=_less(arc.values, force, turn)) for arc in arcs.arcs)
+        every = tuple(replace(arc, values=_less(arc.values, force, turn, pressed)) for arc in arcs.arcs)
         return replace(arcs, arcs=every)
 
     before = None if found.before is None else less(found.before)
@@ -222,12 +224,14 @@ def measured_less(found: MeshArcs, force: float, turn: Array) -> MeshArcs:
     )
 
 
-def _less(curves: Array, force: float, turn: Array) -> Array:
+def _less(curves: Array, force: float, turn: Array, pressed: bool) -> Array:
     """Curves (7, n) with a turn per force left out of the deflection."""
     moved, tangent, secant = curves[:3]
     moments, slopes = curves[3:5], curves[5:]
     shift, slope = force * (turn @ moments), 1.0 - turn @ slopes
-    secant = force / (force / secant - shift) if force else secant / slope
+    # of pressed flanks the secant starts where they rest, with moments about the wheel that are not zero
+    since = force * (turn @ (slopes / slopes[0])) if pressed else shift
+    secant = force / (force / secant - since) if force else secant / slope
     return np.stack([moved - shift, tangent / slope, secant, *moments, *(slopes / slope)])
 
 

@@ -12,6 +12,7 @@ from fem.contact_candidates import REACHES
 from fem.edge_tables import EdgeTables
 from fem.loaded_flanks import loaded_flanks
 from fem.moving_contact import ContactMoves, contact_moves, model_error
+from fem.references import held_turns
 from fem.sharing import one_sided, solve
 
 if TYPE_CHECKING:
@@ -48,6 +49,11 @@ class LoadedContacts:
     approach: Array
     load: float
     behind: tuple[ContactCandidates, Array] | None = None
+
+    @property
+    def reference(self) -> str:
+        """What `approach` is measured against; empty where that is not one turn for all pairs."""
+        return held_turns(self.bodies)[0]
 
     def model_error(self) -> float:
         """Estimate what the model of the contacts leaves out, as ``moving_contact.model_error``.

@@ -37,9 +37,9 @@ if TYPE_CHECKING:
     from fem.bodies import Compliance
     from gears import GearPair
 
-__all__ = ["REFERENCES", "check_reference", "held_turns", "turns"]
+__all__ = ["REFERENCES", "check_reference", "default_reference", "held_turns", "turns"]
 
-REFERENCES = ("bore", "body", "teeth")
+REFERENCES = ("body", "bore", "teeth")
 """What a deflection may be measured against."""
 
 INERTIA = Limit(0.0, unit="kg m2", remedy="give what turns with the bore, 0 for nothing")
@@ -95,6 +95,14 @@ def held_turns(bodies: Compliance) -> tuple[str, tuple[Support, Support]]:
         return "bore", supports
     sprung = any(one.torsional_stiffness != inf for one in supports)
     return ("" if sprung else "teeth"), supports
+
+
+def default_reference(bodies: Compliance) -> str:
+    """What a deflection is measured against unless something else is asked for: the bodies.
+
+    A compliance without hubs or coupling is made to see what these do, and measures its own way ("bore").
+    """
+    return "body" if held_turns(bodies)[0] == "bore" else "bore"
 
 
 def check_reference(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from base import Array, Faults, Limit
 from fem.bodies import Compliance
 from fem.pair_compliance import compliance as _compliance
+from fem.references import REFERENCES, check_reference, held_turns, turns
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -25,6 +27,9 @@ def single_pair_stiffness(
     compliance: Compliance | None = None,
     tolerance: float = 0.001,
     plane: str = "strain",
+    *,
+    reference: str = "bore",
+    bore_inertia: tuple[float, float] = (0.0, 0.0),
 ) -> Array:
     """Secant stiffness F/deflection of one tooth pair alone, hub and bodies included [N/m].
 
@@ -38,6 +43,10 @@ def single_pair_stiffness(
         load stands at that distance: a line load on the corner itself would have no finite displacement.
     compliance : Compliance, optional
         Of this pair.
+    reference : {"bore", "body", "teeth"}
+        What the deflection is measured against, as of `mesh_cycle`; unlike there, the bores unless given.
+    bore_inertia : (float, float)
+        What turns with the bores of pinion and wheel beside their own bodies, for "body" [kg m2].
 
     Returns
     -------
@@ -67,7 +76,14 @@ def single_pair_stiffness(
     if not np.all((rho1 >= points.A - slack) & (rho1 <= points.E + slack)):
         allowed = f"must be {points.A:g} to {points.E:g} m, the path of contact"
         found.add("rho1", f"{np.min(rho1):g} .. {np.max(rho1):g}", allowed, "stay between A and E")
+    found.choice("reference", reference, REFERENCES)
     found.raise_if_any()
     approach = bodies.own(rho1) * force + bodies.hertz(rho1).approach(np.full(len(rho1), float(force)))
+    if reference != "bore":
+        held, supports = held_turns(replace(bodies, left_out=bodies.left_out - {"coupling"}))
+        check_reference(found, held, reference, bore_inertia)
+        found.raise_if_any()
+        less = turns(pair, supports, held) - turns(pair, supports, reference, bore_inertia)
+        approach = approach - force * less.sum()
     stiffness: Array = force / approach
     return stiffness

@@ -5,17 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from base import Array, Cost, Integers, Stopwatch, in_blocks
 from dynamics.drives.oscillator import DriveOscillator
 from dynamics.flow import REASONS
+from dynamics.kernels.drives import STRIDE
 from dynamics.protocol import EPS, Flow, MapResult, Stretches, lost_motion
 
 # of motions expanded about the start of a cell, a radian of every time scale long: 1/17! is rounding
 DEGREE = 16
-Arrays = tuple[Array, Array, Array, Array, Array, Array]
+WORTH = 32
+"""Periods of a state alone that maps of many cells at once are worth; derivatives count twice a freedom."""
+
+Arrays = tuple[Array, Array, Array, Array, Array, Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +55,19 @@ class DriveFlow(Flow):
         """Tables with half the cell."""
         return tabulated(self.oscillator, 2 * self.cells, self.arrays[3].shape[2] - 1)
 
+    @cached_property
+    def in_strides(self) -> Arrays:
+        """What the kernels take of a motion that is followed for long: maps of many cells at once, too."""
+        from dynamics.kernels.drives.tabulating import gather
+
+        _, systems, load, series, maps, _, _ = self.arrays
+        return (*self.arrays[:-1], gather(systems, load, series, maps, STRIDE))
+
+    def _arrays(self, periods: int, derivatives: bool) -> Arrays:
+        """What the kernels take of a motion over so many periods."""
+        worth = periods * (2 * len(self.oscillator.load) if derivatives else 1) >= WORTH
+        return self.in_strides if worth or "in_strides" in self.__dict__ else self.arrays
+
     def follow(self, state: Array, periods: int = 1, skip: int = 0, derivatives: bool = True) -> MapResult:
         """Follow a state; the Jacobian covers the periods skipped, too."""
         from dynamics.kernels.drives.carrying import iterate
@@ -62,7 +80,16 @@ class DriveFlow(Flow):
         jacobian, clock = np.eye(size), np.zeros(1)
         flag = int(
             iterate(
-                self.arrays, 0, self.cells, moved, skip, int(derivatives), jacobian, states, counts, clock
+                self._arrays(periods + skip, derivatives),
+                0,
+                self.cells,
+                moved,
+                skip,
+                int(derivatives),
+                jacobian,
+                states,
+                counts,
+                clock,
             )
         )
         if flag:
@@ -156,8 +183,10 @@ class DriveFlow(Flow):
         # so near in the coordinates of the flow that states are as near as asked
         near = radius / float(np.max(np.sum(np.abs(osc.coordinates.up), axis=1)))
 
+        table = self.in_strides
+
         def some(first: int, last: int) -> int:
-            return int(settle(self.arrays, moved[first:last], places, near, limit, labels[first:last]))
+            return int(settle(table, moved[first:last], places, near, limit, labels[first:last]))
 
         used = in_blocks(len(moved), some, int(np.count_nonzero(labels == -1)))
         starts[:] = osc.lifted(moved, np.zeros(len(moved)))
@@ -171,7 +200,7 @@ def drive_flow(oscillator: DriveOscillator) -> DriveFlow:
 
 def tabulated(oscillator: DriveOscillator, cells: int, degree: int = DEGREE) -> DriveFlow:
     """Tables of a drive train, with so many cells per period."""
-    from dynamics.kernels.drives.expanding import tabulate
+    from dynamics.kernels.drives.tabulating import tabulate
 
     at, series = oscillator.coordinates, oscillator.mesh_stiffness
     h = oscillator.period / cells
@@ -188,7 +217,9 @@ def tabulated(oscillator: DriveOscillator, cells: int, degree: int = DEGREE) -> 
     own[2], own[4], own[6] = oscillator.load[0], oscillator.frequency, oscillator.half_backlash
     own[7] = 1.0 if oscillator.one_sided else 2.0
     tables = tabulate(mesh, oscillator.error_series, cells, degree, systems, load)
-    return DriveFlow(oscillator, (own, systems, load, *tables))
+    size = systems.shape[1]
+    none = np.zeros((0, 2 * size + 2, 2 * size + 2 * STRIDE))
+    return DriveFlow(oscillator, (own, systems, load, *tables, none))
 
 
 def _blocks(matrix: Array) -> Array:

@@ -157,7 +157,7 @@ def called(compiled: F, types: Any) -> F:
 
 
 def maker(function: F) -> F:
-    """Compile as a helper that returns a fresh array."""
+    """Compile as a helper that returns a fresh array, or multiplies matrices by the library."""
     return cast(F, njit(**_INNER, **LINKED)(function))
 
 

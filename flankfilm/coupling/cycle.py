@@ -72,7 +72,7 @@ class MeshCycle(MeshFigures):
     message: str = ""
     reference: str = quantity(
         "",
-        'what the deflection is measured against: "bore", "body" or "teeth", as which closed forms count',
+        'what the deflection is measured against: "body", "bore" or "teeth", as which closed forms count',
         default="teeth",
     )
 
@@ -81,7 +81,7 @@ class MeshCycle(MeshFigures):
 
         Parameters
         ----------
-        reference : {"bore", "body", "teeth"}
+        reference : {"body", "bore", "teeth"}
             As of `fem.mesh_cycle`.
         bore_inertia : (float, float)
             What turns with the bores of pinion and wheel beside their own bodies, for "body" [kg m2].

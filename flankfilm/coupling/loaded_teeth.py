@@ -30,7 +30,8 @@ class TeethOptions(TypedDict, total=False):
     pairs: str
     compliance: fem.Compliance | None
     flanks: Flanks
-    reference: str
+    reference: str | None
+    bore_inertia: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -52,8 +53,12 @@ class LoadedTeeth:
         For finite elements; see `meshed`.
     flanks : Flanks
         For finite elements of coupled pairs.
-    reference : {"bore", "body", "teeth"}
-        What the deflection of these is measured against, as of `fem.mesh_cycle`.
+    reference : {"body", "bore", "teeth"}, optional
+        What the deflection by finite elements is measured against, as of `fem.mesh_cycle`: the bodies unless given.
+        Closed forms describe the deflection against the teeth, and independent pairs by finite elements that against
+        the bores; both are what they are.
+    bore_inertia : (float, float)
+        What turns with the bores of pinion and wheel beside their own bodies, for "body" [kg m2].
     """
 
     pair: gears.GearPair
@@ -62,15 +67,17 @@ class LoadedTeeth:
     pairs: str = "coupled"
     compliance: fem.Compliance | None = None
     flanks: Flanks = PLAIN_FLANKS
-    reference: str = "bore"
+    reference: str | None = None
+    bore_inertia: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         """Check the names of the models."""
         with Faults() as faults:
             faults.choice("model", self.model, tuple(MODELS))
             faults.choice("pairs", self.pairs, ("coupled", "independent"))
-            faults.choice("reference", self.reference, tuple(MEANINGS))
-            if self.reference != "bore" and (self.model, self.pairs) != ("fem", "coupled"):
+            if self.reference is not None:
+                faults.choice("reference", self.reference, tuple(MEANINGS))
+            if self.reference is not None and (self.model, self.pairs) != ("fem", "coupled"):
                 allowed = "requires coupled pairs by finite elements"
                 faults.add("reference", repr(self.reference), allowed, "leave it out, or take them")
 
@@ -92,6 +99,12 @@ class LoadedTeeth:
     def setting(self) -> dict[str, Any]:
         """What `fem.mesh_cycle` takes beside pair, torque and positions."""
         return {"compliance": self.compliance, "reference": self.reference, **vars(self.flanks)}
+
+    def measured(self, contact: fem.MeshCycle) -> fem.MeshCycle:
+        """Loaded contact with the inertia on the bores, which counts for what it is measured against."""
+        if contact.reference != "body" or self.bore_inertia == (0.0, 0.0):
+            return contact
+        return contact.against("body", self.bore_inertia)
 
     @property
     def force(self) -> float:
@@ -131,7 +144,7 @@ class LoadedTeeth:
         found = fem.mesh_cycle(
             self.pair, self.torque, positions=positions, film=film, tolerance=tolerance, **self.setting
         )
-        believed(found, "loaded tooth contact")
+        found = self.measured(believed(found, "loaded tooth contact"))
         if film is not None and found.problem is not None:
             corners = film.corners(self.pair)
             problem = replace(found.problem, corners=corners, film_yields=True, varied=varied)
@@ -162,7 +175,7 @@ class LoadedTeeth:
         """Dry cycles of independent pairs by every other closed form, and by finite elements if these are at hand."""
         models = [*CLOSED_FORMS, *(["fem"] if self.model == "fem" else [])]
         return tuple(
-            replace(self, model=model, pairs="independent", reference="bore").cycle(positions)
+            replace(self, model=model, pairs="independent", reference=None).cycle(positions)
             for model in models
             if (model, "independent") != (self.model, self.pairs)
         )

@@ -47,6 +47,7 @@ class TorqueCurves:
     cost: Cost
     converged: bool
     message: str
+    reference: str = quantity("", "what the deflection is measured against", default="body")
 
 
 def torque_curves(teeth: LoadedTeeth, torques: Iterable[float], positions: int) -> TorqueCurves:
@@ -76,12 +77,13 @@ def torque_curves(teeth: LoadedTeeth, torques: Iterable[float], positions: int) 
     >>> found.torque.tolist(), bool(found.secant_stiffness[0] < found.secant_stiffness[1])
     ([300.0, 600.0], True)
     """
-    cycles = fem.mesh_cycle(
+    found = fem.mesh_cycle(
         teeth.pair,
         sorted({*torques, teeth.torque}),
         positions=positions,
         **teeth.setting,
     )
+    cycles = [teeth.measured(cycle) for cycle in found]
     refused = {cycle.torque: why for cycle in cycles if (why := _refusal(cycle))}
     good = [cycle for cycle in cycles if cycle.torque not in refused]
     if not good:
@@ -102,6 +104,7 @@ def torque_curves(teeth: LoadedTeeth, torques: Iterable[float], positions: int) 
         cost=cycles[0].cost,
         converged=not refused,
         message="; ".join(f"{torque:g} N m: {why}" for torque, why in refused.items()),
+        reference=good[0].reference,
     )
 
 
@@ -165,4 +168,4 @@ def revolution(
         **teeth.setting,
     )
     # as many events as a revolution has would cost a hundred times its curves, which are what it is looked at for
-    return replace(believed(cycle, "revolution"), problem=None)
+    return replace(teeth.measured(believed(cycle, "revolution")), problem=None)

@@ -31,8 +31,8 @@ def mesh_cycle(
     positions : int, optional
         Equal intervals of the base pitch for the curves; 120 unless given.
     **teeth
-        ``model``, ``pairs``, ``compliance``, ``flanks`` and ``reference``, as of `LoadedTeeth`; the compliance is
-        computed where it is needed and not given.
+        ``model``, ``pairs``, ``compliance``, ``flanks``, ``reference`` and ``bore_inertia``, as of `LoadedTeeth`; the
+        compliance is computed where it is needed and not given.
 
     Raises
     ------

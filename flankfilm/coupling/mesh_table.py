@@ -27,7 +27,7 @@ class MeshTable:
 
     headline = ("mean_stiffness", "equivalent_mass", "backlash")
 
-    angle: Array = quantity("rad", "turn of the pinion after a pair is at A", "position", shown="deg")
+    angle: Array = quantity("rad", "rotation of the pinion after a pair is at A", "position", shown="deg")
     stiffness: Array = quantity(
         "N/m", "tangent stiffness of the mesh, for small vibration", "position", error="error"
     )

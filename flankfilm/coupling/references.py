@@ -16,22 +16,44 @@ if TYPE_CHECKING:
     from flankfilm.coupling.cycle import MeshCycle
 
 MEANINGS: Mapping[str, str] = {
-    "bore": "the rotation of the bores: all wind-up of the hubs included",
     "body": "the rotation of the bodies, whose inertia balances the torque",
+    "bore": "the rotation of the bores: all wind-up of the hubs included",
     "teeth": "the rotation of the root circles: no wind-up of the hubs",
 }
 """What a deflection is measured against, in words."""
+
+RELATIVE: Mapping[str, str] = {
+    "body": "relative to the gear bodies",
+    "bore": "relative to the bores",
+    "teeth": "relative to the root circles",
+}
+"""The same as it stands beside a number."""
+
+
+def relative_to(name: str, reference: str) -> str:
+    """Name of a figure with its reference in the parentheses at its end, or in separate ones.
+
+    Examples
+    --------
+    >>> relative_to("mean mesh stiffness (secant)", "body")
+    'mean mesh stiffness (secant, relative to the gear bodies)'
+    """
+    if not (words := RELATIVE.get(reference, "")):
+        return name
+    return f"{name[:-1]}, {words})" if name.endswith(")") else f"{name} ({words})"
+
 
 PARTS: Mapping[str, str] = {
     "hertz": "Hertz contact",
     "pinion": "pinion, tooth and body under it",
     "wheel": "wheel, tooth and body under it",
     "coupling": "coupling of teeth through the bodies",
-    "windup": "wind-up of the hubs",
-    "support": "supports",
+    "body_windup": "wind-up of the bodies by their own inertia",
+    "support": "supports, their translation",
     "rest": "gaps, tip edges, contacts that move and loads that vary along the face",
+    "hub_windup": "wind-up of the hubs, from the bodies to the bores",
 }
-"""Parts of a deflection, in words."""
+"""Parts of a deflection, in words; all but the last are those of the deflection against the bodies."""
 
 
 IN_PARTS = "not estimated in parts; the whole has the error of the mean secant stiffness"
@@ -64,7 +86,7 @@ class StiffnessReferences:
     )
     deflection: Mapping[str, float] = quantity(
         "m",
-        "mean over the cycle of a part of the deflection against the bores",
+        "mean over the cycle of a part of the deflection; all but hub_windup are of that against the bodies",
         shown="um",
         no_error=IN_PARTS,
     )
@@ -80,7 +102,7 @@ def stiffness_references(
     compliance: fem.Compliance,
     bore_inertia: tuple[float, float] = (0.0, 0.0),
 ) -> StiffnessReferences:
-    """Measure the deflection of a loaded contact against bores, bodies and teeth; the forces are the same.
+    """Measure the deflection of a loaded contact against bodies, bores and teeth; the forces are the same.
 
     Parameters
     ----------
@@ -106,7 +128,7 @@ def stiffness_references(
     >>> bodies = fem.compliance(pair)
     >>> found = stiffness_references(pair, mesh_cycle(pair, 600.0, positions=40, compliance=bodies), bodies)
     >>> found.reference, [round(float(k) / 40e6, 1) for k in found.mean_stiffness]  # N/(mm um)
-    (('bore', 'body', 'teeth'), [21.4, 24.3, 24.7])
+    (('body', 'bore', 'teeth'), [24.3, 21.4, 24.7])
     """
     from fem.breakdown import deflection_parts
     from gears.closed_form import iso6336
@@ -124,7 +146,24 @@ def stiffness_references(
         mean_secant_stiffness=np.array([one.mean_secant_stiffness for one in each]),
         mean_error=errors,
         iso_mesh_stiffness=1e9 * pair.face_width * iso6336(pair, force=abs(cycle.contact.force)).c_gamma,
-        deflection={name: float(part.mean()) for name, part in parts.items()},
+        deflection=_with_hubs_apart(parts, *each),
         error=float(np.max(errors)),  # nan where a contact between the positions has no solution
         cost=Cost(watch.seconds),
     )
+
+
+def _with_hubs_apart(
+    parts: Mapping[str, Array], body: MeshCycle, bore: MeshCycle, teeth: MeshCycle
+) -> dict[str, float]:
+    """Means of the parts of a deflection against the bores [m], the wind-up split at the bodies."""
+    found = {name: float(part.mean()) for name, part in parts.items()}
+    on_teeth, on_body, on_bore = (
+        float(np.mean(abs(one.contact.force) / one.contact.secant_stiffness))
+        for one in (teeth, body, bore)
+        if one.contact is not None
+    )
+    windup, hubs = found.pop("windup"), on_bore - on_body
+    found["body_windup"] = on_body - on_teeth
+    # springs at the bores turn as well: what they turn is the hubs'
+    found["support"] += windup - found["body_windup"] - hubs
+    return {name: found[name] for name in PARTS if name != "hub_windup"} | {"hub_windup": hubs}

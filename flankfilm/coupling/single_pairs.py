@@ -44,6 +44,9 @@ class SinglePairs:
     cost: Cost
     converged: bool = True
     message: str = ""
+    reference: str = quantity(
+        "", "what the deflection of one pair by finite elements is measured against", default="body"
+    )
 
     @property
     def errors(self) -> Mapping[str, float]:
@@ -66,6 +69,9 @@ def single_pair_stiffness(
     rho1: ArrayLike,
     model: str = "fem",
     compliance: fem.Compliance | None = None,
+    *,
+    reference: str = "bore",
+    bore_inertia: tuple[float, float] = (0.0, 0.0),
 ) -> Array:
     """Secant stiffness of one pair of teeth that carries the whole force, by any model.
 
@@ -80,6 +86,9 @@ def single_pair_stiffness(
         ``"fem"``, ``"ishikawa"``, ``"weber-banaschek"`` or ``"potential-energy"``.
     compliance : fem.Compliance, optional
         For finite elements; computed unless given.
+    reference, bore_inertia
+        What the deflection by finite elements is measured against, as of `fem.single_pair_stiffness`: the bores unless
+        given. Closed forms describe that against the teeth.
 
     Returns
     -------
@@ -100,14 +109,27 @@ def single_pair_stiffness(
     known = np.isfinite(places)
     k = np.full_like(places, np.nan)
     if model == "fem":
-        k[known] = fem.single_pair_stiffness(pair, force=force, rho1=places[known], compliance=compliance)
+        k[known] = fem.single_pair_stiffness(
+            pair,
+            force=force,
+            rho1=places[known],
+            compliance=compliance,
+            reference=reference,
+            bore_inertia=bore_inertia,
+        )
     else:
         k[known] = closed_form(model, pair, pair.path_at(places[known]), force)
     return k
 
 
 def single_pairs(
-    pair: gears.GearPair, torque: float, compliance: fem.Compliance | None = None, points: int = STATIONS
+    pair: gears.GearPair,
+    torque: float,
+    compliance: fem.Compliance | None = None,
+    points: int = STATIONS,
+    *,
+    reference: str = "body",
+    bore_inertia: tuple[float, float] = (0.0, 0.0),
 ) -> SinglePairs:
     """Stiffness of one pair along the path by all closed forms, beside finite elements where they are at hand.
 
@@ -120,6 +142,8 @@ def single_pairs(
         Finite elements are left out without it.
     points : int
         Of the path, A and E included.
+    reference, bore_inertia
+        What the deflection by finite elements is measured against, as of `fem.mesh_cycle`.
 
     Examples
     --------
@@ -141,11 +165,14 @@ def single_pairs(
         travel=path.position,
         rho1=path.rho1,
         stiffness={
-            MODELS[model]: single_pair_stiffness(pair, force, path.rho1, model, compliance)
+            MODELS[model]: single_pair_stiffness(
+                pair, force, path.rho1, model, compliance, reference=reference, bore_inertia=bore_inertia
+            )
             for model in models
         },
         iso=forms.iso6336(pair, force=force),
         contact=forms.iso6336_2(pair, force),
         error=None if compliance is None else compliance.error,
         cost=Cost(watch.seconds),
+        reference=reference,
     )

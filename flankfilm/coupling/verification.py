@@ -75,6 +75,11 @@ class Curves:
     cost: Cost
     error: float | None = quantity("1", "relative numerical error", default=None)
     left_out: tuple[str, ...] = ()
+    deflection_reference: str = quantity(
+        "",
+        "what the deflection is measured against; without coupling, that of each pair alone",
+        default="teeth",
+    )
 
 
 @dataclass(frozen=True)
@@ -157,6 +162,8 @@ def compare_closed_forms(
     compliance: fem.Compliance | None = None,
     beyond_path: bool = True,
     moving_contact: bool | None = None,
+    *,
+    reference: str = "body",
 ) -> Verification:
     """Compare every closed form of tooth stiffness with finite elements on a pair under a torque.
 
@@ -174,6 +181,9 @@ def compare_closed_forms(
     moving_contact : bool, optional
         Whether contacts move in references with all parts, as of `fem.mesh_cycle`. In the others they stay where
         undeformed teeth touch, as closed forms have it.
+    reference : {"body", "bore", "teeth"}
+        What deflections are measured against in references with all parts, as of `fem.mesh_cycle`. Without hub wind-up
+        it is the teeth, and without coupling each pair's own turn of the bores.
 
     Raises
     ------
@@ -190,7 +200,7 @@ def compare_closed_forms(
     """
     teeth, _ = resolved(LoadedTeeth(pair, torque, compliance=compliance), tolerance)
     assert teeth.compliance is not None
-    return verification_of(pair, torque, teeth.compliance, beyond_path, moving_contact)
+    return verification_of(pair, torque, teeth.compliance, beyond_path, moving_contact, reference=reference)
 
 
 def verification_of(
@@ -199,8 +209,11 @@ def verification_of(
     compliance: fem.Compliance,
     beyond_path: bool = True,
     moving_contact: bool | None = None,
+    *,
+    reference: str = "body",
+    bore_inertia: tuple[float, float] = (0.0, 0.0),
 ) -> Verification:
-    """Compare from a compliance; arguments as of `compare_closed_forms`.
+    """Compare from a compliance; arguments as of `compare_closed_forms`, `bore_inertia` as of `LoadedTeeth`.
 
     Examples
     --------
@@ -211,7 +224,8 @@ def verification_of(
     >>> verification_of(pair, 600.0, bodies).like_for_like.label
     'without hub wind-up and coupling'
     """
-    references = tuple(_reference_curves(pair, torque, compliance, beyond_path, moving_contact))
+    teeth = LoadedTeeth(pair, torque, reference=reference, bore_inertia=bore_inertia)
+    references = tuple(_reference_curves(teeth, compliance, beyond_path, moving_contact))
     models = tuple(_closed_form_curves(pair, torque))
     return Verification(
         pair=pair,
@@ -247,11 +261,7 @@ def _closed_form_curves(pair: gears.GearPair, torque: float) -> Iterator[Curves]
 
 
 def _reference_curves(
-    pair: gears.GearPair,
-    torque: float,
-    compliance: fem.Compliance,
-    beyond_path: bool,
-    moving_contact: bool | None,
+    measured: LoadedTeeth, compliance: fem.Compliance, beyond_path: bool, moving_contact: bool | None
 ) -> Iterator[Curves]:
     """Evaluate finite elements with all parts, and with the parts left out that closed forms lack."""
     for label, (whole, left_out) in REFERENCES.items():
@@ -260,19 +270,33 @@ def _reference_curves(
         parts = compliance.without(*left_out)
         # those of gears without parts stay, as closed forms have them
         flanks = Flanks(beyond_path=whole, moving_contact=False if left_out else moving_contact)
-        teeth = LoadedTeeth(pair, torque, compliance=parts, flanks=flanks)
-        yield replace(_curves(label, teeth, compliance.error), left_out=left_out)
+        reference = (
+            None if left_out else measured.reference
+        )  # without parts a compliance measures its own way
+        teeth = replace(measured, compliance=parts, flanks=flanks, reference=reference)
+        found = _curves(label, teeth, compliance.error)
+        # without coupling each pair has a turn of its own, with the hubs' wind-up or without
+        own = "teeth" if "hub_windup" in left_out else "bore"
+        yield replace(found, left_out=left_out, deflection_reference=found.deflection_reference or own)
 
 
 def _curves(label: str, teeth: LoadedTeeth, error: float | None = None) -> Curves:
     """Stiffness of a single pair, of which the error is given, and of the mesh by one model."""
     watch, pair = Stopwatch(), teeth.pair
     cycle = teeth.cycle(POSITIONS)
-    single = single_pair_stiffness(pair, teeth.force, stations(pair), teeth.model, teeth.compliance)
+    single = single_pair_stiffness(
+        pair,
+        teeth.force,
+        stations(pair),
+        teeth.model,
+        teeth.compliance,
+        reference=teeth.reference or "bore",
+        bore_inertia=teeth.bore_inertia,
+    )
     assert cycle.arcs is not None
     found = single_figures(pair, single, error) | mesh_figures(pair, cycle.arcs)
     curves = single, cycle.secant_stiffness, cycle.transmission_error
-    return Curves(label, *curves, found, Cost(watch.seconds), error)
+    return Curves(label, *curves, found, Cost(watch.seconds), error, deflection_reference=cycle.reference)
 
 
 def single_figures(pair: gears.GearPair, single: Array, error: float | None) -> dict[str, Estimate]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.coupling.references import MEANINGS, PARTS
+from flankfilm.coupling.references import MEANINGS, PARTS, RELATIVE, relative_to
 from flankfilm.figures.reading import read, read_figure
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import alike, number, percent, plus_minus
@@ -66,7 +66,8 @@ def stiffness(
     if single is not None:
         shown.insert(0, "single_pairs")
         tables += [iso_table(single.iso), contact_table(single.contact, cycles[0].contact)]
-    drawn, notes = pictures(results, *shown, model=cycles[0].label), (*changes, said("closed_forms"))
+    drawn = pictures(results, *shown, model=cycles[0].label)
+    notes = (said(f"reference_{cycles[0].reference}"), *changes, said("closed_forms"))
     return Part("stiffness", "Mesh stiffness", figures=drawn, tables=tuple(tables), notes=notes)
 
 
@@ -93,6 +94,7 @@ def _cycles(cycles: Sequence[MeshCycle], face_width: float) -> Table:
         cycles,
         {
             "model": lambda cycle: cycle.label,
+            "deflection": lambda cycle: RELATIVE[cycle.reference],
             **shown("mean_secant_stiffness", face_width),
             "secant from, to": ends,
             **shown("mean_stiffness", face_width),
@@ -116,13 +118,20 @@ def references(found: StiffnessReferences, face_width: float) -> Part:
         )
     ]
     means.append(("c_gamma of ISO 6336-1", "", number(float(iso.values), 5), "unknown"))
-    whole = sum(found.deflection.values())
+    of_hubs = found.deflection["hub_windup"]
+    whole = sum(found.deflection.values()) - of_hubs
     parts = [
         (PARTS[name], number(1e6 * part, 4), percent(part / whole)) for name, part in found.deflection.items()
     ]
-    parts.append(("all, against the bores", number(1e6 * whole, 4), ""))
+    parts.insert(-1, ("all, against the bodies", number(1e6 * whole, 4), percent(1.0)))
+    parts.append(
+        ("all, against the bores", number(1e6 * (whole + of_hubs), 4), percent(1.0 + of_hubs / whole))
+    )
     heads = ("deflection measured against", f"secant [{secant.unit}]", f"tangent [{tangent.unit}]", "error")
-    tables = Table(heads, tuple(means)), Table(("mean deflection, dry", "µm", "of all"), tuple(parts))
+    tables = (
+        Table(heads, tuple(means)),
+        Table(("mean deflection, dry", "µm", "of that against the bodies"), tuple(parts)),
+    )
     title = "What the deflection is measured against"
     return Part("references", title, tables=tables, notes=(said("references"),))
 
@@ -189,10 +198,12 @@ def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
         numerical += f"; model of the contacts {percent(cycle.model_error)}"
     small = f"for small vibration; {plus_minus(cycle.errors['mean_stiffness'])}"
     spread = f"peak to peak; {plus_minus(cycle.range_error)}"
+    names = (secant.meaning, tangent.meaning, "loaded transmission error")
+    first, second, third = (relative_to(name, cycle.reference) for name in names)
     return [
-        Headline(secant.meaning, f"{float(secant.values):.4g}", numerical, secant.unit),
-        Headline(tangent.meaning, f"{float(tangent.values):.4g}", small, tangent.unit),
-        Headline("loaded transmission error", f"{float(error.values):.3g}", spread, error.unit),
+        Headline(first, f"{float(secant.values):.4g}", numerical, secant.unit),
+        Headline(second, f"{float(tangent.values):.4g}", small, tangent.unit),
+        Headline(third, f"{float(error.values):.3g}", spread, error.unit),
     ]
 
 

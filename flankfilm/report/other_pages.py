@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flankfilm import figures
+from flankfilm.coupling.references import relative_to
 from flankfilm.coupling.verification import UNITS
 from flankfilm.figures.optima import can_be_mapped
 from flankfilm.figures.reading import key_title, key_words, titled, unit_of, unit_text, words
@@ -167,7 +168,7 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
     whole, pair = found.references[0], found.pair
     headlines = [
         Headline(
-            f"{d.model}: mean mesh stiffness",
+            relative_to(f"{d.model}: mean mesh stiffness", whole.deflection_reference),
             f"{100 * d.difference:+.1f}",
             f"against finite elements, whose error is {percent(d.reference_error)}",
             "%",
@@ -198,9 +199,18 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
 def _differences(found: Verification, reference: str) -> Table:
     """Every figure of every model against one reference."""
     rows = tuple((f"{name} [{unit_text(unit)}]", *cells) for name, unit, *cells in compared(found, reference))
-    against = reference if reference == "finite elements" else f"finite elements {reference}"
+    against = compared_with(found, reference)
     heads = ("figure", "finite elements", *(model.label for model in found.models))
     return Table(heads, rows, f"Against {against}")
+
+
+def compared_with(found: Verification, reference: str) -> str:
+    """Finite elements that models are compared with: what is left out, and what the deflection is measured against."""
+    whole = next(one for one in found.references if one.label == reference)
+    return relative_to(
+        reference if reference == "finite elements" else f"finite elements {reference}",
+        whole.deflection_reference,
+    )
 
 
 def compared(found: Verification, reference: str) -> Iterator[tuple[str, ...]]:

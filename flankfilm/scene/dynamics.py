@@ -140,8 +140,7 @@ class DynamicsSection(Section):
         "force over deflection, or the slope for small vibration", "secant", shown=True
     )
     stiffness_reference: Literal["body", "bore", "teeth"] | None = key(
-        "what the deflection by finite elements is measured against: the rotation of the bodies, whose inertia "
-        "balances the torque, of the bores, or of the root circles; body if left out",
+        "older name of stiffness.reference, which counts for all deflections of the scene",
         None,
         such_as="bore",
     )

@@ -51,6 +51,7 @@ def needs_of_finite_elements(raw: Raw, listed: set[str]) -> list[str]:
     asked += ["operating.friction"] if _table(raw, "operating").get("friction") else []
     asked += ["stiffness.moving_contact"] if _table(raw, "stiffness").get("moving_contact") else []
     asked += ["pair.tight"] if _table(raw, "pair").get("tight") else []
+    asked += ["stiffness.reference"] if _table(raw, "stiffness").get("reference") else []
     asked += ["dynamics.stiffness_reference"] if _table(raw, "dynamics").get("stiffness_reference") else []
     asked += ["[alignment]"] if raw.get("alignment") is not None else []
     for gear in ("pinion", "wheel"):
@@ -142,6 +143,10 @@ def _models_that_do_not_fit(raw: Raw, listed: set[str]) -> Iterator[Fault]:
             yield Fault("stiffness.model", "'given'", allowed, f'Take "fem" or a closed form, or drop {want}')
     if listed & set(MOTIONS) and _table(raw, "dynamics").get("damping_ratio") == "film":
         yield from _without_damping(raw)
+    old = _table(raw, "dynamics").get("stiffness_reference")
+    if old is not None and stiffness.get("reference", old) != old:
+        allowed = f"must be that of stiffness.reference, {shorten(stiffness['reference'])}: a scene has one reference"
+        yield Fault("dynamics.stiffness_reference", shorten(old), allowed, "Leave it out")
     if "centre_distance_mm" in pair and "backlash_um" in pair:
         value = shorten(pair["backlash_um"])
         yield Fault("pair.backlash_um", value, "follows from centre_distance_mm", "Give one of them")

@@ -91,6 +91,12 @@ class StiffnessSection(Section):
         None,
         such_as=True,
     )
+    reference: Literal["body", "bore", "teeth"] | None = key(
+        "what every deflection and stiffness by finite elements is measured against: the rotation of the bodies, whose "
+        "inertia balances the torque, of the bores, or of the root circles; body if left out",
+        None,
+        such_as="bore",
+    )
     mean_N_per_m: float | None = key(
         "mean of a given stiffness; 1 if left out", None, limit=Limit(1.0, 1e15, "N/m"), such_as=7.6e8
     )

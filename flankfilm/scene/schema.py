@@ -122,6 +122,18 @@ class Scene(Section):
     )
 
     @property
+    def reference(self) -> Literal["body", "bore", "teeth"] | None:
+        """What the scene says that deflections by finite elements are measured against; None where it does not."""
+        return self.stiffness.reference or (
+            None if self.dynamics is None else self.dynamics.stiffness_reference
+        )
+
+    @property
+    def bore_inertia(self) -> tuple[float, float]:
+        """What turns with the bores of pinion and wheel beside their own bodies [kg m2]."""
+        return (0.0, 0.0) if self.dynamics is None else self.dynamics.extra_inertia_kg_m2.each
+
+    @property
     def shafts_under_face(self) -> ShaftsSection | None:
         """[shafts] where they bend and twist under cells of the face, which [alignment] asks for; None elsewhere."""
         if self.alignment is None or self.shafts is None or not self.shafts.bends:

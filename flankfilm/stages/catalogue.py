@@ -144,20 +144,34 @@ def loaded_teeth(
     compliance = run[COMPLIANCE] if model == "fem" else None
     if compliance is not None and varies_by(scene):
         _ = run[FACE_GEARS]  # contacts find them in the process
-    return coupling.LoadedTeeth(pair, pinion_torque(scene), model, scene.stiffness.pairs, compliance, flanks)
+    given = pair, pinion_torque(scene), model, scene.stiffness.pairs, compliance, flanks
+    return coupling.LoadedTeeth(*given, scene.reference, scene.bore_inertia)
 
 
-@stage("closed forms", "closed forms", "operating wants", PAIR, COMPLIANCE, settings=_TEETH_DECIDED)
+@stage(
+    "closed forms",
+    "closed forms",
+    "operating wants reference bore_inertia",
+    PAIR,
+    COMPLIANCE,
+    settings=_TEETH_DECIDED,
+)
 def CLOSED_FORMS(run: Engine) -> coupling.SinglePairs:
     """Closed forms along the path, beside finite elements where the scene has them anyway."""
     beside = "stiffness" in run.scene.wants and run[PLAN].stiffness.choice == "fem"
-    return coupling.single_pairs(run[PAIR], pinion_torque(run.scene), run[COMPLIANCE] if beside else None)
+    return coupling.single_pairs(
+        run[PAIR],
+        pinion_torque(run.scene),
+        run[COMPLIANCE] if beside else None,
+        reference=run.scene.reference or "body",
+        bore_inertia=run.scene.bore_inertia,
+    )
 
 
 @stage(
     "verification",
     "closed forms against finite elements",
-    "stiffness.contact_beyond_path stiffness.moving_contact operating",
+    "stiffness.contact_beyond_path stiffness.moving_contact operating reference bore_inertia",
     COMPLIANCE,
 )
 def VERIFICATION(run: Engine) -> coupling.Verification:
@@ -165,7 +179,14 @@ def VERIFICATION(run: Engine) -> coupling.Verification:
     stiffness, pair = run.scene.stiffness, even_along_face(run[PAIR])
     asked = stiffness.contact_beyond_path, stiffness.moving_contact
     compliance = replace(run[COMPLIANCE], pair=pair)
-    return coupling.verification_of(pair, pinion_torque(run.scene), compliance, *asked)
+    return coupling.verification_of(
+        pair,
+        pinion_torque(run.scene),
+        compliance,
+        *asked,
+        reference=run.scene.reference or "body",
+        bore_inertia=run.scene.bore_inertia,
+    )
 
 
 @stage("dry cycle", "mesh cycle without film", TEETH, COMPLIANCE, FACE_GEARS, settings=_TEETH_DECIDED)
@@ -177,12 +198,11 @@ def DRY_CYCLE(run: Engine) -> coupling.MeshCycle:
 
 @stage("references", "stiffness by reference", "dynamics", COMPLIANCE, DRY_CYCLE)
 def REFERENCES(run: Engine) -> coupling.StiffnessReferences | None:
-    """Mean stiffness against bores, bodies and teeth, and the parts of the deflection; None by closed forms."""
-    cycle, section = run[DRY_CYCLE], run.scene.dynamics
+    """Mean stiffness against bodies, bores and teeth, and the parts of the deflection; None by closed forms."""
+    cycle = run[DRY_CYCLE]
     if cycle.contact is None:
         return None
-    extra = (0.0, 0.0) if section is None else section.extra_inertia_kg_m2.each
-    return coupling.stiffness_references(run[PAIR], cycle, run[COMPLIANCE], extra)
+    return coupling.stiffness_references(run[PAIR], cycle, run[COMPLIANCE], run.scene.bore_inertia)
 
 
 @stage("torques", "mesh cycles over torque", TEETH, COMPLIANCE, FACE_GEARS, DRY_CYCLE)
@@ -210,6 +230,18 @@ def OTHER_CYCLES(run: Engine) -> tuple[coupling.MeshCycle, ...]:
 C = TypeVar("C", bound=coupling.MeshCycle)
 
 
+def measured(run: Engine, cycle: C) -> C:
+    """Cycle whose deflection is measured against what the scene says; one from the cache may be of another scene."""
+    contact, scene = cycle.contact, run.scene
+    if contact is None:
+        return cycle
+    reference = scene.reference or "body"
+    inertia = scene.bore_inertia if reference == "body" else (0.0, 0.0)
+    if (contact.reference, contact.bore_inertia) == (reference, inertia):
+        return cycle
+    return cycle.against(reference, inertia)
+
+
 def with_arcs(cycle: C) -> C:
     """Cycle whose arcs are there: a contact without a solution between the positions fails here, not in its files."""
     _ = cycle.arcs
@@ -223,6 +255,7 @@ def with_arcs(cycle: C) -> C:
     DRY_CYCLE,
     kept="gears meshes fem ehl flankfilm",
     settings=decided(lambda plan: {"model": plan.film.choice, "film": plan.film_tolerance}),
+    finish=measured,
 )
 def FILM(run: Engine) -> coupling.LubricatedCycle:
     """Films and load share in agreement, and the mesh cycle with them."""

@@ -25,7 +25,7 @@ def _asked(run: Engine) -> Mapping[str, Any]:
         return {}
     each = {name: getattr(scene, name) for name in _SECTIONS}
     given = {name: one.model_dump() for name, one in each.items() if one is not None}
-    own = section.extra_inertia_kg_m2.each, section.stiffness_reference
+    own = section.extra_inertia_kg_m2.each, scene.reference
     return {**given, "dynamics": own, "tolerance": scene.tolerance}
 
 
@@ -53,7 +53,7 @@ def FILM_DAMPING(run: Engine) -> coupling.FilmDamping | None:
             lubricant(scene),
             film=film_model(scene, "ehl"),
             extra_inertia=section.extra_inertia_kg_m2.each,
-            reference=section.stiffness_reference or "body",
+            reference=scene.reference or "body",
             tolerance=scene.tolerance,
         )
     if found.damping_ratio <= 0.0 or found.error >= 1.0:

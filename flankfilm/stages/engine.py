@@ -48,6 +48,9 @@ class Stage(Generic[T]):
         which leaves the decision as it was leaves the result in the cache.
     by_parts : bool
         Whether `compute` keeps parts of the result by `Engine.parts`, and the cache nothing of the whole.
+    finish : callable
+        What is done with a result, computed or from the cache, by keys of the scene that cost nothing to follow and
+        are in no key of the cache.
     """
 
     name: str
@@ -58,6 +61,7 @@ class Stage(Generic[T]):
     kept: tuple[str, ...] = ()
     settings: Settings = lambda engine: {}
     by_parts: bool = False
+    finish: Callable[[Engine, Any], Any] = lambda engine, value: value
 
 
 def stage(
@@ -69,12 +73,13 @@ def stage(
     of: Callable[[Scene], Scene] = lambda scene: scene,
     settings: Settings = lambda engine: {},
     by_parts: bool = False,
+    finish: Callable[[Engine, Any], Any] = lambda engine, value: value,
 ) -> Callable[[Callable[[Engine], T]], Stage[T]]:
     """Make a stage of the function that computes it.
 
     Parameters
     ----------
-    name, title, needs, settings, by_parts
+    name, title, needs, settings, by_parts, finish
         As of `Stage`.
     keys : str
         Sections of the scene, or single keys of them, that the result depends on, separated by blanks.
@@ -88,7 +93,8 @@ def stage(
         values = {key: reduce(getattr, key.split("."), of(scene)) for key in keys.split()}
         return {key: v.model_dump() if isinstance(v, Section) else v for key, v in values.items()}
 
-    return lambda compute: Stage(name, title, compute, inputs, needs, tuple(kept.split()), settings, by_parts)
+    packages = tuple(kept.split())
+    return lambda compute: Stage(name, title, compute, inputs, needs, packages, settings, by_parts, finish)
 
 
 @dataclass(frozen=True)
@@ -209,7 +215,8 @@ class Engine:
         self._elsewhere.append(0.0)
         self._parts.append(part)
         try:
-            (value, heard), cached = self._found(stage, packages)
+            (found, heard), cached = self._found(stage, packages)
+            value: T = stage.finish(self, found)
         finally:  # a stage that fails leaves the clocks of the others right
             self._parts.pop()
             whole = time.perf_counter() - start

@@ -19,7 +19,7 @@ from flankfilm.stages.catalogue import MESH, PAIR, PLAN, decided
 from flankfilm.stages.damping import FILM_DAMPING, damping_ratio
 from flankfilm.stages.engine import Engine, stage
 from flankfilm.stages.excitation import EXCITATION
-from flankfilm.stages.ranges import frequency_range, moving_mesh
+from flankfilm.stages.ranges import frequency_range
 
 
 @stage(
@@ -41,11 +41,10 @@ def _series(run: Engine) -> coupling.MeshSeries:
     if scene.stiffness.model == "given":
         return coupling.given_series(**scene.stiffness.si(*GIVEN))
     if section is None:
-        return coupling.mesh_series(moving_mesh(run), order=1)
+        return coupling.mesh_series(run[MESH], order=1)
     order = None if section.fourier_order == "auto" else section.fourier_order
     share, bounds = run[PLAN].series or scene.tolerance, frequency_range(run, section)
-    mesh = moving_mesh(run)
-    return coupling.mesh_series(mesh, section.stiffness, order, share, bounds, damping_ratio(run))
+    return coupling.mesh_series(run[MESH], section.stiffness, order, share, bounds, damping_ratio(run))
 
 
 @stage(
@@ -134,7 +133,7 @@ def of_the_pair(run: Engine, series: coupling.MeshSeries) -> tuple[float, dict[s
     if section.error_curve is not None and (error := run[EXCITATION]) is not None:
         given["error_amplitude"], given["error_phase"] = error.amplitude, error.phase
     given["extra_inertia"] = section.extra_inertia_kg_m2.each
-    given["reference"] = section.stiffness_reference or "body"
+    given["reference"] = run.scene.reference or "body"
     return rpm * math.pi / 30.0, given
 
 

@@ -12,16 +12,6 @@ from flankfilm.stages.catalogue import MESH, PAIR
 from flankfilm.stages.engine import Engine
 
 
-def moving_mesh(run: Engine) -> coupling.MeshCycle:
-    """Mesh cycle that the motion uses, its deflection measured against what the scene asks for: the bodies."""
-    cycle, section = run[MESH], run.scene.dynamics
-    if cycle.contact is None:
-        return cycle
-    if section is None:
-        return cycle.against("body")
-    return cycle.against(section.stiffness_reference or "body", section.extra_inertia_kg_m2.each)
-
-
 def frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, float] | None:
     """Range of the mesh frequency over the natural one that sweep and diagram cover; None without either."""
     asked = [ranged for ranged in (section.sweep, section.diagram) if ranged is not None]
@@ -29,7 +19,7 @@ def frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, float
         return None
     ends = [end for ranged in asked for end in ranged.frequency or ()]
     if not section.dimensionless:
-        mean = moving_mesh(run).mean(section.stiffness)
+        mean = run[MESH].mean(section.stiffness)
         extra, length = section.extra_inertia_kg_m2.each, section.value("length_scale_um")
         scales = coupling.pair_scales(run[PAIR], pinion_torque(run.scene), mean, extra, length)
         ends += [scales.frequency_from_rpm(end) for ranged in asked for end in ranged.speed_rpm or ()]
@@ -53,4 +43,4 @@ def speeds_looked_at(run: Engine, series: coupling.MeshSeries, speed: float) -> 
 def deflection(run: Engine, section: DynamicsSection) -> float:
     """Deflection of the mesh under the scene's torque by its mean stiffness [m]."""
     force = abs(run[PAIR].normal_force(pinion_torque(run.scene)))
-    return force / moving_mesh(run).mean(section.stiffness)
+    return force / run[MESH].mean(section.stiffness)

@@ -98,7 +98,7 @@ def DYNAMIC_MAP(run: Engine) -> coupling.DynamicMap:
         given["error_amplitude"], given["error_phase"] = error.amplitude, error.phase
     given |= {
         "extra_inertia": section.extra_inertia_kg_m2.each,
-        "reference": section.stiffness_reference or "body",
+        "reference": scene.reference or "body",
     }
     speeds = np.linspace(*asked.ends, asked.points) * math.pi / 30.0
     order = run[FOURIER].order
@@ -108,8 +108,6 @@ def DYNAMIC_MAP(run: Engine) -> coupling.DynamicMap:
 
     def at(torque: float) -> coupling.PairOscillator | coupling.PairDrive:
         cycle = _mesh_at(run, torque)
-        if cycle.contact is not None:
-            cycle = cycle.against(section.stiffness_reference or "body", section.extra_inertia_kg_m2.each)
         series = coupling.mesh_series(cycle, section.stiffness, order)
         if shafts is not None:
             return coupling.pair_drive(run[PAIR], series, torque, float(speeds[0]), **shafts, **given)

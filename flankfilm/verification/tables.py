@@ -23,12 +23,11 @@ if TYPE_CHECKING:
 
 def table(found: Verification, reference: Curves) -> Table:
     """Tabulate every model against one reference: a row for each figure."""
-    from flankfilm.report.other_pages import compared
+    from flankfilm.report.other_pages import compared, compared_with
 
     name = reference.label
     heads = "figure", "unit", "finite elements", *(model.label for model in found.models)
-    title = f"against finite elements, {name}" if reference.left_out else f"against {name}"
-    return _laid_out(title, heads, compared(found, name))
+    return _laid_out(f"against {compared_with(found, name)}", heads, compared(found, name))
 
 
 def face_table(models: FaceLoadModels) -> Table:

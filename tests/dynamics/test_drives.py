@@ -13,6 +13,7 @@ import dynamics
 from base import InputError
 from dynamics import DriveOscillator, FourierStiffness, GearOscillator, find_orbit, period_map, trajectory
 from dynamics.drives.coordinates import coordinates_of
+from dynamics.drives.flow import drive_flow
 
 SERIES = FourierStiffness(1.0, (0.18, 0.05), (0.3, 1.0))
 ERROR, PHASE = (0.2, 0.03), (0.4, 1.0)
@@ -188,6 +189,36 @@ def test_four_freedoms_against_an_integrator(changes):
     assert crossings > 3 or drive.half_backlash == 0.0
     assert ours.state == pytest.approx(state, abs=1e-9)
     assert ours.jacobian == pytest.approx(jacobian, abs=1e-8 * np.max(np.abs(jacobian)))
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"mean_force": [0.4, 0.0, 0.0, 0.48], "frequency": 0.11},  # never out of contact
+        {"frequency": 0.23, "half_backlash": 0.05},  # impacts in some strides, on both flanks
+        {"frequency": 0.23, "mean_force": [-0.1, 0.0, 0.0, -0.12]},  # mostly on the other flanks
+    ],
+)
+def test_strides_of_many_cells_are_the_cells_one_by_one(changes):
+    """A motion that is followed for long takes eight cells at once where no impact can be; derivatives as well."""
+    drive = chain(free_mesh_damping=0.01, **changes)
+    start = drive.rest_state() + (1.0 if drive.frequency > 0.2 else 0.05) * KICK
+    cells = drive_flow(drive)
+    short = [cells.follow(start)]
+    for _ in range(3):
+        short.append(cells.follow(short[-1].state))
+    assert "in_strides" not in vars(cells)
+    strides = drive_flow(drive)
+    assert len(strides.in_strides[-1]) == strides.cells // 8 > 4
+    found = strides.follow(start, 4)
+    np.testing.assert_allclose(found.states, [one.state for one in short], rtol=0.0, atol=1e-12)
+    jacobian = np.linalg.multi_dot([one.jacobian for one in reversed(short)])
+    np.testing.assert_allclose(found.jacobian, jacobian, rtol=0.0, atol=1e-11)
+    np.testing.assert_array_equal(found.counts, np.vstack([one.counts for one in short]))
+    assert found.log_determinant == pytest.approx(sum(one.log_determinant for one in short), rel=1e-12)
+    many = drive_flow(drive)
+    many.follow(start, 100, derivatives=False)
+    assert "in_strides" in vars(many)
 
 
 def test_unlike_masses_and_matrices_that_are_not_symmetric():

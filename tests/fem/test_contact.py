@@ -26,7 +26,7 @@ def free(article_pair, article_bodies):
 
 @pytest.mark.parametrize("beyond", [False, True])
 def test_shares_add_up_and_deflections_are_equal(article_pair, article_bodies, beyond):
-    cycle = fem.mesh_cycle(article_pair, 600.0, 23, article_bodies, beyond_path=beyond)
+    cycle = fem.mesh_cycle(article_pair, 600.0, 23, article_bodies, beyond_path=beyond, reference="bore")
     np.testing.assert_allclose(cycle.load_share.sum(axis=1), 1.0, atol=1e-12)
     assert np.all(cycle.load_share >= 0)
     for row in range(23):
@@ -55,7 +55,7 @@ def test_one_pair_alone_is_the_single_pair(article_pair, article_bodies, path_on
     assert len(alone) == 12  # 0.297 of a base pitch
     for row in alone:
         rho1 = path_only.rho1[row, path_only.forces[row] > 0]
-        k = fem.single_pair_stiffness(article_pair, path_only.force, rho1, article_bodies)
+        k = fem.single_pair_stiffness(article_pair, path_only.force, rho1, article_bodies, reference="body")
         assert path_only.secant_stiffness[row] == pytest.approx(float(k[0]), rel=1e-9)
 
 
@@ -179,7 +179,7 @@ def test_film_is_in_series_with_each_pair_before_sharing(article_pair):
 
 
 def test_a_given_compliance_is_not_computed_again(article_pair, article_bodies):
-    cycle = fem.mesh_cycle(article_pair, 500.0, 40, article_bodies)
+    cycle = fem.mesh_cycle(article_pair, 500.0, 40, article_bodies, reference="bore")
     assert set(cycle.cost.parts) == {"contact"}
     assert cycle.error == article_bodies.error
 

@@ -14,4 +14,9 @@ that travel together:
 - `maps`, (2 cells, 2 m + 2, 2 m): the map over the whole cell, A, b and d, transposed: z becomes A z + b + region D d.
   The first `cells` rows hold in contact, the others in the dead zone.
 - `reach`, (2 cells, 2 m + 2): factors which bound how far y departs from its chord, reach . (|z|, 1, D).
+- `strides`, (cells // STRIDE, 2 m + 2, 2 m + 2 STRIDE), see `tabulating.gather`: the same of so many cells in contact
+  at once, for motions that are followed long enough to be worth it; none for others.
 """
+
+STRIDE = 8
+"""Cells of a stride."""

@@ -20,19 +20,21 @@ from dynamics.kernels.compiling import (
     maker,
     shared,
 )
+from dynamics.kernels.drives import STRIDE
+from dynamics.kernels.drives.columns import multiply, scale_rows, straighten
 from dynamics.kernels.drives.expanding import evaluate, evaluate_many, excite, expand, expand_many
 from dynamics.kernels.regions import clear, enter, leave, start
 from dynamics.kernels.roots import binomials, copy, shift
 
-Drive = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
-"""par, systems, load, series, maps, reach"""
-Room = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+Drive = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+"""par, systems, load, series, maps, reach, strides"""
+Room = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 """A motion and its push (m, degree + 1), six rows of as many, a state (2 m,), what `binomials` gives; motions of many
-columns (degree + 1, m, 2 m), and as many states (2 m, 2 m)."""
+columns (degree + 1, m, 2 m), as many states (2 m, 2 m), and the end of a stride."""
 
 
-DRIVE = "Tuple((f8[::1], f8[:, :, ::1], f8[:, ::1], f8[:, :, ::1], f8[:, :, ::1], f8[:, ::1]))"
-ROOM = "Tuple((f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[::1], f8[:, ::1], f8[:, :, ::1], f8[:, ::1]))"
+DRIVE = "Tuple((f8[::1], f8[:, :, ::1], f8[:, ::1], f8[:, :, ::1], f8[:, :, ::1], f8[:, ::1], f8[:, :, ::1]))"
+ROOM = "Tuple((f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[::1], f8[:, ::1], f8[:, :, ::1], f8[:, ::1], f8[::1]))"
 
 
 @maker
@@ -47,6 +49,7 @@ def room_for(m: int, n: int) -> Room:
         binomials(n - 1),
         many,
         square,
+        np.empty(2 * m + 2 * STRIDE),
     )
 
 
@@ -56,7 +59,7 @@ def aim(
     z: FloatArray, room: Room,
 ) -> None:  # fmt: skip
     """Expand the motion through z at s of a cell, which becomes room[0]; stiffness and push about s are kept, too."""
-    a, push, lines, _, choose, _, _ = room
+    a, push, lines, _, choose, _, _, _ = room
     m = len(a)
     if s == 0.0:
         copy(series[cell, 0], lines[0])
@@ -74,7 +77,7 @@ def aim(
 @helper
 def carry_columns(systems: FloatArray, kind: int, t: float, jac: FloatArray, room: Room) -> None:
     """Sensitivities over a time t after what `aim` expanded."""
-    _, _, lines, _, _, many, _ = room
+    _, _, lines, _, _, many, _, _ = room
     expand_many(systems, lines[0], kind, jac, many)
     evaluate_many(many, t, jac)
 
@@ -91,8 +94,8 @@ def cross_cell(
     count: IntArray,
 ) -> tuple[int, int]:
     """Carry the state z through a cell that may hold impacts; counts exits and entries, and the time in contact."""
-    par, systems, load, series, _, _ = table
-    a, _, lines, _, _, _, _ = room
+    par, systems, load, series, _, _, _ = table
+    a, _, lines, _, _, _, _, _ = room
     m, s, fresh = len(a), 0.0, ZERO
     for _ in range(MAX_EVENTS):
         aim(systems, load, series, cell, s, region, par[HALF_BACKLASH], z, room)
@@ -120,47 +123,28 @@ def cross_cell(
 
 
 @helper
-def straighten(jac: FloatArray, h: float) -> None:
-    """Make the columns of all rows but the last orthonormal, and add the logarithms of their lengths to that."""
-    n = jac.shape[1]
-    m = n // 2
-    for i in range(m, n):
-        for j in range(n):
-            jac[i, j] /= h
+def take_stride(par: FloatArray, stride: FloatArray, region: int, z: FloatArray, wide: FloatArray) -> bool:
+    """Carry a state in contact over a stride if it stays there for certain; say whether it was."""
+    n, d = len(z), par[HALF_BACKLASH]
+    reach = n + STRIDE
+    for i in range(reach):
+        wide[i] = stride[n, i] + region * d * stride[n + 1, i]
+    for i in range(reach, reach + STRIDE):
+        wide[i] = stride[n, i] + d * stride[n + 1, i]
     for j in range(n):
-        for _ in range(2):
-            for k in range(j):
-                along = 0.0
-                for i in range(n):
-                    along += jac[i, k] * jac[i, j]
-                for i in range(n):
-                    jac[i, j] -= along * jac[i, k]
-            size = 0.0
-            for i in range(n):
-                size += jac[i, j] * jac[i, j]
-            size = math.sqrt(size)
-            jac[n, j] += math.log(size)
-            for i in range(n):
-                jac[i, j] /= size
-    for i in range(m, n):
-        for j in range(n):
-            jac[i, j] *= h
-
-
-@helper
-def multiply(turned: FloatArray, jac: FloatArray, spare: FloatArray) -> None:
-    """Multiply the first rows of `jac` by the transpose of the first rows of a matrix."""
-    n = jac.shape[1]
+        size = abs(z[j])
+        for i in range(reach):
+            wide[i] += stride[j, i] * z[j]
+        for i in range(reach, reach + STRIDE):
+            wide[i] += stride[j, i] * size
+    y = z[0]
+    for k in range(STRIDE):
+        if not clear(region, par, y, wide[n + k], wide[reach + k]):
+            return False
+        y = wide[n + k]
     for i in range(n):
-        for j in range(n):
-            spare[i, j] = 0.0
-        for k in range(n):
-            factor = turned[k, i]
-            for j in range(n):
-                spare[i, j] += factor * jac[k, j]
-    for i in range(n):
-        for j in range(n):
-            jac[i, j] = spare[i, j]
+        z[i] = wide[i]
+    return True
 
 
 @shared(f"UniTuple(i8, 2)({DRIVE}, i8, i8, i8, f8[::1], i8, f8[:, ::1], {ROOM}, i8[::1])")
@@ -169,11 +153,20 @@ def some_cells(
     count: IntArray,
 ) -> tuple[int, int]:  # fmt: skip
     """Carry a state over some cells; returns its region and a flag. `want` and `jac` as in `iterate`, in cells."""
-    par, _, _, series, maps, reach = table
-    _, _, lines, end, _, _, square = room
+    par, _, _, series, maps, reach, strides = table
+    _, _, lines, end, _, _, square, wide = room
     cells, n, d = len(series), len(z), par[HALF_BACKLASH]
-    for at in range(first, first + number):
+    at, last = first, first + number
+    while at < last:
         cell = at % cells
+        which = cell // STRIDE
+        whole = which * STRIDE == cell and which < len(strides) and at + STRIDE <= last
+        if whole and want < 2 and region != 0 and take_stride(par, strides[which], region, z, wide):
+            if want > 0:
+                multiply(strides[which], jac, square)
+            lines[4, 0] += STRIDE
+            at += STRIDE
+            continue
         row = cell if region != 0 else cell + cells
         bound = reach[row, n] + d * reach[row, n + 1]
         for i in range(n):
@@ -194,6 +187,7 @@ def some_cells(
                 return region, flag
         if want == 2 and (cell % 8 == 7 or cell == cells - 1):
             straighten(jac, 2.0 * math.pi / par[FREQUENCY] / cells)
+        at += 1
     size = 0.0
     for i in range(n):
         size += abs(z[i])
@@ -222,15 +216,6 @@ def leave_cells(par: FloatArray, h: float, region: int, z: FloatArray, state: Fl
     state[0] += region * par[HALF_BACKLASH]
 
 
-@helper
-def scale_rows(jac: FloatArray, factor: float) -> None:
-    """Multiply the rows of the speeds."""
-    n = jac.shape[1]
-    for i in range(n // 2, n):
-        for j in range(n):
-            jac[i, j] *= factor
-
-
 @kernel
 def iterate(
     table: Drive, first: int, number: int, state: FloatArray, skip: int, want: int, jac: FloatArray,
@@ -241,7 +226,7 @@ def iterate(
     A round is `number` cells from cell `first`, a period if these are 0 and all. `want`, `jac`: as for one freedom,
     2 m columns. `clock`, (1,): time in contact is added.
     """
-    par, _, load, series, _, _ = table
+    par, _, load, series, _, _, _ = table
     m, n = load.shape[1], series.shape[2]
     h = 2.0 * math.pi / par[FREQUENCY] / len(series)
     room = room_for(m, n)
@@ -273,7 +258,7 @@ def settle(
 
     `homes`, (any, 2 m + 2): state, attractor and its period for every point of every attractor.
     """
-    par, _, load, series, _, _ = table
+    par, _, load, series, _, _, _ = table
     m, n = load.shape[1], series.shape[2]
     h = 2.0 * math.pi / par[FREQUENCY] / len(series)
     room = room_for(m, n)

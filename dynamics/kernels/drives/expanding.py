@@ -1,11 +1,6 @@
-"""Taylor polynomials of a motion in several freedoms, and the tables made of them."""
+"""Taylor polynomials of a motion in several freedoms."""
 
-import math
-
-import numpy as np
-
-from dynamics.kernels.compiling import ONE, ZERO, FloatArray, helper, kernel
-from dynamics.kernels.tables import add_harmonic, fill_roots
+from dynamics.kernels.compiling import FloatArray, helper
 
 
 @helper
@@ -106,71 +101,3 @@ def evaluate_many(a: FloatArray, t: float, out: FloatArray) -> None:
             for c in range(columns):
                 out[m + i, c] = out[m + i, c] * t + out[i, c]
                 out[i, c] = out[i, c] * t + a[k, i, c]
-
-
-@helper
-def fill_maps(
-    systems: FloatArray, load: FloatArray, series: FloatArray, maps: FloatArray, reach: FloatArray, a: FloatArray,
-    push: FloatArray, begin: FloatArray,
-) -> None:  # fmt: skip
-    """Maps over the whole cells and the bounds of the departure from the chord; a, push and begin are room."""
-    n, m, columns = a.shape
-    cells, force = len(series), columns - 2
-    for row in range(2 * cells):
-        kind, cell = (0, row) if row < cells else (1, row - cells)
-        excite(systems, load, series[cell, 1], push)
-        for j in range(columns):
-            for i in range(2 * m):
-                begin[i, j] = 1.0 if i == j else 0.0
-            for i in range(m):
-                a[0, i, j] = begin[i, j]
-                a[1, i, j] = begin[m + i, j]
-        for k in range(n - 2):
-            add_many(systems, series[cell, 0], kind, k, a)
-            for i in range(m):
-                a[k + 2, i, force] += push[i, k] / ((k + 1) * (k + 2))
-                if k == 0 and kind == 0:
-                    a[2, i, force + 1] -= 0.5 * systems[0, i, 0]
-        evaluate_many(a, 1.0, begin)
-        for j in range(columns):
-            bend = 0.0
-            for k in range(2, n):
-                bend += k * (k - 1) * abs(a[k, 0, j])
-            reach[row, j] = 0.12501 * bend
-            for i in range(2 * m):
-                maps[row, j, i] = begin[i, j]
-
-
-@kernel
-def tabulate(
-    mesh: FloatArray, errors: FloatArray, cells: int, degree: int, systems: FloatArray, load: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Tables `series`, `maps` and `reach` of one period.
-
-    `mesh`, (2, 1 + J): mean and amplitudes of the mesh stiffness as in `series`, and their phases (the first unused);
-    `errors`, (2, M): amplitudes and phases of the error.
-    """
-    m, n = load.shape[1], degree + 1
-    series, maps, reach = (
-        np.zeros((cells, 2, n)),
-        np.zeros((2 * cells, 2 * m + 2, 2 * m)),
-        np.zeros((2 * cells, 2 * m + 2)),
-    )
-    sums, roots, waves = np.zeros((2, n, cells)), np.empty((2, 2 * cells)), np.empty((2, cells))
-    fill_roots(roots)
-    for cell in range(cells):
-        sums[0, 0, cell] = mesh[0, 0]
-    for which in range(2):
-        table, first = (mesh, ONE) if which == 0 else (errors, ZERO)
-        for j in range(first, table.shape[1]):
-            harmonic = j + 1 - first
-            # half a cell back, from its middle to its start
-            at = table[1, j] - math.pi * harmonic / cells
-            p, q = table[0, j] * math.cos(at), table[0, j] * math.sin(at)
-            add_harmonic(sums[which], harmonic, p, q, roots, waves)
-        for k in range(n):
-            for cell in range(cells):
-                series[cell, which, k] = sums[which, k, cell]
-    a, begin = np.empty((n, m, 2 * m + 2)), np.empty((2 * m, 2 * m + 2))
-    fill_maps(systems, load, series, maps, reach, a, np.zeros((m, n)), begin)
-    return series, maps, reach

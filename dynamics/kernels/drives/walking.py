@@ -27,11 +27,11 @@ def walk(
     events: FloatArray,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Follow the motion closely; arguments and what is returned as for one freedom, samples (any, 2 m)."""
-    par, systems, load, series, _, _ = table
+    par, systems, load, series, _, _, _ = table
     m, cells, n = load.shape[1], len(series), series.shape[2]
     d, h = par[HALF_BACKLASH], 2.0 * math.pi / par[FREQUENCY] / cells
     room = room_for(m, n)
-    a, _, lines, end, choose, _, _ = room
+    a, _, lines, end, choose, _, _, _ = room
     z = np.empty(2 * m)
     g, b, rest, spare = lines[2], lines[3], lines[4], lines[5]
     region = enter_cells(par, h, state, z)
