@@ -112,7 +112,10 @@ def DYNAMIC_MAP(run: Engine) -> coupling.DynamicMap:
             cycle = cycle.against(section.stiffness_reference or "body", section.extra_inertia_kg_m2.each)
         series = coupling.mesh_series(cycle, section.stiffness, order)
         if shafts is not None:
-            return coupling.pair_drive(run[PAIR], series, torque, float(speeds[0]), **shafts, **given)
+            tilting = coupling.tilting_mesh(cycle)
+            return coupling.pair_drive(
+                run[PAIR], series, torque, float(speeds[0]), **shafts, **given, **tilting
+            )
         return coupling.pair_oscillator(run[PAIR], series, torque, float(speeds[0]), **given)
 
     return coupling.dynamic_map(at, operating.torques_Nm, speeds)
