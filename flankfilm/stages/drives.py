@@ -49,6 +49,7 @@ def DRIVE_SWEEP(run: Engine) -> coupling.DriveSweep:
     section = required(run.scene.dynamics, "[dynamics]", "the sweep")
     asked = required(section.sweep, "dynamics.sweep", "the sweep", "add the range")
     values = np.linspace(*asked.ends, asked.points)
+    drive, rows = run[DRIVE], run.rows(DRIVE_SWEEP)
     if asked.frequency is not None:
-        return coupling.drive_sweep(run[DRIVE], frequency=values)
-    return coupling.drive_sweep(run[DRIVE], values * math.pi / 30.0)
+        return coupling.drive_sweep(drive, frequency=values, progress=rows)
+    return coupling.drive_sweep(drive, values * math.pi / 30.0, progress=rows)
