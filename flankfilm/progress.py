@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -26,6 +27,9 @@ COMPILED = {
     "ehl": "films",
 }
 """What compiled functions are for, by the beginning of their module's name; the first that fits."""
+
+PATIENCE = 5.0
+"""Seconds before the rows of a stage are shown, and between two showings."""
 
 TENTHS = 10
 """Lines that a log has of rows."""
@@ -54,6 +58,37 @@ def in_steps(progress: Progress, total: int) -> Callable[[str], None]:
         progress(what, place, max(place + 1, total))
 
     return announce
+
+
+def rows_of(
+    progress: Progress, title: str, clock: Callable[[], float] = time.perf_counter
+) -> Callable[[str, int, int], None]:
+    """Function of what is counted, how many are done and of how many: from 5 s on, every 5 s, with the time left.
+
+    Examples
+    --------
+    >>> seconds = iter([0.0, 2.0, 10.0, 11.0, 20.0])
+    >>> rows = rows_of(print, "sweep", lambda: next(seconds))
+    >>> for done in range(1, 5):
+    ...     rows("speeds", done, 8)
+    sweep: 2 of 8 speeds, 30 s left 2 8
+    sweep: 4 of 8 speeds, 20 s left 4 8
+    """
+    began = before = clock()
+    said, counted = -math.inf, ""
+
+    def show(what: str, done: int, total: int) -> None:
+        nonlocal began, before, said, counted
+        now = clock()
+        if what != counted:  # since what was counted before
+            began, said, counted = before, -math.inf, what
+        before = now
+        if now - max(began, said) < PATIENCE:
+            return
+        said, left = now, (now - began) / max(done, 1) * (total - done)
+        progress(f"{title}: {done} of {total} {what}, {left:.0f} s left", done, total)
+
+    return show
 
 
 def compiling_line(module: str) -> str:

@@ -74,6 +74,7 @@ from .sidebands import revolution_error as revolution_error
 from .single_pairs import SinglePairs as SinglePairs
 from .single_pairs import single_pair_stiffness as single_pair_stiffness
 from .single_pairs import single_pairs as single_pairs
+from .tilting_mesh import tilting_mesh as tilting_mesh
 from .truncation import MissedJump as MissedJump
 from .verification import Verification as Verification
 from .verification import compare_closed_forms as compare_closed_forms

@@ -59,12 +59,21 @@ def drive(stage: PairDrive, results: xr.Dataset) -> Part:
             "drive",
             error="unknown" if stage.error is None else percent(stage.error),
             gyroscopic=percent(stage.gyroscopic_change),
-            tilt=percent(stage.tilt_change),
+            tilt=_tilt(stage),
         ),
         *valid(stage),
     ]
     drawn = pictures(results, "drive_modes")
     return Part("drive", "Drive train", figures=drawn, tables=(Table(heads, rows),), notes=tuple(notes))
+
+
+def _tilt(stage: PairDrive) -> str:
+    """How the mesh of the train resists tilt, and what is left out of that."""
+    change = percent(stage.tilt_change)
+    if not stage.tilt_stiffness:
+        return said("drive_gives_way", change=change)
+    centre = number(1e3 * stage.load_centre)
+    return said("drive_resists", change=change, stiffness=number(stage.tilt_stiffness), centre=centre)
 
 
 def valid(stage: PairDrive | DriveSweep) -> list[str]:

@@ -9,7 +9,7 @@ import xarray as xr
 from numba import njit
 
 from base import hide_compilation
-from flankfilm.progress import compiling_line, console_progress, console_rows
+from flankfilm.progress import compiling_line, console_progress, console_rows, rows_of
 from flankfilm.report.contents import summary
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
@@ -44,6 +44,22 @@ def test_a_log_has_a_line_for_each_tenth_of_the_rows(capsys):
         for done in range(201):
             progress(done, 200)
     assert said(capsys.readouterr().err) == [f"{20 * tenth} of 200 rows" for tenth in range(11)]
+
+
+def test_rows_of_a_stage_are_shown_from_five_seconds_on(capsys):
+    """Every 5 s with the time left by the pace so far; what is counted next has a pace of its own."""
+    now = [0.0]
+    with console_progress() as progress:
+        rows = rows_of(progress, "sweep", lambda: now[0])
+        for done in range(1, 11):
+            now[0] += 2.0
+            rows("speeds", done, 10)
+        for done in range(1, 4):
+            now[0] += 6.0
+            rows("peaks", done, 3)
+    expected = ["3 of 10 speeds, 14", "6 of 10 speeds, 8", "9 of 10 speeds, 2"]
+    expected += ["1 of 3 peaks, 12", "2 of 3 peaks, 6", "3 of 3 peaks, 0"]
+    assert said(capsys.readouterr().err) == [f"sweep: {one} s left" for one in expected]
 
 
 def test_geometry_alone_needs_no_material_is_printed_and_written(tmp_path):
