@@ -45,7 +45,7 @@ def one_or_several(
     ) -> MeshCycle | tuple[MeshCycle, ...]:
         with Faults() as found:
             check_pair(found, pair)
-            torques = numbers_of(found, "torque", torque)
+            torques = numbers_of(found, "torque", torque, "give N m")
         cycles = sweep(pair, np.atleast_1d(torques).ravel(), *args, **kwargs)
         return cycles if np.ndim(torque) else cycles[0]
 
