@@ -16,6 +16,7 @@ import numpy as np
 
 from base import Cost, Faults, Limit, Stopwatch
 from fem.bodies import Compliance
+from fem.checked import check_pair
 from fem.elasticity import PlaneElasticity, check_plane
 from fem.flamant import hertz_indentation
 from fem.gear_shape import MeshedShape, shapes
@@ -114,6 +115,7 @@ def compliance(
     from meshes import Sizes
 
     found = Faults()
+    check_pair(found, pair)
     found.number("tolerance", tolerance, TOLERANCE)
     check_plane(found, plane)
     if refinements is not None:
