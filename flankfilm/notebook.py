@@ -152,6 +152,6 @@ def optimum_html(found: Optimum) -> str:
         for point in chosen
     ]
     said = "".join(f"<p>{escape(line)}</p>" for line in claims(found))
-    size = f"{len(found.evaluations)} points, {found.computed} computed in {found.seconds:.1f} s"
+    size = f"{found.points} points, {found.computed} computed in {found.seconds:.1f} s"
     head = f"<p><b>{escape(task.asked.title or 'Optimisation')}</b>: {escape(size)}</p>"
     return f"{head}{table(('row', *task.keys, *task.outputs), rows)}{said}{picture(found)}"

@@ -12,7 +12,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from base import Fault, InputError, shorten
-from base.units import unit_of
+from base.units import factor, unit_of
 from flankfilm.scene.key import Key, key_of
 from flankfilm.scene.section import Section
 
@@ -42,6 +42,15 @@ _RANGES = tuple(_ALLOWED)[:4]
 MOST_FAULTS = 90
 """Faults of one file that are explained; a list of thousands helps nobody."""
 
+HELICAL = ("helix", "beta")
+"""How keys of helical gears begin."""
+
+INCHES = ("_in", "_inch", "_inches")
+"""Ends of keys in inches."""
+
+INCH = 0.0254
+"""[m]"""
+
 LONGEST_PATH = 200
 """Characters of a key's path in a fault."""
 
@@ -49,7 +58,15 @@ LONGEST_PATH = 200
 def explain_all(items: Iterable[Mapping[str, Any]], model: type[Section]) -> list[Fault]:
     """Faults for all findings, those of one key (a union's members) joined by "or"."""
     joined: dict[str, Fault] = {}
-    for fault in (fault for item in items for fault in explain(item, model)):
+    found = list(items)
+    inches = {
+        (*item["loc"][:-1], name)
+        for item in found
+        if item["type"] == "extra_forbidden" and str(item["loc"][-1]).endswith(INCHES)
+        for name in _in_metric(str(item["loc"][-1]))
+    }
+    shown = (item for item in found if item["type"] != "missing" or tuple(item["loc"]) not in inches)
+    for fault in (fault for item in shown for fault in explain(item, model)):
         if len(joined) >= MOST_FAULTS:
             joined["more"] = Fault("the rest", "", "has more faults", "Fix these first")
             break
@@ -82,7 +99,7 @@ def explain(item: Mapping[str, Any], model: type[Section]) -> Iterator[Fault]:
                 fault, where=".".join([*path, *filter(None, [fault.where])])[:LONGEST_PATH] or where
             )
     elif item["type"] == "extra_forbidden":
-        yield _unknown_key(where, location, model)
+        yield _unknown_key(where, location, model, item.get("input"))
     else:
         field = _field_at(location, model)
         about = Key("") if field is None else key_of(field)
@@ -97,10 +114,15 @@ def _names_a_type(part: object) -> bool:
     return isinstance(part, str) and (part.endswith("Section") or part.startswith("literal["))
 
 
-def _unknown_key(where: str, location: tuple[Any, ...], model: type[Section]) -> Fault:
+def _unknown_key(where: str, location: tuple[Any, ...], model: type[Section], value: object) -> Fault:
     key = str(location[-1])
     fields = _model_at(location[:-1], model).model_fields
     keys = [field.alias or name for name, field in fields.items()]
+    if key.startswith(HELICAL):
+        allowed = "is not supported yet: gears are spur gears"
+        return Fault(where, shorten(value), allowed, "Leave it out for spur gears; helical gears cannot be computed")
+    if key.endswith(INCHES) and (lengths := [k for k in keys if k in _in_metric(key)]):
+        return Fault(where, shorten(value), "is in inches, which are not read", _converted(value, lengths[0]))
     near = difflib.get_close_matches(key, keys, n=1, cutoff=0.75) or [
         k for k in keys if k.split("_")[0] == key.split("_")[0] and len(key) > 2
     ]
@@ -108,6 +130,19 @@ def _unknown_key(where: str, location: tuple[Any, ...], model: type[Section]) ->
     if near and unit_of(near[0]) != unit_of(key):
         remedy += " The unit is part of the key"
     return Fault(where, "", f"is not a key of {model.called}", remedy)
+
+
+def _in_metric(key: str) -> list[str]:
+    """Names that a key in inches would have in units of the metre."""
+    stem = key.removesuffix(next(end for end in INCHES if key.endswith(end)))
+    return [f"{stem}_{unit}" for unit in ("mm", "um")]
+
+
+def _converted(value: object, key: str) -> str:
+    """Remedy for a length in inches: the key with its value in its own unit."""
+    if type(value) not in (int, float):
+        return f"Write {key}; 1 inch is 25.4 mm"
+    return f"Write {key} = {value * INCH / factor(unit_of(key)):.10g}"
 
 
 def _model_at(location: Sequence[Any], model: type[BaseModel]) -> type[BaseModel]:
