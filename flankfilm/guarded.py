@@ -18,6 +18,8 @@ PART_FAILED = 4
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """What the system says of a disk or quota that is full, and of a file that may not grow."""
+LESS_MEMORY = "give a larger tolerance, fewer points, teeth or cells of the face, or fewer --workers"
+
 INTERRUPTED = 130
 BY_SIGNAL = 128
 """What a signal's number is added to in the exit status of a command that it ended."""
@@ -37,6 +39,10 @@ def guarded(command: Callable[[], int]) -> int:
         return USER_FAULT
     except SolverError as error:
         _tell(f"flankfilm: {printable(error)}")
+        return SOLVER_FAULT
+    except MemoryError as error:
+        why = f" ({printable(error)})" if str(error) else ""
+        _tell(f"flankfilm: out of memory{why}; {LESS_MEMORY}")
         return SOLVER_FAULT
     except BrokenPipeError:
         sys.stderr.close()
