@@ -78,10 +78,12 @@ class Surface:
     current: bool = False
 
 
-_SURFACE: ContextVar[Surface] = ContextVar("_SURFACE", default=Surface())
+OWN_FIGURE = Surface()
+
+_SURFACE: ContextVar[Surface] = ContextVar("_SURFACE", default=OWN_FIGURE)
 
 NOTEBOOKS = ("inline", "ipympl", "widget", "nbagg", "notebook")
-"""Words in the names of matplotlib's backends that show each figure of pyplot by themselves, beside the one returned."""
+"""Words in the names of matplotlib's backends that show each figure of pyplot, beside the one that is returned."""
 
 
 def surface() -> Surface:
@@ -136,7 +138,7 @@ def _pyplot_at_work() -> bool:
     return not any(word in get_backend().lower() for word in NOTEBOOKS)
 
 
-def picture(result: object, on: Surface = Surface()) -> Figure:
+def picture(result: object, on: Surface = OWN_FIGURE) -> Figure:
     """Picture of a record on a surface; see `plot`.
 
     Examples

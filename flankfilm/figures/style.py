@@ -151,7 +151,9 @@ def _given(axes: tuple[Any, ...], panels: int) -> list[Axes]:
     if len(axes) != panels or not all(isinstance(one, Axes) for one in axes):
         kinds = ", ".join(dict.fromkeys(type(one).__name__ for one in axes))
         remedy = f"Give those of matplotlib's figure.subplots({panels}), or leave ax out"
-        raise InputError.at("ax", f"{len(axes)} of {kinds}", f"must be {panels} axes, one for each panel", remedy)
+        raise InputError.at(
+            "ax", f"{len(axes)} of {kinds}", f"must be {panels} axes, one for each panel", remedy
+        )
     return list(axes)
 
 

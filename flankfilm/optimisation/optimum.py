@@ -89,8 +89,7 @@ class Optimum:
         which = f"{len(self.tied)} tie" if len(self.best) == 1 else f"{len(self.best)} on the front"
         settled = "converged" if self.converged else "not converged"
         return (
-            f"Optimum({self.points} points, {which}, error {self.error:.1e}, {settled}, "
-            f"{self.seconds:.3g} s)"
+            f"Optimum({self.points} points, {which}, error {self.error:.1e}, {settled}, {self.seconds:.3g} s)"
         )
 
     _repr_html_ = view

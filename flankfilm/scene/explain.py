@@ -15,6 +15,7 @@ from base import Fault, InputError, shorten
 from base.units import factor, unit_of
 from flankfilm.scene.key import Key, key_of
 from flankfilm.scene.section import Section
+from flankfilm.scene.toml import toml
 
 _ALLOWED = {
     "greater_than": "must be greater than {gt:g}",
@@ -45,6 +46,12 @@ MOST_FAULTS = 90
 HELICAL = ("helix", "beta")
 """How keys of helical gears begin."""
 
+PLAIN = ("bool", "int", "float", "str")
+"""What a union of plain values adds to the path of a finding."""
+
+SHAPES = {"tuple_type": tuple, "model_type": dict}
+"""Findings about lists and tables, of which a key's example shows the form."""
+
 INCHES = ("_in", "_inch", "_inches")
 """Ends of keys in inches."""
 
@@ -58,7 +65,7 @@ LONGEST_PATH = 200
 def explain_all(items: Iterable[Mapping[str, Any]], model: type[Section]) -> list[Fault]:
     """Faults for all findings, those of one key (a union's members) joined by "or"."""
     joined: dict[str, Fault] = {}
-    found = list(items)
+    found = _once(list(items))
     inches = {
         (*item["loc"][:-1], name)
         for item in found
@@ -79,6 +86,12 @@ def explain_all(items: Iterable[Mapping[str, Any]], model: type[Section]) -> lis
     return list(joined.values())
 
 
+def _once(items: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Findings without those of other forms that a number which is not finite could have had."""
+    endless = {_path(item) for item in items if item["type"] == "finite_number"}
+    return [item for item in items if item["type"] == "finite_number" or _path(item) not in endless]
+
+
 def explain(item: Mapping[str, Any], model: type[Section]) -> Iterator[Fault]:
     """Faults for one finding of the validator; more than one where the rule of a section found more.
 
@@ -90,7 +103,7 @@ def explain(item: Mapping[str, Any], model: type[Section]) -> Iterator[Fault]:
         The model of the whole file, to suggest keys from.
     """
     location = tuple(item["loc"])
-    path = [str(part) for part in location if not _names_a_type(part)]
+    path = _path(item)
     where = ".".join(path)[:LONGEST_PATH] or model.called
     refused = item.get("ctx", {}).get("error")
     if isinstance(refused, InputError):
@@ -105,8 +118,18 @@ def explain(item: Mapping[str, Any], model: type[Section]) -> Iterator[Fault]:
         about = Key("") if field is None else key_of(field)
         allowed = about.allowed if item["type"] in _OF_NUMBERS else ""
         allowed = allowed or _ALLOWED.get(item["type"], item["msg"]).format(**item.get("ctx", {}))
+        if item["type"] in SHAPES and isinstance(about.example, SHAPES[item["type"]]):
+            allowed = f"{allowed.partition(', such as ')[0]}, such as {toml(about.example)}"
         value = "" if item["type"] in ("missing", "value_error") else shorten(item["input"])
         yield Fault(where, value, allowed, _remedy(item, about))
+
+
+def _path(item: Mapping[str, Any]) -> tuple[str, ...]:
+    """Keys that lead to a finding, as the user wrote them."""
+    location = tuple(item["loc"])
+    if location and location[-1] in PLAIN and item["type"] != "extra_forbidden":
+        location = location[:-1]
+    return tuple(str(part) for part in location if not _names_a_type(part))
 
 
 def _names_a_type(part: object) -> bool:
@@ -120,7 +143,9 @@ def _unknown_key(where: str, location: tuple[Any, ...], model: type[Section], va
     keys = [field.alias or name for name, field in fields.items()]
     if key.startswith(HELICAL):
         allowed = "is not supported yet: gears are spur gears"
-        return Fault(where, shorten(value), allowed, "Leave it out for spur gears; helical gears cannot be computed")
+        return Fault(
+            where, shorten(value), allowed, "Leave it out for spur gears; helical gears cannot be computed"
+        )
     if key.endswith(INCHES) and (lengths := [k for k in keys if k in _in_metric(key)]):
         return Fault(where, shorten(value), "is in inches, which are not read", _converted(value, lengths[0]))
     near = difflib.get_close_matches(key, keys, n=1, cutoff=0.75) or [
@@ -140,7 +165,7 @@ def _in_metric(key: str) -> list[str]:
 
 def _converted(value: object, key: str) -> str:
     """Remedy for a length in inches: the key with its value in its own unit."""
-    if type(value) not in (int, float):
+    if isinstance(value, bool) or not isinstance(value, int | float):
         return f"Write {key}; 1 inch is 25.4 mm"
     return f"Write {key} = {value * INCH / factor(unit_of(key)):.10g}"
 

@@ -190,7 +190,9 @@ class GearSection(Section):
         """Refuse lists without an entry for each tooth, and two keys that give the tip circle."""
         if self.tip_diameter_mm is not None and self.tip_alteration:
             value = f"{self.tip_alteration:g}"
-            raise refused("follows from tip_diameter_mm", "Give one of them", where="tip_alteration", value=value)
+            raise refused(
+                "follows from tip_diameter_mm", "Give one of them", where="tip_alteration", value=value
+            )
         if faults := list(wrong_counts(self.teeth, self.deviations, self.wear)):
             raise InputError(faults)
         return self

@@ -29,6 +29,13 @@ GIVEN = ("mean_N_per_m", "amplitudes", "phases_deg")
 """Keys of a given stiffness."""
 
 
+def _number(value: object) -> float:
+    """Finite number of a key that is not checked yet; nan for anything else."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        return math.nan
+    return float(value)
+
+
 def _torque(power_kW: float, speed_rpm: float) -> float:
     """Torque [N m] of a power at a speed."""
     return power_kW * factor("kW") / (speed_rpm * factor("rpm"))
@@ -81,11 +88,12 @@ class OperatingSection(Section):
         """Fill in the torque that follows from power and speed."""
         if not isinstance(raw, dict) or raw.get("power_kW") is None or "pinion_torque_Nm" in raw:
             return raw
-        power, speed = raw["power_kW"], raw.get("pinion_speed_rpm")
-        known = all(type(value) in (int, float) and math.isfinite(value) for value in (power, speed))
+        power, speed = _number(raw["power_kW"]), _number(raw.get("pinion_speed_rpm"))
         # where they are faulty the scene is refused for them, and not for a torque that nobody gave
-        torque = _torque(power, speed) if known and speed > 0 else 1.0
-        return {**raw, "pinion_torque_Nm": torque}
+        return {
+            **raw,
+            "pinion_torque_Nm": _torque(power, speed) if speed > 0.0 and math.isfinite(power) else 1.0,
+        }
 
     @model_validator(mode="after")
     def _power_over_speed(self) -> OperatingSection:

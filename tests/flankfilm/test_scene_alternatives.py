@@ -84,7 +84,12 @@ def test_a_power_needs_a_speed():
         ("module_mm = 2.0", "module_in = 0.1", "pair.module_in", "Write module_mm = 2.54"),
         ("backlash_um = 50", "backlash_in = 0.002", "pair.backlash_in", "Write backlash_um = 50.8"),
         ("module_mm = 2.0", 'module_in = "a"', "pair.module_in", "1 inch is 25.4 mm"),
-        ("module_mm = 2.0", "module_mm = 2.0\nhelix_angle_deg = 12", "pair.helix_angle_deg", "not supported yet"),
+        (
+            "module_mm = 2.0",
+            "module_mm = 2.0\nhelix_angle_deg = 12",
+            "pair.helix_angle_deg",
+            "not supported yet",
+        ),
     ],
 )
 def test_inches_are_refused_with_their_value_and_helices_by_name(old: str, new: str, where: str, said: str):
