@@ -84,7 +84,9 @@ def _outside(scene: Scene, pair: gears.GearPair) -> str:
     sections = (scene.pair.pinion, scene.pair.wheel)
     if scene.pair.rack != "ISO 53 A" or scene.pair.tool is not None:
         return 'the rack is not "ISO 53 A"'
-    if any(s.tip_relief is not None or s.tip_alteration or s.tip_chamfer_mm for s in sections):
+    if any(s.tip_relief is not None or s.tip_chamfer_mm for s in sections) or any(
+        gear.tip_alteration for gear in both
+    ):
         return "tips are relieved, altered or chamfered"
     if any(gear.generating_shift is not None for gear in both):
         return "a gear is cut at a generating shift"

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     import fem
     from flankfilm.coupling import LubricatedCycle
     from flankfilm.results import Results
+    from flankfilm.scene import Scene
 
 ALONG_FLANKS = ("diameter", "face_place")
 """What measured flanks are drawn over."""
@@ -133,9 +134,15 @@ def write_report(results: Results, folder: Path) -> Path:
         *_result_parts(results),
         run_parts.costs(results),
         *run_parts.decisions(results),
-        run_parts.inputs(scene.model_dump(exclude_none=True), results.dataset.attrs["versions_json"]),
+        run_parts.inputs(_asked(scene), results.dataset.attrs["versions_json"]),
     ]
     return write_page(folder, scene.title or "flankfilm", _facts(results), headlines(results), parts)
+
+
+def _asked(scene: Scene) -> dict[str, Any]:
+    """Plain values of a scene; a section [film] that it does not have says nothing of the film that was solved."""
+    unsaid = set() if "film" in scene.model_fields_set else {"film"}
+    return scene.model_dump(exclude_none=True, exclude=unsaid)
 
 
 def _facts(results: Results) -> list[Fact]:
