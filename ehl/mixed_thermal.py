@@ -116,7 +116,7 @@ def solve_mixed_thermal(
         at_bulk(contact, bulk), roughness, tolerance, supply, None if start is None else start.isothermal
     )
     search = _Search(contact, roughness, solids, bulk, tolerance, supply, warm)
-    share, reason = math.nan, cold.message
+    share, reason = math.nan, warm.message if cold.converged else cold.message
     if cold.converged and warm.converged:
         share, reason = search.share(cold)
     cost = replace(search.cost + cold.cost, seconds=watch.seconds)
