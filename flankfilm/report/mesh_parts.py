@@ -9,6 +9,7 @@ import numpy as np
 
 from flankfilm.coupling.references import MEANINGS, PARTS
 from flankfilm.figures.reading import read, read_figure
+from flankfilm.output.uncertainty import Uncertainty, uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import alike, number, percent, plus_minus
 
@@ -184,15 +185,32 @@ def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
     """Numbers for the page's head."""
     secant, tangent = (read_figure(cycle, n, face_width) for n in ("mean_secant_stiffness", "mean_stiffness"))
     error = read_figure(cycle, "transmission_error_range")
-    numerical = f"{plus_minus(cycle.mean_error)}, {cycle.label}"
-    if cycle.model_error is not None:
-        numerical += f"; model of the contacts {percent(cycle.model_error)}"
-    small = f"for small vibration; {plus_minus(cycle.errors['mean_stiffness'])}"
-    spread = f"peak to peak; {plus_minus(cycle.range_error)}"
+    off = {
+        name: uncertainty(cycle, name)
+        for name in ("mean_secant_stiffness", "mean_stiffness", "transmission_error_range")
+    }
     return [
-        Headline(secant.meaning, f"{float(secant.values):.4g}", numerical, secant.unit),
-        Headline(tangent.meaning, f"{float(tangent.values):.4g}", small, tangent.unit),
-        Headline("loaded transmission error", f"{float(error.values):.3g}", spread, error.unit),
+        Headline(
+            secant.meaning,
+            f"{float(secant.values):.4g}",
+            cycle.label,
+            secant.unit,
+            off["mean_secant_stiffness"],
+        ),
+        Headline(
+            tangent.meaning,
+            f"{float(tangent.values):.4g}",
+            "for small vibration",
+            tangent.unit,
+            off["mean_stiffness"],
+        ),
+        Headline(
+            "loaded transmission error",
+            f"{float(error.values):.3g}",
+            "peak to peak",
+            error.unit,
+            off["transmission_error_range"],
+        ),
     ]
 
 
@@ -247,10 +265,11 @@ def root_headlines(stage: RootStresses) -> list[Headline]:
     """Greatest stresses of both gears."""
     largest = [read_figure(stage.stress, f"{gear}_tension_Pa") for gear in ("pinion", "wheel")]
     values = " and ".join(f"{float(one.values):.4g}" for one in largest)
-    note = plus_minus(stage.error)
+    note = ""
     if stage.iso is not None:
-        note += f"; ISO 6336-3 nominal {' and '.join(f'{1e-6 * one:.4g}' for one in stage.iso.stresses)}"
-    return [Headline("greatest root stress, pinion and wheel", values, note, largest[0].unit)]
+        note = f"ISO 6336-3 nominal {' and '.join(f'{1e-6 * one:.4g}' for one in stage.iso.stresses)}"
+    name = "greatest root stress, pinion and wheel"
+    return [Headline(name, values, note, largest[0].unit, Uncertainty(stage.error))]
 
 
 def _iso(iso: Iso6336RootStress) -> Table:
