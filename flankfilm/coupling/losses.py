@@ -9,6 +9,7 @@ import numpy as np
 import ehl
 import gears
 from base import Cost, Faults, Stopwatch, unclocked
+from ehl.options import warn_of_pressure
 from ehl.regimes import BOUNDARY_FRICTION
 from flankfilm.coupling.films import Held
 from flankfilm.coupling.heated_films import HeatedOil
@@ -21,7 +22,7 @@ from flankfilm.coupling.losses_over_face import face_losses, of_all_cells
 from flankfilm.coupling.losses_record import MeshLosses
 from flankfilm.coupling.losses_rounds import LossRounds
 from flankfilm.coupling.mesh_cycles import resolved
-from flankfilm.coupling.warned import warned_once
+from flankfilm.coupling.warned import pressures_unsaid, warned_once
 
 POSITIONS = 40
 """Positions of a base pitch at which films are solved."""
@@ -144,7 +145,10 @@ def mesh_losses(
             at_rest if ambient_temperature is None else ambient_temperature,
         )
         band = boundary_band or (BELOW * boundary_friction, ABOVE * boundary_friction)
-        return _solved(rounds, bulk_temperatures or (at_rest, at_rest), band)
+        with pressures_unsaid():
+            losses = _solved(rounds, bulk_temperatures or (at_rest, at_rest), band)
+        warn_of_pressure(lubricant, float(losses.path.hertz_pressure.max()))
+        return losses
 
 
 def _solved(rounds: LossRounds, bulk: tuple[float, float], ends: tuple[float, float]) -> MeshLosses:

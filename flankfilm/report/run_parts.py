@@ -114,7 +114,7 @@ def _known(text: Callable[[float], str], value: float | None) -> str:
     return "" if value is None else text(value)
 
 
-def decisions(results: Results, misses: Sequence[str]) -> list[Part]:
+def decisions(results: Results, misses: Sequence[str] = ()) -> list[Part]:
     """What was decided, how the tolerance was split, what missed it, and what was warned of; no section without any."""
     plan, decided = results.plan, results.decisions
     heard: dict[str, list[str]] = {}

@@ -110,7 +110,7 @@ LOSS_OUTPUTS: tuple[Named, ...] = (
         _error(
             f"losses_error_by_{stress}_MPa",
             f"the same with an Eyring stress of {stress} MPa",
-            lambda found, end=end: found.band.end_error[end],
+            _at_end("end_error", end),
         )
         for end, stress in enumerate((5, 10))
     ),
