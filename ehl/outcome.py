@@ -173,7 +173,7 @@ def failed_film(run: Run, fine: Level, reason: str, error: float = math.nan) -> 
         thickness=blank,
         errors=FilmErrors(error),
         converged=False,
-        message=f"{reason}: {_remedy(run, fine.plan)}",
+        message=f"{reason}: {remedy(run, fine.plan)}",
     )
 
 
@@ -189,7 +189,7 @@ def _frame(run: Run, fine: Level) -> dict[str, Any]:
     }
 
 
-def _remedy(run: Run, plan: Plan) -> str:
+def remedy(run: Run, plan: Plan) -> str:
     """Say what to do about a contact that was not solved."""
     layer = isinstance(run.supply, OilLayer)
     if plan.fixed and not layer and plan.domain[0] > -1.05:

@@ -14,7 +14,7 @@ from ehl.contact import LineContact
 from ehl.film import Film
 from ehl.levels import Level, State
 from ehl.options import Options, warn_of_range
-from ehl.outcome import WORST, Found, above, film_error, spike_error
+from ehl.outcome import WORST, Found, above, film_error, remedy, spike_error
 from ehl.plan import Plan
 from ehl.regressions import moes_central
 from ehl.run import Run
@@ -265,7 +265,7 @@ def _refine(run: Run, coarse: Level, fine: Level, options: Options) -> Found:
         if n > _MOST_NODES:
             nodes = fine.grid.nodes.size
             if options.spike is None and worst < WORST:
-                note = above(worst, options.tolerance, nodes)
+                note = f"{above(worst, options.tolerance, nodes)}: {remedy(run, fine.plan)}"
                 return Found(run, coarse, fine, worst, inlet, note=note, supply=run.supply)
             left = f"error {worst:.2g}" if worst > options.tolerance else f"error {off:.2g} of the spike"
             return Found(run, coarse, fine, worst, inlet, f"{left} left on {nodes} nodes")
