@@ -35,6 +35,7 @@ from .loads import torque_curves as torque_curves
 from .losses import mesh_losses as mesh_losses
 from .losses_along_path import LossesAlongPath as LossesAlongPath
 from .losses_over_face import FaceLosses as FaceLosses
+from .losses_record import BoundaryBand as BoundaryBand
 from .losses_record import LossBand as LossBand
 from .losses_record import MeshLosses as MeshLosses
 from .lubricated import film_along_path as film_along_path

@@ -9,8 +9,9 @@ import numpy as np
 
 from base.units import factor
 from flankfilm.coupling.carried import PARTS
+from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import counted, number, percent, plus_minus
+from flankfilm.report.text import counted, number, percent
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -205,15 +206,12 @@ def headlines(stage: DriveSweep) -> list[Headline]:
             getattr(stage, f"{figure}_peak_error")[at],
             RPM * getattr(stage, f"{figure}_peak_speed")[at],
         )
-        error = (
-            f"{plus_minus(off)} by the band of the damping and the search"
-            if np.isfinite(off)
-            else "error unknown"
-        )
+        sampled = min(stage.sampling_error, off)
+        known_off = Uncertainty(sampled, off - sampled) if np.isfinite(off) else Uncertainty(None)
+        note = f"{names[at]}, at {rpm:.0f} rpm; model: the band of the damping and the search"
         if stage.carried_error is not None:
             left = stage.carried_error - stage.sampling_error
             known = f"up to {percent(left)}" if np.isfinite(left) else "more, in places unknown,"
-            error += f", {known} by harmonics that the series leaves out"
-        note = f"{names[at]}, at {rpm:.0f} rpm; {error}"
-        found.append(Headline(what, number(float(values[at])), note, unit))
+            note += f"; {known} by harmonics that the series leaves out"
+        found.append(Headline(what, number(float(values[at])), note, unit, known_off))
     return found
