@@ -107,6 +107,7 @@ class MeshCycle(PairFigures, MeshFigures):
         "tangent dF/dD: small vibration about the load; shafts under the face held",
         "position",
         error="error",
+        called="tangent_stiffness",
     )
     secant_stiffness: Array = quantity(
         "N/m",

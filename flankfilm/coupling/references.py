@@ -71,6 +71,7 @@ class StiffnessReferences:
         "mean mesh stiffness (tangent) by what the deflection is measured against",
         "reference",
         error="mean_error",
+        called="mean_tangent_stiffness",
     )
     mean_secant_stiffness: Array = quantity(
         "N/m",
