@@ -73,6 +73,9 @@ class Figure:
     model_error : str
         Name of the record's figure or property that holds what the model leaves open, relative, as `error` has the
         numerical error; empty where it is not estimated.
+    called : str
+        What variables and columns of files are called, where the record's own name says less; for one version they
+        have that name too.
     """
 
     unit: str
@@ -82,6 +85,7 @@ class Figure:
     error: str = ""
     no_error: str = ""
     model_error: str = ""
+    called: str = ""
 
     @property
     def read_in(self) -> str:
@@ -121,6 +125,7 @@ def quantity(
     error: str = "",
     no_error: str = "",
     model_error: str = "",
+    called: str = "",
     default: Any = dataclasses.MISSING,
     default_factory: Any = dataclasses.MISSING,
 ) -> Any:
@@ -128,7 +133,7 @@ def quantity(
 
     Parameters
     ----------
-    unit, meaning, shown, error, no_error, model_error : str
+    unit, meaning, shown, error, no_error, model_error, called : str
         As of `Figure`.
     dims : str
         Names of its axes, separated by blanks.
@@ -143,7 +148,7 @@ def quantity(
     >>> Film(0.5e-6)
     Film(minimum 5e-07 m)
     """
-    figure = Figure(unit, meaning, tuple(dims.split()), shown, error, no_error, model_error)
+    figure = Figure(unit, meaning, tuple(dims.split()), shown, error, no_error, model_error, called)
     return _field({"figure": figure}, default=default, default_factory=default_factory)
 
 
@@ -194,13 +199,14 @@ def described(
     error: str = "",
     no_error: str = "",
     model_error: str = "",
+    called: str = "",
     kept: bool = False,
 ) -> Callable[[Callable[[Any], T]], Described[T]]:
     """Make a function a property that is a figure; its docstring's first line is the meaning.
 
     Parameters
     ----------
-    unit, dims, shown, error, no_error, model_error : str
+    unit, dims, shown, error, no_error, model_error, called : str
         As of `quantity`.
     kept : bool
         Whether the value is kept once it has been computed.
@@ -223,7 +229,7 @@ def described(
     def made(function: Callable[[Any], T]) -> Any:
         meaning = (function.__doc__ or "").strip().split("\n")[0].rstrip(".")
         found: Any = cached_property(function) if kept else Described(function)
-        found.__figure__ = Figure(unit, meaning, tuple(dims.split()), shown, error, no_error, model_error)
+        found.__figure__ = Figure(unit, meaning, tuple(dims.split()), shown, error, no_error, model_error, called)
         return found
 
     return made

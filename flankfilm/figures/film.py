@@ -191,10 +191,12 @@ def film_changes(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, FILM, "dry_stiffness", "lubricated_stiffness", "lubricated_label")
-    dry, wet = (read(results, f"{name}_stiffness", per_face=True) for name in ("dry", "lubricated"))
+    need(results, FILM, "dry_tangent_stiffness", "lubricated_tangent_stiffness", "lubricated_label")
+    dry, wet = (read(results, f"{name}_tangent_stiffness", per_face=True) for name in ("dry", "lubricated"))
     position = read(results, "dry_position")
-    cycles = beside(results, "held_stiffness", per_face=True) or {text(results, "lubricated_label"): wet}
+    cycles = beside(results, "held_tangent_stiffness", per_face=True) or {
+        text(results, "lubricated_label"): wet
+    }
     changes = {
         label: Reading(100 * (cycle.values / dry.values - 1), "change by the film", "%")
         for label, cycle in cycles.items()

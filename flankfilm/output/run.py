@@ -68,7 +68,7 @@ HERTZ = "not estimated: Hertz's law of the contact's force, whose error is not k
 STRESSES = ("eyring_stress", "mean_friction", "sliding_loss", "rolling_loss", "mesh_loss", "efficiency")
 """Figures of a mesh's losses by Eyring's stress."""
 
-CYCLE = ("position", "secant_stiffness", "stiffness", "transmission_error", "load_share")
+CYCLE = ("position", "secant_stiffness", "tangent_stiffness", "transmission_error", "load_share")
 
 
 RESONANCE = (

@@ -1,9 +1,10 @@
 """Records as variables: a record's own figures say what its variables are called, along what, in which unit.
 
-The variable of a figure is called ``<prefix>_<figure>``. Its axes are the record's own, ``<prefix>_<axis>``, but for
-those that mean the same in every record. Attributes: ``units`` (SI), ``long_name``, ``display_units`` where people
-read another unit; ``error``, where the relative error is known, ``error_variable``, the variable that holds those
-of its entries, or ``error_note``, why there is none; ``model_error``, what the model leaves open, where it is
+The variable of a figure is called ``<prefix>_<figure>``, by the name that the figure has in files. Its axes are the
+record's own, ``<prefix>_<axis>``, but for those that mean the same in every record. Attributes: ``units`` (SI),
+``long_name``, ``display_units`` where people read another unit; ``alias_of``, the variable of which this is the older
+name, kept for one version; ``error``, where the relative error is known, ``error_variable``, the variable that holds
+those of its entries, or ``error_note``, why there is none; ``model_error``, what the model leaves open, where it is
 estimated; ``tolerance_met`` beside an ``error``. A figure of which nothing says so has none of them, which a test
 finds.
 """
@@ -115,7 +116,11 @@ def of_quantities(prefix: str, quantities: Iterable[Quantity], errors: Errors | 
             known = errors.get(quantity.name)
             error = _error(prefix, name, figure, known.get(key) if isinstance(known, Mapping) else known)
             attributes = {**_attributes(figure), **error}
-            found[joined(prefix, name)] = (_dims(prefix, figure.dims), _plain(value), attributes)
+            variable = joined(prefix, figure.called or name)
+            found[variable] = (_dims(prefix, figure.dims), _plain(value), attributes)
+            if figure.called:
+                older = {**attributes, "alias_of": variable}
+                found[joined(prefix, name)] = (*found[variable][:2], older)
     data = xr.Dataset(found)
     places = {joined(prefix, place) for place in PLACES}
     return data.set_coords([name for name in map(str, data.data_vars) if name in places])
@@ -279,6 +284,8 @@ def _errors(record: object, known: Mapping[str, Quantity]) -> dict[str, Any]:
             error = {key: f"{holds}_{identifier(key)}" for key in error}
         if np.ndim(error) and holds in known:
             error = holds
+        if isinstance(error, str) and error in known:
+            error = known[error].figure.called or error
         if isinstance(error, str | Mapping | float):
             found[name] = error
     return found

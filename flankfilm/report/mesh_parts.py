@@ -274,7 +274,7 @@ def _iso(iso: Iso6336RootStress) -> Table:
 
 def over_torque(stage: TorqueCurves, results: xr.Dataset) -> Part:
     """Stiffness and transmission error over torque."""
-    names = ("secant_stiffness", "stiffness", "transmission_error", "harmonic_1")
+    names = ("secant_stiffness", "tangent_stiffness", "transmission_error", "harmonic_1")
     curves = [read(results, f"torque_{name}", per_face=name.endswith("stiffness")) for name in names]
     shown = [read(results, "torque"), *curves]
     cells = zip(*([number(value, 5) for value in one.values.tolist()] for one in shown), strict=True)

@@ -11,7 +11,7 @@ ROUNDING = 1e-12
 
 _HELD: Mapping[str, tuple[str, ...]] = {
     "stiffness_error": ("mean_secant_stiffness_N_per_mm_um",),
-    "tangent_stiffness_error": ("mean_stiffness_N_per_mm_um",),
+    "tangent_stiffness_error": ("mean_tangent_stiffness_N_per_mm_um", "mean_stiffness_N_per_mm_um"),
     "transmission_error_error": ("transmission_error_um",),
     "face_load_factor_error": ("face_load_factor",),
     "greatest_line_load_error": ("greatest_line_load_N_per_mm",),

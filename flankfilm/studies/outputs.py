@@ -32,6 +32,8 @@ from flankfilm.studies.motion_outputs import MOTION_OUTPUTS
 from flankfilm.studies.output import Named, Output, Take, in_result, output_of, outputs_from
 from gears import GearPair, WarmPair
 
+OLDER = "older name, kept for one version, of"
+
 UNRESOLVED = "nan where it is narrower than grids resolve"
 
 
@@ -183,7 +185,8 @@ OUTPUTS: Mapping[str, Output] = dict(
             "largest {}, A to E",
         ),
         _per_face("mean_secant_stiffness"),
-        _per_face("mean_stiffness"),
+        _per_face("mean_stiffness", name="mean_tangent_stiffness"),
+        _per_face("mean_stiffness", said=f"{{}}; {OLDER} mean_tangent_stiffness_N_per_mm_um"),
         _per_face("least_secant_stiffness"),
         _per_face("greatest_secant_stiffness", name="largest_secant_stiffness"),
         _mesh("transmission_error_range", name="transmission_error"),
