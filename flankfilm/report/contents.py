@@ -21,7 +21,7 @@ from flankfilm.report import (
     run_parts,
     speed_parts,
 )
-from flankfilm.report.page import Fact, Headline, Part, said, write_page
+from flankfilm.report.page import Fact, Head, Headline, Part, said, write_page
 from flankfilm.report.text import counted, percent, seconds
 
 if TYPE_CHECKING:
@@ -135,7 +135,11 @@ def write_report(results: Results, folder: Path) -> Path:
         *run_parts.decisions(results),
         run_parts.inputs(scene.model_dump(exclude_none=True), results.dataset.attrs["versions_json"]),
     ]
-    return write_page(folder, scene.title or "flankfilm", _facts(results), headlines(results), parts)
+    drawing = None if results.values.get("pair") is None else pair_parts.drawing(results.dataset)
+    head = Head(
+        scene.title or "flankfilm", _facts(results), headlines(results), run_parts.warnings(results), drawing
+    )
+    return write_page(folder, head, parts)
 
 
 def _facts(results: Results) -> list[Fact]:
@@ -152,10 +156,6 @@ def _facts(results: Results) -> list[Fact]:
             at = [f"{value:g} {unit}" for unit, value in asked.items() if value is not None]
             facts.append(Fact("pinion: " + ", ".join(at)))
     facts.append(Fact(f"tolerance {percent(scene.tolerance)}, {seconds(results.seconds)}", "costs"))
-    if count := len(run_parts.misses(results)):
-        facts.append(Fact(f"{counted(count, 'figure')} beyond the tolerance, or in doubt", "decisions"))
-    if count := len({text for run in results.runs.values() for text in run.warnings}):
-        facts.append(Fact(counted(count, "warning"), "decisions"))
     return facts
 
 

@@ -102,7 +102,7 @@ def film_damping(stage: FilmDamping, _: xr.Dataset) -> Part:
 
 def sweep(stage: SpeedSweep, results: xr.Dataset) -> Part:
     """Draw the sweeps and portraits."""
-    drawn = pictures(results, "sweep", "resonance", *(["portraits"] if stage.portraits else []))
+    drawn = pictures(results, "resonance", "sweep", *(["portraits"] if stage.portraits else []))
     notes = []
     if stage.grazings.size:
         at = "omega = " + ", ".join(f"{g:.6g}" for g in stage.grazings)

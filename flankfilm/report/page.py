@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from flankfilm import figures
 from flankfilm.figures.style import to_svg
 from flankfilm.output.files import write_text
+from flankfilm.report.text import counted
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,6 +33,9 @@ class Drawing:
     caption: str
     function: str = ""
 
+
+CARDS, SHOWN = 8, 6
+"""Figures and warnings on the first screen; more unfold."""
 
 FEW, MANY = 3, 7
 """Columns of a table that is no wider than it needs to be, and more than those of one in the page's own type."""
@@ -90,7 +94,19 @@ def _side(column: Sequence[str]) -> str:
 
 @dataclass(frozen=True)
 class Part:
-    """One section of the report."""
+    """One section of the report: its text and first figure are seen at once, the rest unfolds.
+
+    Attributes
+    ----------
+    anchor, title : str
+    paragraphs, notes : tuple of str
+    figures : tuple of Drawing
+    tables : tuple of Table
+    code : str
+        Shown in the type of a file.
+    unfolded : bool
+        Whether all of it is seen at once.
+    """
 
     anchor: str
     title: str
@@ -99,6 +115,20 @@ class Part:
     tables: tuple[Table, ...] = ()
     notes: tuple[str, ...] = ()
     code: str = ""
+    unfolded: bool = False
+
+    @property
+    def folded(self) -> str:
+        """Contents of what unfolds, in words; empty where there is nothing."""
+        if self.unfolded:
+            return ""
+        counts = (
+            counted(len(self.figures[1:]), "more picture"),
+            counted(len(self.tables), "table"),
+            counted(len(self.notes), "note"),
+            "the scene" if self.code else "0",
+        )
+        return ", ".join(one for one in counts if not one.startswith("0"))
 
 
 @dataclass(frozen=True)
@@ -115,12 +145,15 @@ class Headline:
         Error estimate and how it came about.
     unit : str
         Of the value; empty for pure numbers.
+    rank : int
+        Order on the page: 1 for limits of the teeth and the oil, 2 for what the pair does, 3 for the rest.
     """
 
     name: str
     text: str
     note: str = ""
     unit: str = ""
+    rank: int = 3
 
     @property
     def with_unit(self) -> str:
@@ -160,7 +193,41 @@ def _text(name: str) -> str:
     return resources.files("flankfilm.report").joinpath(name).read_text(encoding="utf-8")
 
 
-def render(title: str, facts: Sequence[Fact], headlines: Sequence[Headline], parts: Sequence[Part]) -> str:
+@dataclass(frozen=True)
+class Head:
+    """First screen of a page.
+
+    Attributes
+    ----------
+    title : str
+    facts : sequence of Fact
+    headlines : sequence of Headline
+    warnings : sequence of str
+    drawing : Drawing, optional
+    """
+
+    title: str
+    facts: Sequence[Fact]
+    headlines: Sequence[Headline]
+    warnings: Sequence[str] = ()
+    drawing: Drawing | None = None
+
+    @property
+    def cards(self) -> list[Headline]:
+        """Figures to act on, those of the lowest ranks first."""
+        return self._ranked[:CARDS]
+
+    @property
+    def more(self) -> list[Headline]:
+        """Figures that unfold."""
+        return self._ranked[CARDS:]
+
+    @property
+    def _ranked(self) -> list[Headline]:
+        return sorted(self.headlines, key=lambda one: one.rank)
+
+
+def render(head: Head, parts: Sequence[Part]) -> str:
     """Return the page's HTML."""
     import jinja2
 
@@ -172,13 +239,11 @@ def render(title: str, facts: Sequence[Fact], headlines: Sequence[Headline], par
     )
     house.filters["unbroken"] = _unbroken
     page = house.from_string(_text("report.html.j2"))
-    return str(page.render(title=title, facts=facts, headlines=headlines, sections=parts))
+    return str(page.render(head=head, shown=SHOWN, sections=parts))
 
 
-def write_page(
-    folder: Path, title: str, facts: Sequence[Fact], headlines: Sequence[Headline], parts: Sequence[Part]
-) -> Path:
+def write_page(folder: Path, head: Head, parts: Sequence[Part]) -> Path:
     """Write ``report.html`` into a folder and return its path."""
     path = folder / "report.html"
-    write_text(path, render(title, facts, headlines, parts))
+    write_text(path, render(head, parts))
     return path

@@ -99,7 +99,7 @@ def failures(results: Results) -> list[Part]:
             "not computed because of it": lambda one: needing[one.title],
         },
     )
-    return [Part("failures", "Not computed", (said("failures"),), tables=(table,))]
+    return [Part("failures", "Not computed", (said("failures"),), tables=(table,), unfolded=True)]
 
 
 def misses(results: Results) -> list[str]:
@@ -125,6 +125,15 @@ def misses(results: Results) -> list[str]:
     return above + [f"{results.runs[name].title}: {values[name].message}" for name in doubted]
 
 
+def warnings(results: Results) -> list[str]:
+    """Figures beyond the tolerance or in doubt, and what the stages warned of, each text once."""
+    heard: dict[str, list[str]] = {}
+    for run in results.runs.values():
+        for text in run.warnings:
+            heard.setdefault(text, []).append(run.title)
+    return misses(results) + [f"{', '.join(titles)}: {text}" for text, titles in heard.items()]
+
+
 def _known(text: Callable[[float], str], value: float | None) -> str:
     """Text of a number; empty where there is none."""
     return "" if value is None else text(value)
@@ -133,13 +142,8 @@ def _known(text: Callable[[float], str], value: float | None) -> str:
 def decisions(results: Results) -> list[Part]:
     """What was decided, how the tolerance was split, and what was warned of; no section without any of it."""
     plan, decided = results.plan, results.decisions
-    heard: dict[str, list[str]] = {}
-    for run in results.runs.values():
-        for text in run.warnings:
-            heard.setdefault(text, []).append(run.title)
-    warned = [f"{', '.join(titles)}: {text}" for text, titles in heard.items()]
     planned = [] if plan is None else [plan.line]
-    lines = (*misses(results), *(d.line for d in decided), *planned, *warned)
+    lines = (*warnings(results), *(d.line for d in decided), *planned)
     if not lines:
         return []
     tables = ([_decided(decided)] if decided else []) + ([_shares(plan)] if plan and len(plan.shares) else [])
