@@ -46,6 +46,23 @@ HEADLINES: Mapping[str, Callable[[Any], list[Headline]]] = {
 }
 """Stages with numbers for the page's head, after those of the mesh cycle."""
 
+OF_CYCLE = (2, 2, 2)
+"""Ranks of the figures of a mesh cycle."""
+
+RANKS: Mapping[str, tuple[int, ...]] = {
+    "film": (1,),
+    "losses": (2,),
+    "root stress": (1,),
+    "sweep": (2, 2),
+    "drive sweep": (2, 2),
+    "diagram": (2,),
+    "dynamic-map": (2,),
+}
+"""Ranks on the page of the first figures of each stage; the others follow."""
+
+PRESSED = {"stiffness", "film", "root-stress"}
+"""Wants of a scene that the contact pressure matters to."""
+
 PARTS: Mapping[str, Callable[[Any, xr.Dataset], Part]] = {
     "torques": mesh_parts.over_torque,
     "revolution": mesh_parts.revolution,
@@ -78,11 +95,18 @@ def headlines(results: Results) -> list[Headline]:
     shown = [] if cycle is None else mesh_parts.headlines(cycle, values["pair"].face_width)
     if _film_failed(results):  # a figure of dry teeth is none of lubricated ones
         shown = [replace(one, name=f"{one.name}, without the film") for one in shown]
+    shown = _ranked(shown, OF_CYCLE)
+    dry: MeshCycle | None = values.get("dry cycle")
+    if dry is not None and dry.contact is not None and PRESSED & set(results.scene.wants):
+        shown += _ranked(mesh_parts.pressure_headlines(dry.contact, values.get("closed forms")), (1,))
     if (bears := _over_face(results)) is not None:
-        shown += face_parts.headlines(bears)
+        shown += _ranked(face_parts.headlines(bears), (1,))
     for name, numbers in HEADLINES.items():
         if (found := values.get(name)) is not None:
-            shown += numbers(found)
+            shown += _ranked(numbers(found), RANKS.get(name, ()))
+    operating = results.scene.operating
+    if "sweep" in values and operating is not None and operating.pinion_speed_rpm is not None:
+        shown += _ranked(motion_parts.operating_headlines(values["sweep"]), (2,))
     if "losses" in values:
         shown = [
             replace(one, name=f"{one.name}, isothermal") if one.name == film_parts.LEAST else one
@@ -90,6 +114,13 @@ def headlines(results: Results) -> list[Headline]:
         ]
     pair = values.get("pair")
     return shown if shown or pair is None else pair_parts.headlines(pair)
+
+
+def _ranked(headlines: list[Headline], ranks: tuple[int, ...]) -> list[Headline]:
+    """Give the first figures of a stage their ranks on the page."""
+    return [replace(one, rank=rank) for one, rank in zip(headlines, ranks, strict=False)] + headlines[
+        len(ranks) :
+    ]
 
 
 def summary(results: Results) -> list[str]:

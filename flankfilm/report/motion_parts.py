@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 LONGEST = 40
 """Stable ranges listed; the data files hold all."""
 
+COEXISTS = 1.1
+"""Ratio of forces from which the sweeps met another motion than the one from rest, or a resonance beside it."""
+
 NEGLIGIBLE = 0.01
 """Part of an error below which what it is made of is not named."""
 
@@ -202,6 +205,20 @@ def _greatest(stage: SpeedSweep) -> list[Headline]:
         left = stage.force_change[way][int(np.argmin(np.abs(stage.checked - at)))]
         note += f", {percent(float(left))} by harmonics that the series leaves out"
     return [Headline("greatest force over the mean force", f"{np.nanmax(factors):.3g}", note)]
+
+
+def operating_headlines(stage: SpeedSweep) -> list[Headline]:
+    """Dynamic factor at the operating speed, and what the sweeps meet beside it where motions coexist."""
+    factor, at, rpm = stage.operating_force_factor, stage.operating_frequency, _speed(stage)
+    if rpm is None or not np.isfinite(factor):
+        return []
+    note = f"at {rpm * at:.0f} rpm, settled from rest; ± {percent(stage.sampling_error)}"
+    beside = np.searchsorted(stage.frequency, at)
+    if 0 < beside < len(stage.frequency):
+        met = np.array([*stage.force_factor.values()])[:, beside - 1 : beside + 1]
+        if np.nanmax(met, initial=0.0) > COEXISTS * factor:
+            note += f"; sweeps meet up to {np.nanmax(met):.3g} beside that speed"
+    return [Headline("dynamic factor at the operating speed", f"{factor:.4g}", note)]
 
 
 def _speed(stage: SpeedSweep) -> float | None:

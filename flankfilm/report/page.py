@@ -104,6 +104,8 @@ class Part:
     tables : tuple of Table
     code : str
         Shown in the type of a file.
+    seen : int
+        Figures that are seen at once.
     unfolded : bool
         Whether all of it is seen at once.
     """
@@ -115,6 +117,7 @@ class Part:
     tables: tuple[Table, ...] = ()
     notes: tuple[str, ...] = ()
     code: str = ""
+    seen: int = 1
     unfolded: bool = False
 
     @property
@@ -123,7 +126,7 @@ class Part:
         if self.unfolded:
             return ""
         counts = (
-            counted(len(self.figures[1:]), "more picture"),
+            counted(len(self.figures[self.seen :]), "more picture" if self.seen else "picture"),
             counted(len(self.tables), "table"),
             counted(len(self.notes), "note"),
             "the scene" if self.code else "0",

@@ -53,7 +53,7 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
         "Thicknesses, span and size over pins are of teeth thinned as they are; spans and pins touch near d + 2 x m, "
         "on the involute below any tip relief."
     )
-    return Part("geometry", "Geometry", figures=drawn, tables=tables, notes=(note,))
+    return Part("geometry", "Geometry", figures=drawn, tables=tables, notes=(note,), seen=0)
 
 
 def drawing(results: xr.Dataset) -> Drawing:
