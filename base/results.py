@@ -229,7 +229,9 @@ def described(
     def made(function: Callable[[Any], T]) -> Any:
         meaning = (function.__doc__ or "").strip().split("\n")[0].rstrip(".")
         found: Any = cached_property(function) if kept else Described(function)
-        found.__figure__ = Figure(unit, meaning, tuple(dims.split()), shown, error, no_error, model_error, called)
+        found.__figure__ = Figure(
+            unit, meaning, tuple(dims.split()), shown, error, no_error, model_error, called
+        )
         return found
 
     return made

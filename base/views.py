@@ -106,7 +106,7 @@ def plot(result: object, ax: Any = None) -> Figure:
     ----------
     result : record
     ax : matplotlib.axes.Axes, or several, optional
-        Where to draw, one for each panel of the picture; a figure of its own if left out.
+        Where to draw, one for each panel of the picture; a new figure if left out.
 
     Returns
     -------

@@ -51,7 +51,7 @@ def regime_number(ratio: float) -> float:
 
 
 def regime(ratio: float) -> str:
-    """Name of the regime at a film ratio, least film over the standard deviation of both surfaces' heights.
+    """Name of the regime at a film ratio, minimum film over the standard deviation of both surfaces' heights.
 
     Examples
     --------

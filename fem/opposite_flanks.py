@@ -157,7 +157,7 @@ def across(
 ) -> Array:
     """Compliance between contacts of front and back flanks (positions, front pairs, back pairs) [m/N].
 
-    The turn of each body on its hub is felt by all teeth, by the levers of the forces about its axis, as in the
+    The rotation of each body on its hub is felt by all teeth, by the levers of the forces about its axis, as in the
     compliance of either side: with a weak hub it is all but a small part, and what both sides yield would else not be
     that of one body. The rest dies away with the teeth between; forces at tip edges are taken along the normals of the
     flanks in it. By the mesh before the last refinement if asked.

@@ -166,7 +166,7 @@ class MeshLosses:
 
     @property
     def greatest_contact_temperature_error(self) -> float:
-        """Relative error of the flanks' greatest temperature [K]: of their rise, and of a balanced bulk."""
+        """Relative error of the flanks' maximum temperature [K]: of their rise, and of a balanced bulk."""
         bulk = 0.0
         if self.heat_transfer is not None:
             bulk = self.temperature_mismatch + self.error * float(np.max(self.heat / self.heat_transfer))
@@ -179,10 +179,10 @@ class MeshLosses:
 
     @property
     def least_film_error(self) -> float:
-        """Relative error of the least film."""
+        """Relative error of the minimum film."""
         return self.path.least_film_error
 
 
 def _farthest(ends: Array, value: float) -> float:
-    """Greatest relative difference of the ends of a band from a value."""
+    """Maximum relative difference of the ends of a band from a value."""
     return float(np.max(np.abs(ends - value))) / abs(value) if value else 0.0

@@ -254,7 +254,7 @@ def _scale_of_colours(results: xr.Dataset, folder: Path, field: str, *, over_fac
 
 
 def _in_fillets(results: xr.Dataset, folder: Path) -> float:
-    """Greatest von Mises stress below the flanks of the pictured teeth, over all positions [Pa]."""
+    """Maximum von Mises stress below the flanks of the pictured teeth, over all positions [Pa]."""
     import pyvista as pv
 
     names = results["path_point"].values.tolist()

@@ -80,7 +80,7 @@ def _boundary() -> Iterator[Named]:
         ratio = found.path.least_film_ratio
         return None if ratio is None else regime_number(ratio)
 
-    about = Figure("1", f"regime at the least film ratio with heat: {NUMBERS}; nan if smooth")
+    about = Figure("1", f"regime at the minimum film ratio with heat: {NUMBERS}; nan if smooth")
     yield output_of("regime_with_heat", about, "losses", in_result(LOSSES, regime_of))
 
 
@@ -117,17 +117,17 @@ LOSS_OUTPUTS: tuple[Named, ...] = (
     _error("efficiency_error", "estimated relative error of the mesh's efficiency", attrgetter("loss_error")),
     _error(
         "temperature_rise_error",
-        "larger estimated relative error of the greatest rises of oil and flanks",
+        "larger estimated relative error of the maximum rises of oil and flanks",
         lambda found: max(found.path.greatest_oil_rise_error, found.path.greatest_flank_rise_error.max()),
     ),
     _error(
         "flank_temperature_error",
-        "estimated relative error of the flanks' greatest temperature, in K",
+        "estimated relative error of the flanks' maximum temperature, in K",
         attrgetter("greatest_contact_temperature_error"),
     ),
     _error(
         "film_with_heat_error",
-        "estimated relative error of the least film with heat",
+        "estimated relative error of the minimum film with heat",
         attrgetter("least_film_error"),
     ),
 )

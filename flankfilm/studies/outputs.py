@@ -107,7 +107,7 @@ def _of_spike(value: Callable[[Any, Any], float]) -> Take:
 
 
 def _regime(found: LubricatedCycle) -> float | None:
-    """Regime of the least film; None for smooth flanks."""
+    """Regime of the minimum film; None for smooth flanks."""
     ratio = found.film.least_film_ratio
     return None if ratio is None else regime_number(ratio)
 
@@ -265,7 +265,7 @@ OUTPUTS: Mapping[str, Output] = dict(
         _film("least_film_ratio", name="film_ratio", said="{}; nan if smooth"),
         output_of(
             "regime",
-            Figure("1", f"regime at the least film ratio: {NUMBERS}; nan if smooth"),
+            Figure("1", f"regime at the minimum film ratio: {NUMBERS}; nan if smooth"),
             "film",
             in_result(FILM, _regime),
         ),
@@ -273,7 +273,7 @@ OUTPUTS: Mapping[str, Output] = dict(
         _film("starvation", np.min, said="minimum {} along the path; nan if flooded"),
         output_of(
             "least_film_error",
-            Figure("1", "estimated relative error of the least film and film ratio; nan where unknown"),
+            Figure("1", "estimated relative error of the minimum film and film ratio; nan where unknown"),
             "film",
             in_result(FILM, attrgetter("film.least_film_error")),
         ),
