@@ -78,7 +78,11 @@ def test_the_command(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "pair.toml").write_text(SCENE, encoding="utf-8")
     assert export_table(tmp_path / "pair.toml") == 0
-    assert (tmp_path / "pair-mesh.csv").read_text(encoding="utf-8").startswith("angle_deg,tangent_stiffness_N_per_m")
+    assert (
+        (tmp_path / "pair-mesh.csv")
+        .read_text(encoding="utf-8")
+        .startswith("angle_deg,tangent_stiffness_N_per_m")
+    )
     assert "120 positions" in capsys.readouterr().out
     (tmp_path / "bare.toml").write_text(
         SCENE.replace("[operating]\npinion_torque_Nm = 600\n", ""), encoding="utf-8"
