@@ -16,7 +16,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
-PACKAGES = ("base", "gears", "meshes", "ehl", "fem", "dynamics", "flankfilm")
+PACKAGES = ("base", "gears", "meshes", "ehl", "fem", "dynamics", "flankfilm", "examples")
 
 REFUSED = {  # pattern: what to write instead
     r"\btold\b": "reported, distinguished",

@@ -87,7 +87,7 @@ class StiffnessSection(Section):
         "whether loaded teeth may touch outside A..E with their tip edges", True, shown=True
     )
     moving_contact: bool | None = key(
-        "whether contacts of coupled finite elements move along the flanks under load; those of plastics if left out",
+        "whether the deflection shifts the contacts of coupled finite elements along the flanks; plastics if left out",
         None,
         such_as=True,
     )
