@@ -39,7 +39,8 @@ class OperatingSection(Section):
     )
     pinion_speed_rpm: float | None = key("speed of the pinion, which the film needs", None, example=2000)
     friction: float = key(
-        "coefficient of friction, which tilts the forces against the sliding; wanted losses find their own beside it",
+        "coefficient of friction, which tilts the forces against the sliding; wanted losses compute their friction"
+        " separately",
         0.0,
         such_as=0.05,
     )
