@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import logging
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -11,6 +12,7 @@ from threading import Lock
 from typing import Any
 
 from base.cost import ASIDE, unclocked
+from base.faults import FlankfilmWarning
 
 _HEARERS: list[Callable[[str], None]] = []
 """Called with the name of what is compiled."""
@@ -78,8 +80,32 @@ def _listen() -> None:
         def on_end(self, _event: Any) -> None:
             pass
 
+    _go_on_without_a_place()
     event.register("numba:compiler_lock", Listener())
     event.register("numba:compile", Herald())
+
+
+def _go_on_without_a_place() -> None:
+    """Let numba go on where what it compiled cannot be kept, such as on a full disk; it would end the run."""
+    from numba.core.caching import FunctionCache
+
+    save = FunctionCache.save_overload
+
+    def save_or_warn(self: Any, signature: Any, data: Any) -> None:
+        try:
+            save(self, signature, data)
+        except OSError as fault:
+            _warn_of_loss(fault.strerror or str(fault))
+
+    FunctionCache.save_overload = save_or_warn
+
+
+@cache
+def _warn_of_loss(why: str) -> None:
+    """Warn once in a process."""
+    warnings.warn(
+        f"compiled code is not kept ({why}); the next run compiles it again", FlankfilmWarning, stacklevel=2
+    )
 
 
 def compiling(what: str) -> None:

@@ -176,6 +176,16 @@ class Faults:
         number = self.number(where, value, Limit(low, high, remedy=remedy, whole=True))
         return low if math.isnan(number) else int(number)
 
+    def instance(
+        self, where: str, value: object, kind: type, remedy: str = "", optional: bool = False
+    ) -> bool:
+        """Whether the value is of a class, or None where it is optional; where it is not, note that."""
+        if isinstance(value, kind) or (optional and value is None):
+            return True
+        allowed = f"must be a {kind.__name__}" + (", or left out" if optional else "")
+        self.add(where, shorten(value), allowed, remedy)
+        return False
+
     def choice(self, where: str, value: T, options: Sequence[T], remedy: str = "") -> T:
         """Return the value; where it is none of `options`, note that."""
         if value not in options:

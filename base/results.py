@@ -70,6 +70,12 @@ class Figure:
     no_error : str
         Why it has none, or why where the record has none this time; empty where the record's own `no_error`, an
         attribute or a property, says so of all its figures.
+    model_error : str
+        Name of the record's figure or property that holds what the model leaves open, relative, as `error` has the
+        numerical error; empty where it is not estimated.
+    called : str
+        What variables and columns of files are called, where the record's own name says less; for one version they
+        have that name too.
     """
 
     unit: str
@@ -78,6 +84,8 @@ class Figure:
     shown: str = ""
     error: str = ""
     no_error: str = ""
+    model_error: str = ""
+    called: str = ""
 
     @property
     def read_in(self) -> str:
@@ -116,6 +124,8 @@ def quantity(
     shown: str = "",
     error: str = "",
     no_error: str = "",
+    model_error: str = "",
+    called: str = "",
     default: Any = dataclasses.MISSING,
     default_factory: Any = dataclasses.MISSING,
 ) -> Any:
@@ -123,7 +133,7 @@ def quantity(
 
     Parameters
     ----------
-    unit, meaning, shown, error, no_error : str
+    unit, meaning, shown, error, no_error, model_error, called : str
         As of `Figure`.
     dims : str
         Names of its axes, separated by blanks.
@@ -138,7 +148,7 @@ def quantity(
     >>> Film(0.5e-6)
     Film(minimum 5e-07 m)
     """
-    figure = Figure(unit, meaning, tuple(dims.split()), shown, error, no_error)
+    figure = Figure(unit, meaning, tuple(dims.split()), shown, error, no_error, model_error, called)
     return _field({"figure": figure}, default=default, default_factory=default_factory)
 
 
@@ -182,13 +192,21 @@ class Described(property, Generic[T]):
 
 
 def described(
-    unit: str, dims: str = "", *, shown: str = "", error: str = "", no_error: str = "", kept: bool = False
+    unit: str,
+    dims: str = "",
+    *,
+    shown: str = "",
+    error: str = "",
+    no_error: str = "",
+    model_error: str = "",
+    called: str = "",
+    kept: bool = False,
 ) -> Callable[[Callable[[Any], T]], Described[T]]:
     """Make a function a property that is a figure; its docstring's first line is the meaning.
 
     Parameters
     ----------
-    unit, dims, shown, error, no_error : str
+    unit, dims, shown, error, no_error, model_error, called : str
         As of `quantity`.
     kept : bool
         Whether the value is kept once it has been computed.
@@ -211,7 +229,9 @@ def described(
     def made(function: Callable[[Any], T]) -> Any:
         meaning = (function.__doc__ or "").strip().split("\n")[0].rstrip(".")
         found: Any = cached_property(function) if kept else Described(function)
-        found.__figure__ = Figure(unit, meaning, tuple(dims.split()), shown, error, no_error)
+        found.__figure__ = Figure(
+            unit, meaning, tuple(dims.split()), shown, error, no_error, model_error, called
+        )
         return found
 
     return made

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 from collections.abc import Callable, Mapping
+from contextvars import ContextVar
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
@@ -60,15 +62,57 @@ def view(result: object) -> str | None:
     return None if function is None else str(function(result))
 
 
-def plot(result: object) -> Figure:
+@dataclasses.dataclass(frozen=True)
+class Surface:
+    """What a picture is drawn on.
+
+    Attributes
+    ----------
+    axes : tuple of matplotlib.axes.Axes
+        One for each panel; empty for a figure that the picture makes for itself.
+    current : bool
+        Whether that figure becomes the current one of pyplot.
+    """
+
+    axes: tuple[Any, ...] = ()
+    current: bool = False
+
+
+OWN_FIGURE = Surface()
+
+_SURFACE: ContextVar[Surface] = ContextVar("_SURFACE", default=OWN_FIGURE)
+
+NOTEBOOKS = ("inline", "ipympl", "widget", "nbagg", "notebook")
+"""Words in the names of matplotlib's backends that show each figure of pyplot, beside the one that is returned."""
+
+
+def surface() -> Surface:
+    """What the picture at hand is drawn on; for functions that draw.
+
+    Examples
+    --------
+    >>> surface()
+    Surface(axes=(), current=False)
+    """
+    return _SURFACE.get()
+
+
+def plot(result: object, ax: Any = None) -> Figure:
     """Picture of a record, by the function registered for its class; every record has it as its method.
 
     A dataclass that is no record gets it with ``plot = plot``.
 
+    Parameters
+    ----------
+    result : record
+    ax : matplotlib.axes.Axes, or several, optional
+        Where to draw, one for each panel of the picture; a new figure if left out.
+
     Returns
     -------
     matplotlib.figure.Figure
-        Shown by a notebook, and written with its ``savefig``.
+        Shown by a notebook, and written with its ``savefig``. Where ``matplotlib.pyplot`` is loaded it is the current
+        figure, so that ``plt.savefig`` and ``plt.show`` have it too; backends of notebooks show it once as it is.
 
     Raises
     ------
@@ -81,6 +125,28 @@ def plot(result: object) -> Figure:
     Traceback (most recent call last):
     base.faults.InputError: float.plot: has no picture...
     """
+    axes = () if ax is None else tuple(getattr(ax, "flat", ax if isinstance(ax, list | tuple) else (ax,)))
+    return picture(result, Surface(axes, _pyplot_at_work()))
+
+
+def _pyplot_at_work() -> bool:
+    """Whether pyplot is loaded, with a backend that leaves showing to the user."""
+    if "matplotlib.pyplot" not in sys.modules:
+        return False
+    from matplotlib import get_backend
+
+    return not any(word in get_backend().lower() for word in NOTEBOOKS)
+
+
+def picture(result: object, on: Surface = OWN_FIGURE) -> Figure:
+    """Picture of a record on a surface; see `plot`.
+
+    Examples
+    --------
+    >>> picture(3.0)
+    Traceback (most recent call last):
+    base.faults.InputError: float.plot: has no picture...
+    """
     _ask()
     function = _registered(_PICTURES, result)
     if function is None:
@@ -88,7 +154,11 @@ def plot(result: object) -> Figure:
             ", ".join(sorted({place.replace(":", ".") for place in _PICTURES})) or "none that is installed"
         )
         raise InputError.at(f"{type(result).__name__}.plot", "", "has no picture", f"These have one: {known}")
-    drawn: Figure = function(result)
+    before = _SURFACE.set(on)
+    try:
+        drawn: Figure = function(result)
+    finally:
+        _SURFACE.reset(before)
     return drawn
 
 

@@ -22,6 +22,7 @@ from dynamics.sweeps import sweep
 
 SMOOTH = 1e-3  # of the size of the saddle: jump of the overshoot above which a change of sign is no tangency
 SETTLED = 20_000  # periods after which the motion beside the saddle is named
+OTHER_PHASE = 0.17  # of the points by which a tangency is confirmed, over their distance
 LEAST = 9  # values looked at on a saddle's range, however narrow
 
 
@@ -56,7 +57,11 @@ class Crisis:
         "", "motion that the branch leads to beside the crisis where it is closed", default=""
     )
     after: str = quantity("", "motion that the branch leads to at the other bound", default="")
-    error: float = quantity("1", "width of the bracket, relative", default=math.nan)
+    error: float = quantity(
+        "1",
+        "width of the bracket, relative, at whose ends twice the points elsewhere on the manifold give the same signs",
+        default=math.nan,
+    )
     converged: bool = quantity(
         "1",
         "whether the overshoot passes zero within the bounds, on one branch, without a jump, and the root is closed in "
@@ -229,9 +234,12 @@ def _closed_in(
     watch: Stopwatch,
 ) -> Crisis:
     """Root of the overshoot, and the motions on both sides of it."""
-    a, b, jump, steps = search.first(bounds, side, 0 if ends[0] < 0.0 else 1)
+    shut = 0 if ends[0] < 0.0 else 1
+    a, b, jump, steps = search.first(bounds, side, shut)
+    a, b, more = _confirmed(search, bounds, (a, b), side, shut)
+    steps += more
     root = 0.5 * (a + b)
-    closed, opened = (a, bounds[1]) if ends[0] < 0.0 else (b, bounds[0])
+    closed, opened = (a, bounds[1]) if shut == 0 else (b, bounds[0])
     before, after = _motion(search, closed, side), _motion(search, opened, side)
     at = search.saddle(root)
     message = f"{at.label} and the {before} motion beside it meet at {search.parameter} = {root:.10g}"
@@ -240,6 +248,27 @@ def _closed_in(
     good = abs(b - a) <= 1e-9 * abs(root) and jump <= SMOOTH
     cost = Cost(watch.seconds, 2, steps, search.periods)
     return Crisis(at, cost, message, root, side, ends, before, after, abs(b - a) / abs(root), good)
+
+
+def _confirmed(
+    search: HomoclinicSearch, bounds: tuple[float, float], found: tuple[float, float], side: int, closed: int
+) -> tuple[float, float, int]:
+    """Bracket with room for rounding, at whose ends twice the points, between the others, give the same signs.
+
+    Where they do not, a lobe was missed: the bracket then holds the tangency by these points as well. The third number
+    is that of further values looked at.
+    """
+    fine = replace(search, points=2 * search.points, phase=OTHER_PHASE, periods=0)
+    a, b = found
+    low, high = max(bounds[0], a - (b - a)), min(bounds[1], b + (b - a))
+    sign = -1.0 if closed == 0 else 1.0
+    trials = 2
+    if not fine.overshoot(low, side) * sign > 0.0 > fine.overshoot(high, side) * sign:
+        first, last, _, trials = fine.first(bounds, side, closed)
+        low, high = min(low, first), max(high, last)
+        trials += 2
+    search.periods += fine.periods
+    return low, high, trials
 
 
 def _motion(search: HomoclinicSearch, value: float, side: int) -> str:

@@ -23,7 +23,9 @@ NEAR = 0.04  # of the size of the saddle: nearness at which the side of a passin
 OWN = 0.2  # of the distance between points of the saddle: farther than that nothing counts as near
 ROUNDS = 2  # of the saddle that a passing motion is followed on before its side is measured
 STRAIGHT = 0.3  # of its size, how far the saddle's neighbourhood is straight enough for that
-LOBES = 3  # lobes whose tops are looked for
+LOBES = 3  # lobes narrower than the points' distance whose tops are looked for
+RESOLVED = 12  # the same of lobes that neighbouring points show
+PROMISE = 4.0  # of what a parabola through neighbouring points rises above them: where a top may lie
 FIRST_ROUNDS = 4  # searches for an earlier tangency
 LOST = -1.0
 
@@ -42,6 +44,8 @@ class HomoclinicSearch:
         Its points on which it is a saddle and the parameter rises or falls throughout.
     points, longest : int
         Points of the stretch of the unstable manifold, and periods that they are followed.
+    phase : float
+        Where the first of them lies, over their distance.
     periods : int
         Periods that all motions have been followed.
     """
@@ -51,6 +55,7 @@ class HomoclinicSearch:
     run: slice
     points: int
     longest: int
+    phase: float = 0.5
     periods: int = 0
 
     def __post_init__(self) -> None:
@@ -98,9 +103,12 @@ class HomoclinicSearch:
         def followed(k: int, share: Array) -> Array:
             return passed(states(share, k)) / multiplier**ROUNDS
 
-        share = (np.arange(self.points) + 0.5) / self.points
+        # one point more at either end: a lobe across the stretch's ends has neighbours on both sides
+        share = (np.arange(self.points + 2) - 1.0 + self.phase) / self.points
         at = states(share, 0)
-        follow, lobes = ROUNDS * n, []
+        follow = ROUNDS * n
+        narrow: list[tuple[float, int, float, bool]] = []  # the highest point of each period
+        wide: list[tuple[float, int, float]] = []
         measured: list[tuple[Booleans, Array]] = []  # near the saddle, and raw u, period by period
         for k in range(1, self.longest + follow + 1):
             at = carried(table, at, 1)
@@ -113,15 +121,21 @@ class HomoclinicSearch:
                 gone = np.where(near, np.where(straight, measured[-1][1] / multiplier**ROUNDS, raw), LOST)
             i = int(np.nanargmax(gone))
             if gone[i] > LOST:
-                lobes.append((float(gone[i]), k, float(share[i]), bool(straight[i])))
-        self.periods += (self.longest + follow) * self.points
-        lobes.sort(reverse=True)
-        largest = lobes[0][0] if lobes else LOST
-        for raw_top, k, middle, straight_there in lobes[:LOBES]:
+                narrow.append((float(gone[i]), k, float(share[i]), bool(straight[i])))
+            wide += _resolved(np.where(straight, gone, LOST), k, share)
+        self.periods += (self.longest + follow) * len(share)
+        narrow.sort(reverse=True)
+        wide.sort(reverse=True)
+        largest = narrow[0][0] if narrow else LOST
+        for height, k, middle, straight_there in narrow[:LOBES]:
             if straight_there:
                 largest = max(largest, self._top(partial(followed, k), middle))
-            elif raw_top == largest:
+            elif height == largest:
+                return largest
+        for promise, k, middle in wide[:RESOLVED]:
+            if promise <= largest:
                 break
+            largest = max(largest, self._top(partial(followed, k), middle))
         return largest
 
     def _top(self, lobe: Callable[[Array], Array], middle: float) -> float:
@@ -181,6 +195,19 @@ class HomoclinicSearch:
         along, _ = _directions(orbit.jacobian, float(np.real(orbit.multipliers[0])))
         size = float(np.max(np.abs(orbit.points)))
         return np.asarray(orbit.state + side * distance * size * along)
+
+
+def _resolved(height: Array, period: int, share: Array) -> list[tuple[float, int, float]]:
+    """Lobes that neighbouring points show: how high their tops may be, the period, and the highest point's place."""
+    before, here, after = height[:-2], height[1:-1], height[2:]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        tops = (before > LOST) & (after > LOST) & (here >= before) & (here >= after)
+        rise = (after - before) ** 2 / (8.0 * (2.0 * here - before - after))
+    rise = np.where(np.isfinite(rise), rise, 0.0)
+    return [
+        (float(here[i] + PROMISE * rise[i]), period, float(share[i + 1]))
+        for i in np.flatnonzero(tops).tolist()
+    ]
 
 
 def _size(orbit: Orbit) -> float:

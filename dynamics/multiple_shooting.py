@@ -173,12 +173,18 @@ def _followed(
 
 
 def _balanced(oscillator: GearOscillator | DriveOscillator, tau: npt.NDArray[np.floating]) -> Array:
-    """States at rest where force and stiffness balance; where the stiffness is small or negative, that of its mean."""
+    """States at rest where force and stiffness balance; where the stiffness is small or negative, that of its mean.
+
+    Without a second flank nothing balances a force that opens the first: what is left there is its edge.
+    """
     if isinstance(oscillator, DriveOscillator):
         return oscillator.balanced(np.asarray(tau, dtype=np.float64))
     k = oscillator.stiffness(oscillator.frequency * tau)
     mean = abs(oscillator.stiffness.mean)
     force = oscillator.force(tau)
-    side = -1.0 if oscillator.mean_force < 0.0 else 1.0
-    x = side * oscillator.half_backlash + force / np.maximum(k, 0.2 * mean if mean > 0.0 else 1.0)
+    pressed = force / np.maximum(k, 0.2 * mean if mean > 0.0 else 1.0)
+    if oscillator.one_sided and oscillator.mean_force < 0.0:
+        pressed = np.maximum(pressed, 0.0)
+    side = -1.0 if oscillator.mean_force < 0.0 and not oscillator.one_sided else 1.0
+    x = side * oscillator.half_backlash + pressed
     return np.stack([x, np.zeros_like(x)], axis=1)

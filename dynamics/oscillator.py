@@ -173,10 +173,12 @@ class GearOscillator(PeriodicOscillator, PlanarOscillator):
         return [_SERIES + further.index(parameter)]
 
     def rest_state(self) -> Array:
-        """State at rest with the flanks pressed together by the mean force, at the centre without one."""
+        """State at rest with the flanks pressed together by the mean force; at the centre where none hold it."""
         force, k = self.mean_force, self.stiffness.mean
-        if force == 0.0 or k == 0.0:
+        if force == 0.0 or k == 0.0 or (self.one_sided and force / k < 0.0):
             return np.zeros(2)
+        if self.one_sided:
+            return np.array([self.half_backlash + force / k, 0.0])
         return np.array([math.copysign(self.half_backlash, force) + force / k, 0.0])
 
     def force(self, tau: npt.ArrayLike) -> Array:

@@ -16,6 +16,7 @@ from .mixed import solve_mixed as solve_mixed
 from .mixed_film import MixedFilm as MixedFilm
 from .mixed_thermal import MixedThermalFilm as MixedThermalFilm
 from .mixed_thermal import solve_mixed_thermal as solve_mixed_thermal
+from .regimes import regime as regime
 from .regressions import FormulaFilm as FormulaFilm
 from .regressions import dowson as dowson
 from .regressions import dowson_higginson_minimum as dowson_higginson_minimum

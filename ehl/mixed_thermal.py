@@ -5,21 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import KW_ONLY, replace
 
-from base import Faults, Limit, Stopwatch, described, part, quantity, record, shorten
+from base import Faults, Stopwatch, described, part, quantity, record, shorten
 from base.results import EXACT
 from ehl.asperities import Roughness
 from ehl.bodies import STEEL, Solid
 from ehl.contact import LineContact
 from ehl.mixed import central_asperity_pressure, solve_mixed
 from ehl.mixed_film import MixedFilm, RoughFilm
+from ehl.regimes import BOUNDARY, BOUNDARY_FRICTION
 from ehl.supply import Supply
 from ehl.thermal import ThermalFilm, solve_thermal
 from ehl.thermal_search import at_bulk
 
-BOUNDARY_FRICTION = 0.1
-"""Of steel asperities with a layer of additives between them: 0.08 to 0.12 is usual."""
-
-_FRICTION = Limit(0.0, 1.0, remedy="0.08 to 0.12 is usual for steel in oils for gears")
 _LEAST_SHARE = 1e-10
 _NOTHING = math.log(_LEAST_SHARE)  # odds of a share that counts as none
 _TRIES = 20
@@ -104,7 +101,7 @@ def solve_mixed_thermal(
     """
     watch = Stopwatch()
     with Faults() as found:
-        found.number("boundary_friction", boundary_friction, _FRICTION)
+        found.number("boundary_friction", boundary_friction, BOUNDARY)
         if not isinstance(roughness, Roughness):
             found.add("roughness", shorten(roughness), "must be a Roughness", "build one with ehl.Roughness")
     oil = contact.lubricant
@@ -116,7 +113,7 @@ def solve_mixed_thermal(
         at_bulk(contact, bulk), roughness, tolerance, supply, None if start is None else start.isothermal
     )
     search = _Search(contact, roughness, solids, bulk, tolerance, supply, warm)
-    share, reason = math.nan, cold.message
+    share, reason = math.nan, warm.message if cold.converged else cold.message
     if cold.converged and warm.converged:
         share, reason = search.share(cold)
     cost = replace(search.cost + cold.cost, seconds=watch.seconds)

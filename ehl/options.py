@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from base import Faults, Limit, RangeWarning
 from ehl.contact import LineContact
+from ehl.lubricant import Lubricant
 from ehl.regressions import moes_central
 from ehl.supply import Meniscus, OilLayer, Supply
 
@@ -22,6 +23,10 @@ _LIMITS = {
 }
 _NODES = (32, 4097, "129 is usual; leave it out to let the tolerance decide")
 _SHARP_TOLERANCE = 1e-3  # below this the film feels a spike that falls between the nodes
+
+
+class PressureWarning(RangeWarning):
+    """A Hertz pressure beyond what the viscosity law was measured at."""
 
 
 @dataclass(frozen=True)
@@ -98,17 +103,22 @@ def _in_order(domain: object) -> bool:
 
 def warn_of_range(contact: LineContact) -> None:
     """Warn where the model leaves its range."""
-    limit, film = contact.lubricant.law.reliable_below, moes_central(contact)
-    messages = []
-    if contact.peak_pressure > limit:
-        messages.append(
-            f"Hertz pressure {contact.peak_pressure / 1e9:.2f} GPa: above about {limit / 1e9:g} GPa the "
-            "viscosity law is an extrapolation; film thickness, decided in the inlet, suffers little"
-        )
+    warn_of_pressure(contact.lubricant, contact.peak_pressure, stacklevel=4)
+    film = moes_central(contact)
     if film > 1e-3 * contact.radius:
-        messages.append(
+        message = (
             f"film of about {film:.2g} m at a radius of {contact.radius:.2g} m: the parabola that stands for "
             "the cylinders no longer holds over the whole inlet"
         )
-    for message in messages:
         warnings.warn(message, RangeWarning, stacklevel=3)
+
+
+def warn_of_pressure(lubricant: Lubricant, pressure: float, stacklevel: int = 2) -> None:
+    """Warn where a Hertz pressure [Pa] is beyond what the viscosity law was measured at."""
+    limit = lubricant.law.reliable_below
+    if pressure > limit:
+        message = (
+            f"Hertz pressure {pressure / 1e9:.2f} GPa: above about {limit / 1e9:g} GPa the "
+            "viscosity law is an extrapolation; film thickness, decided in the inlet, suffers little"
+        )
+        warnings.warn(message, PressureWarning, stacklevel=stacklevel)

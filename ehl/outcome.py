@@ -18,6 +18,9 @@ from ehl.run import DRY, Run
 from ehl.supply import OilLayer, Supply
 
 GRID_FACTOR = 0.4  # error of N nodes over its difference from (N+1)/2: 1/3 at second order, with a margin
+WORST = 0.2
+"""Relative error from which a film has no figures; below it they stand, with their error, whatever was asked."""
+
 _SEPARATION_LOSS = 20.0  # times the film's own error by the finite inlet
 
 
@@ -68,7 +71,7 @@ def spike_error(coarse: Level, fine: Level) -> float:
 
 @dataclass(frozen=True)
 class Found:
-    """What one call found: two grids within their tolerance, or the reason why there are none."""
+    """What one call found: two grids with what they differ by, or the reason why there are none."""
 
     run: Run
     coarse: Level
@@ -81,7 +84,7 @@ class Found:
 
     @property
     def converged(self) -> bool:
-        """Whether the tolerance is met."""
+        """Whether there is a film; its error may be above the tolerance, which the note then says."""
         return not self.failure
 
     @property
@@ -95,6 +98,14 @@ class Found:
             return failed_film(self.run, self.fine, self.failure, self.error)
         film = film_of(self.run, self.coarse, self.fine, self.error, self.inlet)
         return replace(film, supply=self.supply, message=self.note) if self.note else film
+
+
+def above(error: float, tolerance: float, nodes: int) -> str:
+    """Message of a film whose error is above the tolerance on the finest grid."""
+    return (
+        f"converged; the error of {error:.2g} is above the tolerance of {tolerance:.2g}, "
+        f"and {nodes} nodes are the most"
+    )
 
 
 def film_of(run: Run, coarse: Level, fine: Level, error: float, inlet: float) -> Film:
@@ -162,7 +173,7 @@ def failed_film(run: Run, fine: Level, reason: str, error: float = math.nan) -> 
         thickness=blank,
         errors=FilmErrors(error),
         converged=False,
-        message=f"{reason}: {_remedy(run, fine.plan)}",
+        message=f"{reason}: {remedy(run, fine.plan)}",
     )
 
 
@@ -178,7 +189,7 @@ def _frame(run: Run, fine: Level) -> dict[str, Any]:
     }
 
 
-def _remedy(run: Run, plan: Plan) -> str:
+def remedy(run: Run, plan: Plan) -> str:
     """Say what to do about a contact that was not solved."""
     layer = isinstance(run.supply, OilLayer)
     if plan.fixed and not layer and plan.domain[0] > -1.05:

@@ -14,7 +14,7 @@ from ehl.contact import LineContact
 from ehl.film import Film
 from ehl.levels import Level, State
 from ehl.options import Options, warn_of_range
-from ehl.outcome import Found, film_error, spike_error
+from ehl.outcome import WORST, Found, above, film_error, remedy, spike_error
 from ehl.plan import Plan
 from ehl.regressions import moes_central
 from ehl.run import Run
@@ -73,8 +73,8 @@ def solve(
     Returns
     -------
     Film
-        With ``converged=False``, NaN figures and a remedy in ``message`` if no solution was found or its
-        estimated error exceeds the tolerance on the finest grid (2049 nodes).
+        With ``converged=False``, NaN figures and a remedy in ``message`` if no solution was found. A film whose error
+        is above the tolerance on the finest grid (2049 nodes) keeps its figures; ``error`` and ``message`` say so.
 
     Raises
     ------
@@ -263,6 +263,10 @@ def _refine(run: Run, coarse: Level, fine: Level, options: Options) -> Found:
             unsettled = f"error {off:.2g} of the spike, which does not settle"
             return Found(run, coarse, fine, worst, inlet, unsettled)
         if n > _MOST_NODES:
+            nodes = fine.grid.nodes.size
+            if options.spike is None and worst < WORST:
+                note = f"{above(worst, options.tolerance, nodes)}: {remedy(run, fine.plan)}"
+                return Found(run, coarse, fine, worst, inlet, note=note, supply=run.supply)
             left = f"error {worst:.2g}" if worst > options.tolerance else f"error {off:.2g} of the spike"
-            return Found(run, coarse, fine, worst, inlet, f"{left} left on {fine.grid.nodes.size} nodes")
+            return Found(run, coarse, fine, worst, inlet, f"{left} left on {nodes} nodes")
         coarse, fine = fine, run.sharpened(fine, n) if options.sharp else run.warm(fine, None, n)

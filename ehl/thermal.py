@@ -16,6 +16,7 @@ from ehl.heat_balance import losses, rises, rolling, stresses, traction
 from ehl.heated import Heated
 from ehl.levels import figures
 from ehl.options import Options, warn_of_range
+from ehl.outcome import above
 from ehl.supply import Meniscus, OilLayer, Supply
 from ehl.thermal_search import Compared, Search
 
@@ -121,8 +122,8 @@ def solve_thermal(
     Returns
     -------
     ThermalFilm
-        With ``converged=False``, NaN figures and a remedy in ``message`` if no solution was found or its
-        estimated error exceeds the tolerance on 513 nodes.
+        With ``converged=False``, NaN figures and a remedy in ``message`` if no solution was found. A film whose error
+        is above the tolerance on 513 nodes keeps its figures; ``error`` and ``message`` say so.
 
     Raises
     ------
@@ -178,7 +179,7 @@ def solve_thermal(
     if found is None:
         return _failed(search, watch)
     _warn_of_range(found)
-    return replace(_film(search, found, watch), supply=supply)
+    return replace(_film(search, found, watch, given=nodes is not None), supply=supply)
 
 
 def _yielding(search: Search, nodes: int | None) -> Compared | None:
@@ -252,10 +253,13 @@ def _checked(
     return (float(given[0]), float(given[1]))
 
 
-def _film(search: Search, found: Compared, watch: Stopwatch) -> ThermalFilm:
-    """Return the film in SI."""
+def _film(search: Search, found: Compared, watch: Stopwatch, *, given: bool) -> ThermalFilm:
+    """Return the film in SI; `given` grids have no tolerance to meet."""
     level, oil, contact = found.fine, found.oil, search.contact
     shown, warmer = figures(level), rises(oil)
+    nodes, message = level.grid.nodes.size, "converged"
+    if not given and found.error > search.tolerance:
+        message = above(found.error, search.tolerance, nodes)
     return ThermalFilm(
         contact=contact,
         x=oil.x,
@@ -269,7 +273,7 @@ def _film(search: Search, found: Compared, watch: Stopwatch) -> ThermalFilm:
         errors=FilmErrors(film=found.error, inlet=found.inlet),
         cost=search.cost(watch.seconds),
         converged=True,
-        message="converged",
+        message=message,
         state=found.state,
         solids=search.solids,
         traction_coefficient=traction(oil),

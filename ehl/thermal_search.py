@@ -17,7 +17,7 @@ from ehl.levels import Level, State, figures, transfer
 from ehl.meniscus import MeniscusSearch
 from ehl.newton import newton
 from ehl.options import Options
-from ehl.outcome import GRID_FACTOR, film_error
+from ehl.outcome import GRID_FACTOR, WORST, film_error
 from ehl.plan import Plan
 from ehl.solver import REACH, solve_checked
 from ehl.supply import OilLayer, Supply
@@ -179,7 +179,10 @@ class Search:
         return self._refine(replace(moved, found=replace(old.fine.found, P=P, H0=H0)), None, nodes)
 
     def _refine(self, base: Level, old: Neighbour | None, nodes: int | None) -> Compared | None:
-        """Double the grid until the estimate meets what is asked; a grid that fails is passed over."""
+        """Double the grid until the estimate meets what is asked; a grid that fails is passed over.
+
+        Where no grid meets it the two that differ smallest are given back, with what they differ by.
+        """
         sizes = [_MOST_NODES if nodes is None else nodes]
         while (
             sizes[0] >= 4 * _FIRST_NODES - 3
@@ -187,6 +190,7 @@ class Search:
             sizes.insert(0, (sizes[0] + 1) // 2)
         known = None if old is None else old.coarse[1]
         before = self._fed(self._on(self._level(base, (sizes[0] + 1) // 2), known))
+        nearest: Compared | None = None
         for n in sizes:
             level, oil = (base, known) if before is None else before
             fine = self._level(level, n)
@@ -196,10 +200,11 @@ class Search:
                 if n == nodes or (nodes is None and found.error <= self.tolerance):
                     return found
                 self.left = f"error {found.error:.2g} left on {n} nodes"
+                nearest = found if nearest is None or found.error < nearest.error else nearest
             if last is None:
                 self.left = "Newton's method did not converge"
             before, old = last or before, None
-        return None
+        return nearest if nearest is not None and nearest.error < WORST else None
 
     def _fed(self, solved: Solved | None) -> Solved | None:
         """Move the meniscus of a layer until the film carries away what the layer brings."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Cost, Faults, Limit, Stopwatch
+from base import Array, Cost, Faults, Limit, Stopwatch, shorten
 from fem.bodies import Compliance
 from fem.contact_candidates import contact_candidates
 from fem.cycle import MeshCycle
@@ -155,7 +155,7 @@ def mesh_cycle(
         base_pitch_difference=base_pitch_difference,
         face=face_setting(pair, alignment, cells, face_model, shafts),
     )
-    _check(given, torque, compliance, reference, plane)
+    _check(given, torque, compliance, film, reference, plane)
     watch = Stopwatch()
     bodies = (
         compliance if compliance is not None else _compliance(pair, tolerance, plane, tip_edges=beyond_path)
@@ -200,11 +200,14 @@ def _check(
     given: Setting,
     torque: Array,
     compliance: Compliance | None,
+    film: Film | None,
     reference: str | None,
     plane: str,
 ) -> None:
     found = Faults()
-    if given.face is not None and (plane if compliance is None else compliance.plane) != "strain":
+    ready = found.instance("compliance", compliance, Compliance, "as of fem.compliance", optional=True)
+    known = compliance if ready else None
+    if given.face is not None and (plane if known is None else known.plane) != "strain":
         found.add("plane", plane, 'must be "strain" where the face has cells', "leave plane out")
     if reference is not None:
         found.choice("reference", reference, REFERENCES)
@@ -212,10 +215,11 @@ def _check(
         found.add("torque", "none", "must be at least one", "give torques in N m")
     for one in torque.tolist():
         found.number("torque", one, TORQUE)
-    if compliance is not None and compliance.pair != given.pair:
+    if known is not None and known.pair != given.pair:
         found.add("compliance", "of another pair", "must be of this pair", "compute it anew")
-    if not np.isfinite(given.base_pitch_difference):
-        found.add("base_pitch_difference", given.base_pitch_difference, "must be finite", "give metres")
+    found.number("base_pitch_difference", given.base_pitch_difference, Limit(unit="m", remedy="give metres"))
+    if film is not None and not callable(film):
+        found.add("film", shorten(film), "must be a function of places and forces", "see fem.Film")
     given.check(found)
     found.raise_if_any()
     if np.any(torque == 0.0):  # needs a setting without faults

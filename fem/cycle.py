@@ -107,6 +107,7 @@ class MeshCycle(PairFigures, MeshFigures):
         "tangent dF/dD: small vibration about the load; shafts under the face held",
         "position",
         error="error",
+        called="tangent_stiffness",
     )
     secant_stiffness: Array = quantity(
         "N/m",
@@ -228,6 +229,7 @@ class MeshCycle(PairFigures, MeshFigures):
             # the turns are exact, so that the error of D is as large as before, of a smaller or larger D
             error=self.error * max(1.0, float(np.max(1.0 / slope))),
             problem=None if self.problem is None else self.problem.less(less),
+            face=None if self.face is None else self.face.less(slope),
         )
         if known is not None:
             # copies that were pickled have nothing else, and all others need not solve the contact anew

@@ -214,7 +214,6 @@ def _remarks(given: Setting, contact: Solution, number: int, forces: Array, edge
         remarks.append(
             f"the backlash is less than the deflection, but back flanks stand clear by at least {clear:.3g} um"
             if clear >= 0.0
-            else f"back flanks overlap by up to {-clear:.3g} um, which is left out: no load sharing with them "
-            "was found at a deflection of more than a quarter of the module; give more backlash, or reduce the torque"
+            else f"back flanks overlap by up to {-clear:.3g} um, which is left out"
         )
     return remarks

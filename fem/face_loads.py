@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -101,6 +102,15 @@ class FaceLoads(FaceCells):
     matrix_error: float | None = quantity(
         "1", "estimated relative error of the mesh between bodies that tilt, of the largest", default=None
     )
+
+    def less(self, slope: Array) -> FaceLoads:
+        """Give the same for a deflection less a turn that goes with the force; `slope` dD'/dD (positions,)."""
+        if self.mesh_matrix is None:
+            return self
+        kff, kfm, kmm = self.mesh_matrix[:, 0, 0], self.mesh_matrix[:, 0, 1], self.mesh_matrix[:, 1, 1]
+        tilt = kmm + (1.0 - slope) / (kff * slope) * kfm**2
+        rows = [[kff / slope, kfm / slope], [self.mesh_matrix[:, 1, 0] / slope, tilt]]
+        return replace(self, mesh_matrix=np.moveaxis(np.array(rows), -1, 0))
 
     @described("1", error="error")
     def greatest_face_load_factor(self) -> float:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Array, Faults, Limit, record
+from base import Array, Faults, Limit, record, shorten
+from gears import Shaft
 from gears.face import ALIGNED, STRAIGHT, Alignment, Lead
 
 if TYPE_CHECKING:
-    from gears import GearPair, Shaft
+    from gears import GearPair
 
 __all__ = ["PLACES", "FaceSetting", "face_setting"]
 
@@ -76,9 +78,15 @@ class FaceSetting:
 
         found.number("cells", self.cells, CELLS)
         found.choice("face_model", self.model, (FREE_ENDS, WALLS, SLICES), "slices alone bear too evenly")
-        if self.cells % 2:
+        if isinstance(self.cells, int) and self.cells % 2:
             found.add("cells", self.cells, "must be even", "mid-face lies between two cells")
-        found.extend(self.alignment.faults("alignment"))
+        if found.instance("alignment", self.alignment, Alignment, optional=True):
+            found.extend(self.alignment.faults("alignment"))
+        if not isinstance(self.shafts, Sequence) or len(self.shafts) != 2:
+            found.add(
+                "shafts", shorten(self.shafts), "must be of pinion and wheel", "give None for a stiff one"
+            )
+            return
         for name, lead, width in zip(("pinion", "wheel"), self.leads, pair.face_widths, strict=True):
             if lead.end_relief and lead.end_relief_length > 0.5 * width:
                 allowed = f"must be at most {0.5 * width:g} m, half the face"
@@ -89,7 +97,7 @@ class FaceSetting:
         if not found.found:
             check_memory(found, pair, self.cells, positions, self.model)
         for k, shaft in enumerate(self.shafts):
-            if shaft is not None:
+            if found.instance(f"shafts[{k}]", shaft, Shaft, optional=True) and shaft is not None:
                 _check_shaft(found, f"shafts[{k}]", shaft, pair.face_width, pair.face_offsets[k])
 
     def least_gap(self, pair: GearPair) -> float:

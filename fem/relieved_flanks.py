@@ -162,7 +162,9 @@ def gentle(given: Setting) -> bool:
 
     def missing(apart: float) -> Array:
         rho = place**2 + 2 * first * (middle + apart), (line - place) ** 2 - 2 * second * (middle + apart)
-        return np.asarray(np.sum([some(np.sqrt(at)) for some, at in zip(removed, rho, strict=True)], axis=0))
+        # no flank begins below its base circle, where rho is 0
+        here = [some(np.sqrt(np.maximum(at, 0.0))) for some, at in zip(removed, rho, strict=True)]
+        return np.asarray(np.sum(here, axis=0))
 
     bent = (missing(span) - 2 * missing(0.0) + missing(-span)) / span**2
     return bool(np.all(1 + place * (line - place) / line * bent >= CURVATURES[0]))

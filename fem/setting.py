@@ -15,9 +15,10 @@ from base import Array, Faults, Integers, Limit, rounded_down
 from fem.face_setting import FaceSetting
 from fem.tip_contact import Removed
 from fem.tip_geometry import TipRound, chamfer_length, tip_round
+from gears import GearDeviations
 
 if TYPE_CHECKING:
-    from gears import GearDeviations, GearPair
+    from gears import GearPair
 
 __all__ = ["Deviations", "Setting"]
 
@@ -115,6 +116,8 @@ class Setting:
         found.number("positions", self.positions, COUNT)
         found.number("pitches", self.pitches, COUNT)
         found.number("friction", self.friction, FRICTION)
+        for name in ("beyond_path", "moving_contact"):
+            found.instance(name, getattr(self, name), bool, "True or False")
         if self.face is not None:
             self.face.check(found, self.pair, self.positions)
         both = tuple(self.first_teeth) if isinstance(self.first_teeth, Sequence) else ()
@@ -127,7 +130,9 @@ class Setting:
             for k, (gear, spec) in enumerate(
                 zip(self._by_gear, (self.pair.pinion, self.pair.wheel), strict=True)
             ):
-                found.extend(() if gear is None else gear.faults(f"deviations[{k}]", spec.teeth))
+                where = f"deviations[{k}]"
+                if found.instance(where, gear, GearDeviations, optional=True) and gear is not None:
+                    found.extend(gear.faults(where, spec.teeth))
         self._check_rounding(found)
 
     def _check_rounding(self, found: Faults) -> None:
@@ -162,7 +167,9 @@ class Setting:
 
     @property
     def _by_gear(self) -> tuple[GearDeviations | None, ...]:
-        return (None, None) if self.deviations is None else tuple(self.deviations)
+        if self.deviations is None:
+            return (None, None)
+        return tuple(self.deviations) if isinstance(self.deviations, Sequence) else ()
 
     @cached_property
     def rounds(self) -> tuple[TipRound, TipRound]:

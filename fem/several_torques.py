@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, overload
 
 import numpy as np
 
-from base import Array
+from base import Array, Faults
+from fem.checked import check_pair, numbers_of
 from fem.cycle import MeshCycle
 
 if TYPE_CHECKING:
@@ -42,7 +43,10 @@ def one_or_several(
     def either(
         pair: GearPair, torque: float | Sequence[float] | Array, *args: Options.args, **kwargs: Options.kwargs
     ) -> MeshCycle | tuple[MeshCycle, ...]:
-        cycles = sweep(pair, np.atleast_1d(np.asarray(torque, dtype=float)).ravel(), *args, **kwargs)
+        with Faults() as found:
+            check_pair(found, pair)
+            torques = numbers_of(found, "torque", torque, "give N m")
+        cycles = sweep(pair, np.atleast_1d(torques).ravel(), *args, **kwargs)
         return cycles if np.ndim(torque) else cycles[0]
 
     return either  # type: ignore[return-value]

@@ -9,6 +9,7 @@ import numpy as np
 
 from base import Array, Faults, Limit
 from fem.bodies import Compliance
+from fem.checked import check_pair, numbers_of
 from fem.pair_compliance import compliance as _compliance
 from fem.references import REFERENCES, check_reference, held_turns, turns
 
@@ -67,10 +68,13 @@ def single_pair_stiffness(
     >>> float(at_C[0] / 40e-3 / 1e9).__round__(1)  # N/(mm um)
     14.8
     """
-    bodies = compliance or _compliance(pair, tolerance, plane)
-    rho1 = np.atleast_1d(np.asarray(rho1, dtype=float))
-    points = pair.points
     found = Faults()
+    check_pair(found, pair)
+    rho1 = np.atleast_1d(numbers_of(found, "rho1", rho1, "give metres"))
+    found.instance("compliance", compliance, Compliance, "as of fem.compliance", optional=True)
+    found.raise_if_any()
+    bodies = compliance or _compliance(pair, tolerance, plane)
+    points = pair.points
     found.number("force", force, FORCE)
     slack = 1e-9 * points.E
     if not np.all((rho1 >= points.A - slack) & (rho1 <= points.E + slack)):

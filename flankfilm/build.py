@@ -27,6 +27,9 @@ B = TypeVar("B")
 ISO_53 = {"A": (1.0, 1.25, 0.38), "B": (1.0, 1.25, 0.3), "C": (1.0, 1.25, 0.25), "D": (1.0, 1.4, 0.39)}
 """Profiles of ISO 53:1998, annex A: addendum, dedendum and tip radius, times the module."""
 
+TIP_DIGITS = 12
+"""Decimal places of a tip alteration that follows from a tip diameter: below them it is rounding."""
+
 
 def gear_pair(scene: Scene) -> gears.GearPair:
     """Build the pair of a scene, grown to its temperatures; without a material it is of steel.
@@ -42,7 +45,7 @@ def gear_pair(scene: Scene) -> gears.GearPair:
 def _cold_pair(scene: Scene) -> gears.GearPair:
     """Build the pair of a scene as it was measured."""
     section = required(scene.pair, "[pair]")
-    with under_keys(section, "pair"), _under_tool(section):
+    with under_keys(section, "pair"), _under_tool(section), _under_tip_diameters(section):
         materials = (gears.STEEL, gears.STEEL)
         if scene.material is not None:
             materials = _both(scene.material.each, lambda section: section.material())
@@ -89,11 +92,45 @@ def _gear(pair: PairSection, name: str, rack: gears.BasicRack) -> gears.Gear:
     base_radius = 0.5 * pair.value("module_mm") * section.teeth * math.cos(rack.alpha)
     trace = lead_trace(section, name, width, base_radius)
     return gears.Gear(
-        **section.si(),
+        **section.si() | _tip(pair, section, rack),
         tip_relief=None if relief is None else gears.TipRelief(**relief.si()),
         blank=None if blank is None else gears.Blank(**blank.si()),
         lead=gears.Lead(**section.si_of("lead"), trace=trace),
     )
+
+
+def _tip(pair: PairSection, section: GearSection, rack: gears.BasicRack) -> dict[str, float]:
+    """Tip alteration of a gear whose tip diameter is given; nothing where it is not."""
+    diameter = section.value("tip_diameter_mm")
+    if diameter is None:
+        return {}
+    above_reference = 0.5 * (diameter / pair.value("module_mm") - section.teeth)
+    return {"tip_alteration": round(above_reference - rack.h_aP - section.profile_shift, TIP_DIGITS)}
+
+
+@contextmanager
+def _under_tip_diameters(section: PairSection) -> Iterator[None]:
+    """Give the faults of a tip alteration to the tip diameter that it follows from."""
+    try:
+        yield
+    except InputError as error:
+        given = {
+            f"{name}.tip_alteration": gear.tip_diameter_mm
+            for name, gear in zip(("pinion", "wheel"), section.each, strict=True)
+            if gear.tip_diameter_mm is not None
+        }
+        raise InputError(
+            replace(
+                fault,
+                where=fault.where.replace("tip_alteration", "tip_diameter_mm"),
+                value=f"{given[fault.where]:.12g}",
+                allowed=f"gives tip_alteration = {fault.value}, which {fault.allowed}",
+                remedy=fault.remedy.replace("tip_alteration", "tip_diameter_mm"),
+            )
+            if fault.where in given
+            else fault
+            for fault in error.faults
+        ) from error
 
 
 def _rack(section: PairSection) -> gears.BasicRack:

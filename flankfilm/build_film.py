@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypedDict
 
 import ehl
 import gears
@@ -16,6 +16,13 @@ from flankfilm.scene.heat import GROWTH
 from flankfilm.scene.key import ZERO_CELSIUS
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.section import required
+
+
+class Rubbing(TypedDict, total=False):
+    """Friction of the asperities and its band."""
+
+    boundary_friction: float
+    boundary_band: tuple[float, float] | None
 
 
 def lubricant(scene: Scene) -> ehl.Lubricant:
@@ -101,6 +108,14 @@ def roughness(scene: Scene) -> ehl.Roughness | None:
             return ehl.Roughness.of_deviation(rough.value("sigma_um"), **asperities)
         mean, peaks = (_of_flanks(rough, name) for name in ("Ra_um", "Rz_um"))
         return ehl.Roughness.from_drawing(mean, peaks, **asperities)
+
+
+def boundary_friction(scene: Scene) -> Rubbing:
+    """Friction of the asperities of a scene and its band, as losses take them; nothing for smooth flanks."""
+    rough = scene.roughness
+    if rough is None:
+        return {}
+    return {"boundary_friction": rough.boundary_friction, "boundary_band": rough.boundary_friction_band}
 
 
 def _of_flanks(rough: RoughnessSection, name: str) -> tuple[float, float] | None:

@@ -57,7 +57,9 @@ def check_scene(scene: Scene) -> list[str]:
     lines += foreseen
     wanted = goals(scene)
     if scene.stiffness.model != "given" and any(PLAN in needed(stage) for stage in wanted):
-        plan = Engine(scene, Cache(None))[PLAN]  # models and shares, from cheap estimates
+        engine = Engine(scene, Cache(None))
+        plan = engine[PLAN]  # models and shares, from cheap estimates
+        lines += [f"Warning: {text}" for text in engine.runs[PLAN.name].warnings]
         lines += [decision.line for decision in plan.decisions]
         lines.append(plan.line)
     lines.append("A run computes: " + ", ".join(stage.title for stage in wanted) + ".")

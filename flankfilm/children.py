@@ -159,6 +159,7 @@ def _or_again(note: Callable[[Any], object]) -> Callable[[Any], object]:
 def work_until_told(told: Connection) -> None:
     """Start of a worker: Ctrl-C is the parent's to answer; end when the other end of the pipe is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    killed_with_parent()  # also one that is stopped, which answers no other signal
     _end_when_closed(told)
 
     def wait() -> None:

@@ -53,7 +53,9 @@ def claim(folder: Path, data: str = "", files: Iterable[str] = (), folders: Iter
             if path.is_dir():
                 faults.add(str(path), "", "is a folder, and a file of that name will be written", AWAY)
         for path in (folder / name for name in folders):
-            if os.path.lexists(path) and not path.is_dir():
+            if path.is_symlink():
+                faults.add(str(path), "", "is a link, through which files elsewhere would be replaced", AWAY)
+            elif os.path.lexists(path) and not path.is_dir():
                 faults.add(str(path), "", "is no folder, and a folder of that name will be written", AWAY)
     try:
         folder.mkdir(parents=True, exist_ok=True)

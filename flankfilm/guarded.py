@@ -18,6 +18,14 @@ PART_FAILED = 4
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """What the system says of a disk or quota that is full, and of a file that may not grow."""
+MOST_FAULTS = 100
+"""Faults that are printed."""
+
+LONGEST = 4000
+"""Characters of a fault that are printed: a file of megabytes may make one as long."""
+
+LESS_MEMORY = "give a larger tolerance, fewer points, teeth or cells of the face, or fewer --workers"
+
 INTERRUPTED = 130
 BY_SIGNAL = 128
 """What a signal's number is added to in the exit status of a command that it ended."""
@@ -32,11 +40,16 @@ def guarded(command: Callable[[], int]) -> int:
         count = len(error.faults)
         _tell(
             f"flankfilm: {count} fault{'s' if count > 1 else ''}",
-            *(f"  {printable(f)}" for f in error.faults),
+            *(f"  {_cut(printable(f))}" for f in error.faults[:MOST_FAULTS]),
+            *([f"  and {count - MOST_FAULTS} more"] if count > MOST_FAULTS else []),
         )
         return USER_FAULT
     except SolverError as error:
-        _tell(f"flankfilm: {printable(error)}")
+        _tell(f"flankfilm: {_cut(printable(error))}")
+        return SOLVER_FAULT
+    except MemoryError as error:
+        why = f" ({printable(error)})" if str(error) else ""
+        _tell(f"flankfilm: out of memory{why}; {LESS_MEMORY}")
         return SOLVER_FAULT
     except BrokenPipeError:
         sys.stderr.close()
@@ -50,6 +63,10 @@ def guarded(command: Callable[[], int]) -> int:
         how = f"ended by {stop}" if isinstance(stop, Ended) else "interrupted"
         _tell(f"flankfilm: {how}; files written so far are whole, and the next run resumes from the cache")
         return BY_SIGNAL + stop.signal if isinstance(stop, Ended) else INTERRUPTED
+
+
+def _cut(line: str) -> str:
+    return line if len(line) <= LONGEST else f"{line[:LONGEST]} ... ({len(line) - LONGEST} characters more)"
 
 
 def _tell(*lines: str) -> None:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import FlankfilmError, Quantity, has_picture, plot, quantities
+from base import FlankfilmError, Quantity, has_picture, quantities
+from base.views import picture as drawn_of
 from flankfilm.figures.reading import unit_text
 from flankfilm.report.text import number, percent, seconds
 from flankfilm.stages.failures import lines
@@ -34,7 +35,7 @@ MOST_FIGURES = 16
 def record_html(result: object) -> str | None:
     """Single numbers of a record with their errors, whether it converged, what it cost, and its picture."""
     rows = list(_figures(result))[:MOST_FIGURES]
-    drawn = picture(result)
+    drawn = drawn_of(result)
     if not rows and not drawn:
         return None
     head = f"<p><b>{escape(type(result).__name__)}</b></p>"
@@ -94,7 +95,7 @@ def picture(result: object) -> str:
     from flankfilm.figures.style import styled
 
     try:
-        drawn = plot(result)
+        drawn = drawn_of(result)
     except (FlankfilmError, ValueError) as fault:
         return f"<p>no picture: {escape(str(fault))}</p>"
     image = io.BytesIO()
@@ -152,6 +153,6 @@ def optimum_html(found: Optimum) -> str:
         for point in chosen
     ]
     said = "".join(f"<p>{escape(line)}</p>" for line in claims(found))
-    size = f"{len(found.evaluations)} points, {found.computed} computed in {found.seconds:.1f} s"
+    size = f"{found.points} points, {found.computed} computed in {found.seconds:.1f} s"
     head = f"<p><b>{escape(task.asked.title or 'Optimisation')}</b>: {escape(size)}</p>"
     return f"{head}{table(('row', *task.keys, *task.outputs), rows)}{said}{picture(found)}"

@@ -40,7 +40,7 @@ def open_results(path: Path | str) -> xr.Dataset:
     Examples
     --------
     >>> data = open_results("out/article")  # doctest: +SKIP
-    >>> data.dry_stiffness.units, data.dry_stiffness.error  # doctest: +SKIP
+    >>> data.dry_tangent_stiffness.units, data.dry_tangent_stiffness.error  # doctest: +SKIP
     ('N/m', 0.0013)
     """
     import xarray as xr

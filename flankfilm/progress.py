@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -27,8 +28,14 @@ COMPILED = {
 }
 """What compiled functions are for, by the beginning of their module's name; the first that fits."""
 
+PATIENCE = 5.0
+"""Seconds before the rows of a stage are shown, and between two showings."""
+
 TENTHS = 10
-"""Lines that a log has of rows."""
+"""Lines that a log has of rows at least."""
+
+PAUSE = 5.0
+"""Time without a line after which the next row has one, and from which on the time left is said [s]."""
 
 
 def silent(what: str, done: int, total: int) -> None:
@@ -54,6 +61,37 @@ def in_steps(progress: Progress, total: int) -> Callable[[str], None]:
         progress(what, place, max(place + 1, total))
 
     return announce
+
+
+def rows_of(
+    progress: Progress, title: str, clock: Callable[[], float] = time.perf_counter
+) -> Callable[[str, int, int], None]:
+    """Function of what is counted, how many are done and of how many: from 5 s on, every 5 s, with the time left.
+
+    Examples
+    --------
+    >>> seconds = iter([0.0, 2.0, 10.0, 11.0, 20.0])
+    >>> rows = rows_of(print, "sweep", lambda: next(seconds))
+    >>> for done in range(1, 5):
+    ...     rows("speeds", done, 8)
+    sweep: 2 of 8 speeds, 30 s left 2 8
+    sweep: 4 of 8 speeds, 20 s left 4 8
+    """
+    began = before = clock()
+    said, counted = -math.inf, ""
+
+    def show(what: str, done: int, total: int) -> None:
+        nonlocal began, before, said, counted
+        now = clock()
+        if what != counted:  # since what was counted before
+            began, said, counted = before, -math.inf, what
+        before = now
+        if now - max(began, said) < PATIENCE:
+            return
+        said, left = now, (now - began) / max(done, 1) * (total - done)
+        progress(f"{title}: {done} of {total} {what}, {left:.0f} s left", done, total)
+
+    return show
 
 
 def compiling_line(module: str) -> str:
@@ -87,15 +125,64 @@ def console_progress() -> Iterator[Progress]:
 
 @contextmanager
 def console_rows() -> Iterator[Callable[[int, int], None]]:
-    """Show rows done, rows per second and the time left on a terminal, and a line for each tenth of them elsewhere."""
+    """Show rows done, rows per second and the time left on a terminal, and lines with rows and time left elsewhere."""
     with _bar("rows", rate=True) as advance:
-        shown = advance or lines(sys.stderr)
+        if advance is None:
+            yield row_lines(lines(sys.stderr))
+        else:
+            yield lambda done, total: advance("rows", done, total)
 
-        def show(done: int, total: int) -> None:
-            tenth = TENTHS * done // max(total, 1)
-            shown("rows" if advance else f"{total * tenth // TENTHS} of {total} rows", done, total)
 
-        yield show
+def row_lines(log: Progress, clock: Callable[[], float] = time.perf_counter) -> Callable[[int, int], None]:
+    """Progress of rows in a log: a line for each tenth of them, and for a row after `PAUSE` without one.
+
+    Parameters
+    ----------
+    log : callable
+        Writes a line.
+    clock : callable
+        Time in seconds.
+
+    Examples
+    --------
+    >>> show = row_lines(lambda what, done, total: print(what), clock=iter([0.0, 4.0, 9.0]).__next__)
+    >>> for done in (1, 2, 3):  # the first was there
+    ...     show(done, 5)
+    1 of 5 rows
+    2 of 5 rows
+    3 of 5 rows, about 9 s left
+    """
+    began: list[tuple[float, int]] = []
+    said: list[float] = []
+
+    def show(done: int, total: int) -> None:
+        now = clock()
+        if not began:
+            began.append((now, done))
+        start, there = began[0]
+        tenths = [TENTHS * count // max(total, 1) for count in (done - 1, done)]
+        if said and tenths[0] == tenths[1] and now - said[-1] < PAUSE and done < total:
+            return
+        said.append(now)
+        text = f"{done} of {total} rows"
+        if now - start >= PAUSE and there < done < total:
+            text += f", about {duration((now - start) / (done - there) * (total - done))} left"
+        log(text, done, total)
+
+    return show
+
+
+def duration(seconds: float) -> str:
+    """Time for a reader.
+
+    Examples
+    --------
+    >>> duration(14.2), duration(150.0), duration(9000.0)
+    ('15 s', '3 min', '2.5 h')
+    """
+    if seconds < 100.0:
+        return f"{math.ceil(seconds)} s"
+    return f"{math.ceil(seconds / 60.0)} min" if seconds < 6000.0 else f"{seconds / 3600.0:.1f} h"
 
 
 def lines(log: TextIO) -> Progress:

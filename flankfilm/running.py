@@ -95,7 +95,7 @@ def _computed(scene: Scene, use_cache: bool, progress: Progress) -> tuple[Result
     refuse(scene)
     wanted = goals(scene)
     announce = in_steps(progress, len(wanted) + 2)
-    engine = Engine(scene, results_cache(use_cache), lambda stage: announce(stage.title))
+    engine = Engine(scene, results_cache(use_cache), lambda stage: announce(stage.title), progress=progress)
     for stage in wanted:
         with suppress(InputError, SolverError):  # the engine keeps it, and the other stages go on
             engine[stage]

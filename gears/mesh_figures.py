@@ -265,12 +265,12 @@ class MeshFigures(ABC):
         """Estimated relative errors of means and extremes by their names; None where they are unknown."""
         return MappingProxyType({name: one.relative for name, one in self._estimates.items()})
 
-    @described("N/m", error="errors")
+    @described("N/m", error="errors", called="mean_tangent_stiffness")
     def mean_stiffness(self) -> float:
         """Mean mesh stiffness (tangent)."""
         return self._estimates["mean_stiffness"].value
 
-    @described("N/m", error="errors")
+    @described("N/m", error="errors", model_error="model_error")
     def mean_secant_stiffness(self) -> float:
         """Mean mesh stiffness (secant)."""
         return self._estimates["mean_secant_stiffness"].value
@@ -280,12 +280,12 @@ class MeshFigures(ABC):
         """Transmission error, peak to peak."""
         return self._estimates["transmission_error_range"].value
 
-    @described("N/m", error="errors")
+    @described("N/m", error="errors", called="least_tangent_stiffness")
     def least_stiffness(self) -> float:
         """Minimum mesh stiffness (tangent)."""
         return self._estimates["least_stiffness"].value
 
-    @described("N/m", error="errors")
+    @described("N/m", error="errors", called="greatest_tangent_stiffness")
     def greatest_stiffness(self) -> float:
         """Maximum mesh stiffness (tangent)."""
         return self._estimates["greatest_stiffness"].value
@@ -305,12 +305,12 @@ class MeshFigures(ABC):
         """Largest share of the torque that a pair takes."""
         return self._estimates["greatest_load_share"].value
 
-    @described("1", "harmonic", error="stiffness_harmonics_error")
+    @described("1", "harmonic", error="stiffness_harmonics_error", called="tangent_stiffness_harmonics")
     def stiffness_harmonics(self) -> Array:
         """Amplitudes of the tangent stiffness' harmonics over its mean."""
         return self._harmonics("stiffness")[0]
 
-    @described("1", "harmonic")
+    @described("1", "harmonic", called="tangent_stiffness_harmonics_error")
     def stiffness_harmonics_error(self) -> Array | None:
         """Estimated errors of the tangent stiffness' harmonics over the mean."""
         return self._harmonics("stiffness")[1]
@@ -355,7 +355,7 @@ class MeshFigures(ABC):
         unit = np.linspace(0.0, 1.0, SHOWN)
         return np.concatenate([arc.low + arc.width * unit for arc in self.arcs.arcs.arcs])
 
-    @described("N/m", "dense", error="error")
+    @described("N/m", "dense", error="error", called="dense_tangent_stiffness")
     def dense_stiffness(self) -> Array:
         """Tangent stiffness on the arcs."""
         return self._dense("stiffness")

@@ -18,6 +18,9 @@ from gears.path import PathOfContact, PathPoints
 from gears.profile import ToothProfile, generate
 from gears.rack import ISO_53_A, BasicRack
 
+ROUNDING = 1e-13
+"""Backlash over the module that rounding leaves of none."""
+
 
 def _of_both(name: str, meaning: str) -> Described[tuple[float, float]]:
     """Length that each tooth has, of pinion and wheel [m]."""
@@ -165,9 +168,13 @@ class PairGeometry:
         """Normal backlash, along the line of action.
 
         j_bn = m cos alpha [(z1 + z2) (inv alpha_w - inv alpha) - 2 (x1 + x2) tan alpha] + (A1 + A2) cos alpha, with
-        the shifts at which the gears are cut.
+        the shifts at which the gears are cut. What rounding leaves of none is 0.
         """
-        return self._least_backlash + self._allowed_backlash
+        return self._rounded(self._least_backlash + self._allowed_backlash)
+
+    def _rounded(self, backlash: float) -> float:
+        """Backlash [m], 0 where it is what rounding leaves of none."""
+        return 0.0 if abs(backlash) < ROUNDING * self.module else backlash
 
     @property
     def _allowed_backlash(self) -> float:
@@ -184,7 +191,7 @@ class PairGeometry:
     @property
     def _least_backlash(self) -> float:
         """Normal backlash of the pair without thickness allowances [m]."""
-        return self._nominal_backlash + self._cut_backlash
+        return self._rounded(self._nominal_backlash + self._cut_backlash)
 
     @property
     def _nominal_backlash(self) -> float:

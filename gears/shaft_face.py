@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from base import Array
+from base import Array, Integers
 from gears.beams import bending
-from gears.shafts import Shaft
+from gears.shafts import SAME, Shaft
 
 __all__ = ["ShaftOverFace", "shaft_over_face"]
 
@@ -69,12 +69,22 @@ def shaft_over_face(
     places = shaft.gear_position - offset + np.asarray(z, dtype=float)
     middle, half = shaft.gear_position - offset, 0.5 * face_width
     ends = min(places.min(), middle - half), max(places.max(), middle + half)
-    nodes, at = np.unique(np.concatenate([shaft.places, places]), return_inverse=True)
+    nodes, at = _joined(np.concatenate([shaft.places, places]), SAME * shaft.length)
     at = at[len(shaft.places) :]
     loads = np.zeros((2 * len(nodes), len(places)))
     loads[2 * at, np.arange(len(places))] = 1.0
     bent = np.linalg.solve(bending(shaft, nodes)[0], loads)[2 * at]
     return ShaftOverFace(0.5 * (bent + bent.T) + base_radius**2 * _twist(shaft, places, ends))
+
+
+def _joined(places: Array, apart: float) -> tuple[Array, Integers]:
+    """Places from the left, those no farther apart than a distance as one, and the number of each.
+
+    A beam between places that differ by rounding would have a stiffness beside which all others are lost.
+    """
+    found, number = np.unique(places, return_inverse=True)
+    first = np.append(True, np.diff(found) > apart)
+    return found[first], (np.cumsum(first) - 1)[number]
 
 
 def _twist(shaft: Shaft, places: Array, face: tuple[float, float]) -> Array:

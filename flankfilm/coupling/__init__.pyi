@@ -35,6 +35,7 @@ from .loads import torque_curves as torque_curves
 from .losses import mesh_losses as mesh_losses
 from .losses_along_path import LossesAlongPath as LossesAlongPath
 from .losses_over_face import FaceLosses as FaceLosses
+from .losses_record import BoundaryBand as BoundaryBand
 from .losses_record import LossBand as LossBand
 from .losses_record import MeshLosses as MeshLosses
 from .lubricated import film_along_path as film_along_path
@@ -74,6 +75,7 @@ from .sidebands import revolution_error as revolution_error
 from .single_pairs import SinglePairs as SinglePairs
 from .single_pairs import single_pair_stiffness as single_pair_stiffness
 from .single_pairs import single_pairs as single_pairs
+from .tilting_mesh import tilting_mesh as tilting_mesh
 from .truncation import MissedJump as MissedJump
 from .verification import Verification as Verification
 from .verification import compare_closed_forms as compare_closed_forms

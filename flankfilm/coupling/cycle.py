@@ -51,7 +51,11 @@ class MeshCycle(MeshFigures):
         "N/m", "secant stiffness: force over deflection", "position", error="error"
     )
     stiffness: Array = quantity(
-        "N/m", "tangent stiffness: slope of force over deflection", "position", error="error"
+        "N/m",
+        "tangent stiffness: slope of force over deflection",
+        "position",
+        error="error",
+        called="tangent_stiffness",
     )
     transmission_error: Array = quantity(
         "m",

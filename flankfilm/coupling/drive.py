@@ -27,6 +27,7 @@ from flankfilm.coupling.drive_side import GearBody, drive_side
 from flankfilm.coupling.gyroscopic import gyroscopic_change
 from flankfilm.coupling.oscillator import PairOscillator, pair_oscillator
 from flankfilm.coupling.reduction import MOST_MODES, reduced_train
+from flankfilm.coupling.tilting_mesh import change_over_cycle
 from flankfilm.coupling.train import ShaftDamping, Train, joined, lowest_modes, shaft_damping
 from gears.beams import ReducedShaft
 
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
 
 SECOND_ORDER = 4.0 / 3.0
 """Error over the change by elements half as long."""
+
+GIVEN = "given, or that of the mesh cycle's tilt stiffness"
 
 SHAPES = "not estimated: shafts are beams, whose error is not known"
 
@@ -100,10 +103,18 @@ class PairDrive:
         "out, at the highest speed",
         no_error=ITSELF,
     )
+    tilt_stiffness: float = quantity(
+        "N m/rad",
+        "moment over tilt of the mesh about the place of its force, mean over the mesh cycle; 0 where it gives way",
+        no_error=GIVEN,
+    )
+    load_centre: float = quantity(
+        "m", "place of the mesh force from mid-face, mean over the mesh cycle", shown="mm", no_error=GIVEN
+    )
     tilt_change: float = quantity(
         "1",
-        "largest relative change of a natural frequency by a mesh that resists tilt more, as a stiffness spread "
-        "evenly over its face does",
+        "largest relative change of a natural frequency by tilt and place of the mesh at one position of its cycle; "
+        "where these are not known, by a stiffness spread evenly over its face",
         no_error=ITSELF,
     )
     damping_band: tuple[float, float] = part(
@@ -200,6 +211,7 @@ def pair_drive(
     damping_band: tuple[float, float] = DAMPING_BAND,
     tilt_stiffness: float = 0.0,
     load_centre: float = 0.0,
+    mesh_matrix: Array | None = None,
 ) -> PairDrive:
     """Drive train of a pair: bending and torsion of both shafts, with the modes that the mesh reaches.
 
@@ -242,6 +254,9 @@ def pair_drive(
         [N m/rad]; a stiffness k spread evenly over a face of b has k b^2 / 12. It stays where contact is lost.
     load_centre : float
         Place of the mesh force from mid-face [m]; counts as the shafts' positions do.
+    mesh_matrix : ndarray, shape (positions, 2, 2), optional
+        The mesh between gears that tilt over its cycle (`tilting_mesh`), of which both are means: what its variation
+        changes of the frequencies is `tilt_change`, beside that of the stiffness, which is in the series.
 
     Raises
     ------
@@ -301,11 +316,19 @@ def pair_drive(
     points = np.array(list(train.points.values()))
     shapes = (points @ modes).T
     greatest = np.take_along_axis(shapes, np.argmax(np.abs(shapes), axis=1)[:, None], axis=1)
-    evenly = scales.mean_stiffness * pair.face_width**2 / 12.0
-    finer, firmer = (
-        np.sqrt(lowest_modes(one.in_contact, one.mass, reached + 1, ends[1] ** 2)[0][1:] / squares) - 1.0
-        for one in (train_of(True, tilt_stiffness), train_of(False, tilt_stiffness + evenly))
-    )
+
+    def change(other: Train) -> Array:
+        found = lowest_modes(other.in_contact, other.mass, reached + 1, ends[1] ** 2)[0][1:]
+        return np.asarray(np.sqrt(found / squares) - 1.0)
+
+    def tilt_change() -> float:
+        if mesh_matrix is not None:
+            return change_over_cycle(train, squares, modes, mesh_matrix, load_centre)
+        if tilt_stiffness > 0.0:
+            return 0.0
+        evenly = scales.mean_stiffness * pair.face_width**2 / 12.0
+        return float(np.max(change(train_of(False, evenly)), initial=0.0))
+
     return PairDrive(
         oscillator=oscillator,
         rigid=rigid,
@@ -314,7 +337,7 @@ def pair_drive(
         natural_frequencies=np.sqrt(squares) / (2.0 * math.pi),
         retained=kept.astype(np.float64),
         reduction_change=reduced_change(oscillator, squares / scales.omega_n**2, kept),
-        element_error=SECOND_ORDER * np.abs(finer),
+        element_error=SECOND_ORDER * np.abs(change(train_of(True, tilt_stiffness))),
         mode_shapes=shapes / greatest,
         mesh_share=train.mesh_stiffness * (modes.T @ train.direction) ** 2 / squares,
         outputs=reduced_outputs(train.outputs, found.shapes, scales),
@@ -324,7 +347,9 @@ def pair_drive(
         gyroscopic_change=gyroscopic_change(
             train, modes, squares, [ends[1] / teeth for teeth in turning], MOST_MODES, ends[1] ** 2
         ),
-        tilt_change=float(np.max(firmer, initial=0.0)),
+        tilt_stiffness=tilt_stiffness,
+        load_centre=load_centre,
+        tilt_change=tilt_change(),
         damping_band=(damping_band[0], damping_band[1]),
         shaft_damping=damping,
         cost=Cost(watch.seconds, unknowns=len(train.rotation)),

@@ -6,7 +6,7 @@ About the highest of them periodic motions are followed to the maximum force.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -61,7 +61,10 @@ class Peaks(NamedTuple):
 
 
 def drive_peaks(
-    drive: PairDrive, found: Mapping[str, dynamics.SweepResult], shaken: Mapping[str, Vibrations]
+    drive: PairDrive,
+    found: Mapping[str, dynamics.SweepResult],
+    shaken: Mapping[str, Vibrations],
+    progress: Callable[[int, int], None] = lambda done, every: None,
 ) -> Peaks:
     """Find the maximum force of the mesh and of every part over the range of a sweep.
 
@@ -72,6 +75,8 @@ def drive_peaks(
         Sweeps by direction.
     shaken : mapping
         Their forces.
+    progress : callable
+        Called with the number of parts done, and of all.
     """
     values = next(iter(found.values())).values
     heights = {way: np.column_stack([one.force, np.abs(one.parts[:, 2])]) for way, one in shaken.items()}
@@ -88,6 +93,7 @@ def drive_peaks(
                     search.at(part, low)
                     search.at(part, high)
             best[part] = search.greatest(part)
+            progress(part + 1, len(best))
     band = np.array([search.damped(one) for one in best]).T
     return Peaks(
         np.array([one.frequency for one in best]),

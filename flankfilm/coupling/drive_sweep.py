@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
+from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -242,7 +244,11 @@ def _at_greatest(values: Array, errors: Array) -> float | None:
 
 
 def drive_sweep(
-    drive: PairDrive, speed: ArrayLike | None = None, *, frequency: ArrayLike | None = None
+    drive: PairDrive,
+    speed: ArrayLike | None = None,
+    *,
+    frequency: ArrayLike | None = None,
+    progress: Callable[[str, int, int], None] = lambda what, done, every: None,
 ) -> DriveSweep:
     """Sweep the speed of a drive train up and down.
 
@@ -253,6 +259,8 @@ def drive_sweep(
         Pinion speeds [rad/s].
     frequency : array_like, shape (values,)
         Instead of them: mesh frequencies over the natural one of the pair on rigid shafts.
+    progress : callable
+        Called with what is counted (speeds, peaks, motions with more harmonics), how many are done, and of how many.
 
     Raises
     ------
@@ -278,13 +286,13 @@ def drive_sweep(
     if speeds is None:
         speeds = np.array([drive.scales.speed(one) for one in values.tolist()])
     oscillator, outputs = drive.oscillator, drive.outputs
-    found = up_and_down(oscillator, "frequency", values)
+    found = up_and_down(oscillator, "frequency", values, partial(progress, "speeds"))
     shaken = {
         way: vibrations(oscillator, result, load=drive.mean_force, outputs=outputs)
         for way, result in found.items()
     }
     parts = {way: np.moveaxis(one.parts, 1, 0) for way, one in shaken.items()}
-    peaks = drive_peaks(drive, found, shaken)
+    peaks = drive_peaks(drive, found, shaken, partial(progress, "peaks"))
     at_peaks = {
         "_peak": peaks.height, "_peak_speed": peaks.frequency * drive.scales.speed(1.0), "_peak_band": peaks.band,
         "_peak_error": peaks.error,
@@ -310,7 +318,7 @@ def drive_sweep(
         force_peak_band=peaks.band[:, 0],
         force_peak_error=float(peaks.error[0]),
         sampling_error=max(one.change for one in shaken.values()),
-        **_beside(drive, longer, found, shaken),
+        **_beside(drive, longer, found, shaken, partial(progress, "motions with more harmonics")),
         error=max(result.error for result in found.values()),
         cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in found.values())),
         converged=not lost,
@@ -336,6 +344,7 @@ def _beside(
     longer: Longer | None,
     found: Mapping[str, dynamics.SweepResult],
     shaken: Mapping[str, Vibrations],
+    progress: Callable[[int, int], None],
 ) -> dict[str, Any]:
     """What the longer series changes of forces and torques; None of each for a given series."""
     if longer is None:
@@ -343,7 +352,11 @@ def _beside(
         return dict.fromkeys(("longer_order", "checked", "force_change", *figures))
     some = next(iter(found.values())).values
     at = checked_values(len(some), {way: one.force for way, one in shaken.items()})
-    changes = {way: motion_changes(longer, drive, result, at) for way, result in found.items()}
+    done, every = count(1), len(found) * len(at)
+    changes = {
+        way: motion_changes(longer, drive, result, at, lambda: progress(next(done), every))
+        for way, result in found.items()
+    }
     by_end = {
         f"{end}_change": {way: one.parts[:, k] for way, one in changes.items()}
         for k, end in enumerate(ENDINGS)

@@ -56,6 +56,7 @@ class FilmDamping:
         "what films change the mean tangent stiffness by at the frequency, relative",
         shown="%",
         no_error="not estimated: the difference of two means",
+        called="tangent_stiffness_change",
     )
     frequency: float = quantity("rad/s", "angular frequency of the oscillation", no_error=EXACT)
     natural_frequency: float = quantity(

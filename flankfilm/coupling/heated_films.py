@@ -109,6 +109,21 @@ class HeatedFilms:
         return np.asarray((1.0 - share) * film + share * self.oil.boundary_friction)
 
     @property
+    def friction_error(self) -> Array:
+        """Relative error of the coefficient of friction: of the film's, and of the share on which it was found (n,).
+
+        That share is left where its odds still step by less than the tolerance.
+        """
+        film = np.abs([film.traction_coefficient for film in self.films])
+        share, errors = self.asperity_share, np.array([film.traction_error for film in self.films])
+        apart = np.abs(self.oil.boundary_friction - film) * share * (1.0 - share) * self.oil.tolerance
+        whole = self.friction
+        known = whole > 0.0
+        moved = np.divide(apart, whole, out=np.zeros_like(whole), where=known)
+        part = np.divide((1.0 - share) * film, whole, out=np.ones_like(whole), where=known)
+        return np.asarray(errors * part + moved)
+
+    @property
     def rolling(self) -> Array:
         """Power lost by the oil's flow under its pressure (n,) [W/m]."""
         return np.array([film.losses.rolling for film in self.films if film.losses is not None])
@@ -135,6 +150,10 @@ class HeatedFilms:
         """Minimum film over the standard deviation of heights (n,); None of smooth flanks."""
         rough = self.oil.roughness
         return None if rough is None else np.asarray(self.minimum_thickness / rough.deviation)
+
+    def rubbing(self, friction: float) -> HeatedFilms:
+        """Give the same films with another friction of the asperities, which no film feels."""
+        return replace(self, oil=replace(self.oil, boundary_friction=friction))
 
     def some(self, most: int) -> HeatedFilms:
         """Give so many of them at most, the first and the last as well."""

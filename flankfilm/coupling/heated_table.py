@@ -69,6 +69,10 @@ class HeatedTable:
         """All films."""
         return tuple(film for row in self.rows for film in row.films)
 
+    def rubbing(self, friction: float) -> HeatedTable:
+        """Give the same films with another friction of the asperities, which no film feels."""
+        return replace(self, rows=tuple(row.rubbing(friction) for row in self.rows))
+
     def every_second(self, along: int) -> HeatedTable:
         """Table by every second place (0), or load (1)."""
         if along == 0:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 import fem
 import gears
-from base import Faults
+from base import Faults, Limit
 from flankfilm.coupling.believed import believed
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw
@@ -71,8 +71,14 @@ class LoadedTeeth:
     bore_inertia: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
-        """Check the names of the models."""
+        """Check what is given, and the names of the models."""
         with Faults() as faults:
+            faults.instance("pair", self.pair, gears.GearPair)
+            faults.number("torque", self.torque, Limit(unit="N m", remedy="give the pinion's torque"))
+            faults.instance(
+                "compliance", self.compliance, fem.Compliance, "as of fem.compliance", optional=True
+            )
+            faults.instance("flanks", self.flanks, Flanks)
             faults.choice("model", self.model, tuple(MODELS))
             faults.choice("pairs", self.pairs, ("coupled", "independent"))
             if self.reference is not None:

@@ -27,7 +27,9 @@ class TorqueCurves:
 
     torque: Array = quantity("N m", "torque of the pinion", "torque")
     secant_stiffness: Array = quantity("N/m", "mean mesh stiffness (secant)", "torque", error="error")
-    stiffness: Array = quantity("N/m", "mean mesh stiffness (tangent)", "torque", error="error")
+    stiffness: Array = quantity(
+        "N/m", "mean mesh stiffness (tangent)", "torque", error="error", called="tangent_stiffness"
+    )
     transmission_error: Array = quantity(
         "m", "transmission error, peak to peak", "torque", shown="um", error="range_error"
     )

@@ -1,4 +1,4 @@
-"""Losses at the ends of the band of Eyring's stress, in which that of most oils lies."""
+"""Losses at the ends of the bands of Eyring's stress and of the asperities' friction, where those of most oils lie."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 
 from base import Array
 from flankfilm.coupling.heated_films import HeatedFilms, heated_films
-from flankfilm.coupling.losses_record import LossBand
+from flankfilm.coupling.losses_record import BoundaryBand, LossBand
 from flankfilm.coupling.losses_rounds import Agreed, LossRounds
 from flankfilm.coupling.mean_losses import Carried, Means
 
-__all__ = ["loss_band"]
+__all__ = ["boundary_band_of", "loss_band"]
 
 BAND = (5e6, 10e6)
 """Eyring's stress of most oils [Pa]."""
 
 
-def loss_band(rounds: LossRounds, agreed: Agreed, path: HeatedFilms, few: int) -> LossBand:
+def loss_band(rounds: LossRounds, agreed: Agreed, path: HeatedFilms, few: int, error: float) -> LossBand:
     """Losses at the ends of the band of Eyring's stress, by the ratios of some films along the path.
 
     Parameters
@@ -31,9 +31,11 @@ def loss_band(rounds: LossRounds, agreed: Agreed, path: HeatedFilms, few: int) -
         Films along the path.
     few : int
         How many of these are solved anew.
+    error : float
+        Relative, of the losses at the stress that was given.
     """
     some = path.some(few)
-    found, along, off = [], [], [0.0]
+    found, along, off = [], [], []
     for stress in BAND:
         ratios = _ratios(rounds, some, stress, agreed.bulk)
         means, coarser = (
@@ -41,8 +43,8 @@ def loss_band(rounds: LossRounds, agreed: Agreed, path: HeatedFilms, few: int) -
         )
         found.append(means)
         along.append(Carried.of(path, ratios).friction)
-        off.append(coarser.off(means))
-    return _record(found, np.array(along), max(off), rounds.power)
+        off.append(error + coarser.off(means))
+    return _record(found, np.array(along), np.array(off), rounds.power)
 
 
 def _ratios(rounds: LossRounds, some: HeatedFilms, stress: float, bulk: tuple[float, float]) -> Carried:
@@ -54,7 +56,7 @@ def _ratios(rounds: LossRounds, some: HeatedFilms, stress: float, bulk: tuple[fl
     return Carried.of(heated_films(some.rho1, contacts, rounds.oil, bulk, some)).over(Carried.of(some))
 
 
-def _record(found: Sequence[Means], along: Array, error: float, power: float) -> LossBand:
+def _record(found: Sequence[Means], along: Array, error: Array, power: float) -> LossBand:
     def each(name: str) -> Array:
         return np.array([getattr(one, name) for one in found])
 
@@ -67,5 +69,33 @@ def _record(found: Sequence[Means], along: Array, error: float, power: float) ->
         mesh_loss=loss,
         efficiency=1.0 - loss / power,
         friction_coefficient=along,
-        error=error,
+        end_error=error,
+    )
+
+
+def boundary_band_of(rounds: LossRounds, agreed: Agreed, ends: tuple[float, float]) -> BoundaryBand:
+    """Losses of rough flanks at the ends of the band of their asperities' friction.
+
+    Parameters
+    ----------
+    rounds : LossRounds
+    agreed : Agreed
+        Load share, temperatures and films, which stay.
+    ends : (float, float)
+        Coefficients of friction.
+    """
+    found = [rounds.means(agreed.cycle, agreed.films.rubbing(end)) for end in ends]
+    rubbed = rounds.means(agreed.cycle, agreed.films.rubbing(0.0)).mesh_loss
+    whole = agreed.means.mesh_loss
+
+    def each(name: str) -> Array:
+        return np.array([getattr(one, name) for one in found])
+
+    return BoundaryBand(
+        boundary_friction=np.array(ends),
+        mean_friction=each("friction"),
+        sliding_loss=each("sliding_loss"),
+        mesh_loss=each("mesh_loss"),
+        efficiency=1.0 - each("mesh_loss") / rounds.power,
+        loss_part=1.0 - rubbed / whole if whole else 0.0,
     )

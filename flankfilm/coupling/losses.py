@@ -9,18 +9,20 @@ import numpy as np
 import ehl
 import gears
 from base import Cost, Faults, Stopwatch, unclocked
+from ehl.options import warn_of_pressure
+from ehl.regimes import BOUNDARY_FRICTION
 from flankfilm.coupling.films import Held
 from flankfilm.coupling.heated_films import HeatedOil
 from flankfilm.coupling.heated_table import HeatedTable
 from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions
-from flankfilm.coupling.loss_band import loss_band
+from flankfilm.coupling.loss_band import boundary_band_of, loss_band
 from flankfilm.coupling.losses_along_path import losses_along
 from flankfilm.coupling.losses_faults import check_bodies, check_numbers, check_temperatures
 from flankfilm.coupling.losses_over_face import face_losses, of_all_cells
 from flankfilm.coupling.losses_record import MeshLosses
 from flankfilm.coupling.losses_rounds import LossRounds
 from flankfilm.coupling.mesh_cycles import resolved
-from flankfilm.coupling.warned import warned_once
+from flankfilm.coupling.warned import pressures_unsaid, warned_once
 
 POSITIONS = 40
 """Positions of a base pitch at which films are solved."""
@@ -32,6 +34,9 @@ FEW = 9
 """Films that first values are found from, and the losses at either end of the band."""
 
 FIRST_FRICTION = 0.03
+
+BELOW, ABOVE = 0.8, 1.2
+"""Ends of the band of the asperities' friction over it, unless they are given."""
 
 MORE = "more positions, or a smaller tolerance of the films, lower it"
 
@@ -48,7 +53,8 @@ def mesh_losses(
     ambient_temperature: float | None = None,
     tolerance: float = 0.01,
     roughness: ehl.Roughness | None = None,
-    boundary_friction: float = 0.1,
+    boundary_friction: float = BOUNDARY_FRICTION,
+    boundary_band: tuple[float, float] | None = None,
     supply: Held = None,
     positions: int = POSITIONS,
     **teeth: Unpack[TeethOptions],
@@ -80,6 +86,9 @@ def mesh_losses(
         Of both flanks together; smooth without.
     boundary_friction : float
         Coefficient of friction of what asperities carry.
+    boundary_band : (float, float), optional
+        Lowest and highest that it may be: decides the model error of friction and losses. A fifth below and above
+        unless given.
     supply : ehl.Meniscus, ehl.OilLayer or PlacedMeniscus, optional
         What is held at the inlets; flooded without.
     positions : int
@@ -119,7 +128,7 @@ def mesh_losses(
     with Faults() as found:
         check_bodies(found, loaded, lubricant, solids)
         check_temperatures(found, bulk_temperatures, heat_transfer, ambient_temperature)
-        check_numbers(found, boundary_friction, positions, roughness, supply)
+        check_numbers(found, boundary_friction, boundary_band, positions, roughness, supply)
     with warned_once():
         loaded, _ = resolved(loaded, tolerance, speed=speed)
         with unclocked():
@@ -135,17 +144,21 @@ def mesh_losses(
             None if heat_transfer is None else np.array(heat_transfer),
             at_rest if ambient_temperature is None else ambient_temperature,
         )
-        return _solved(rounds, bulk_temperatures or (at_rest, at_rest))
+        band = boundary_band or (BELOW * boundary_friction, ABOVE * boundary_friction)
+        with pressures_unsaid():
+            losses = _solved(rounds, bulk_temperatures or (at_rest, at_rest), band)
+        warn_of_pressure(lubricant, float(losses.path.hertz_pressure.max()))
+        return losses
 
 
-def _solved(rounds: LossRounds, bulk: tuple[float, float]) -> MeshLosses:
+def _solved(rounds: LossRounds, bulk: tuple[float, float], ends: tuple[float, float]) -> MeshLosses:
     """Losses with films that agree with all they depend on, first by few of them."""
     watch = Stopwatch()
     first = rounds.agree(FEW, FIRST_FRICTION, bulk)
     agreed = rounds.agree(None, first.means.friction, first.bulk, first.films)
     means, every = agreed.means, rounds.cycle(agreed.means.friction, rounds.positions)
     along = rounds.along(agreed, every)
-    band, path = loss_band(rounds, agreed, along, FEW), losses_along(rounds.teeth.pair, along, agreed.bulk)
+    path = losses_along(rounds.teeth.pair, along, agreed.bulk)
     over, carried = None, 0.0
     if isinstance(agreed.films, HeatedTable):
         halves = (rounds.means(agreed.cycle, agreed.films.every_second(axis)) for axis in (0, 1))
@@ -169,7 +182,8 @@ def _solved(rounds: LossRounds, bulk: tuple[float, float]) -> MeshLosses:
         bulk_temperatures=np.array(agreed.bulk),
         heat=means.heat,
         heat_transfer=rounds.transfer,
-        band=band,
+        band=loss_band(rounds, agreed, along, FEW, error),
+        boundary=None if rounds.oil.roughness is None else boundary_band_of(rounds, agreed, ends),
         rounds=first.rounds + agreed.rounds,
         share_mismatch=agreed.shares,
         temperature_mismatch=agreed.warmer,

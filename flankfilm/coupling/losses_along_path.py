@@ -9,8 +9,9 @@ import numpy as np
 import ehl
 import gears
 from base import Array, described, quantity, record
-from base.results import EXACT
+from base.results import EXACT, ITSELF
 from fem.pair_figures import HERTZ
+from flankfilm.coupling.extreme_errors import of_greatest, of_least
 from flankfilm.coupling.heated_films import HeatedFilms
 
 _CLOSED_FORM = "unknown: a closed form"
@@ -60,7 +61,9 @@ class LossesAlongPath:
         "gear point",
         no_error="that of the oil's rise at the same contact, temperature_error, holds for both",
     )
-    contact_temperature: Array = quantity("K", "maximum temperature of the flanks", "point")
+    contact_temperature: Array = quantity(
+        "K", "maximum temperature of the flanks", "point", error="contact_temperature_error"
+    )
     flash_temperature: Array = quantity(
         "K", "flash temperature after Blok beside it", "point", no_error=_CLOSED_FORM
     )
@@ -88,15 +91,56 @@ class LossesAlongPath:
         """Maximum Hertz pressure times sliding speed of the contacts."""
         return float(self.pressure_times_sliding.max())
 
-    @described("m", shown="um")
+    @described("1", "point", no_error=ITSELF)
+    def contact_temperature_error(self) -> Array:
+        """Estimated relative error of the flanks' maximum temperature [K], as their rise errs."""
+        rise = self.surface_temperature_rise.max(axis=0)
+        return np.asarray(self.temperature_error * rise / self.contact_temperature)
+
+    @described("m", shown="um", error="least_film_error")
     def least_film(self) -> float:
         """Minimum film of the contacts."""
         return float(self.minimum_thickness.min())
 
-    @described("K")
+    @property
+    def least_film_error(self) -> float:
+        """Relative error of the minimum film and of the minimum film ratio."""
+        return of_least(self.minimum_thickness, self.film_error)
+
+    @described("1", error="least_film_error")
+    def least_film_ratio(self) -> float | None:
+        """Minimum film ratio Lambda of the contacts; None of smooth flanks."""
+        return None if self.film_ratio is None else float(self.film_ratio.min())
+
+    @described("K", error="greatest_oil_rise_error")
+    def greatest_oil_rise(self) -> float:
+        """Maximum oil temperature of the contacts above the mean of the flanks' bulk."""
+        return float(self.oil_temperature_rise.max())
+
+    @property
+    def greatest_oil_rise_error(self) -> float:
+        """Relative error of the maximum rise of the oil."""
+        return of_greatest(self.oil_temperature_rise, self.temperature_error)
+
+    @described("K", "gear", error="greatest_flank_rise_error")
+    def greatest_flank_rise(self) -> Array:
+        """Maximum rise of pinion's and wheel's flank above its bulk."""
+        return np.asarray(self.surface_temperature_rise.max(axis=1))
+
+    @described("1", "gear", no_error=ITSELF)
+    def greatest_flank_rise_error(self) -> Array:
+        """Relative error of the maximum rise of pinion's and wheel's flank."""
+        return np.array([of_greatest(rise, self.temperature_error) for rise in self.surface_temperature_rise])
+
+    @described("K", error="greatest_contact_temperature_error")
     def greatest_contact_temperature(self) -> float:
         """Maximum temperature of the flanks at the contacts."""
         return float(self.contact_temperature.max())
+
+    @property
+    def greatest_contact_temperature_error(self) -> float:
+        """Relative error of the flanks' maximum temperature [K], that of their bulk left out."""
+        return of_greatest(self.contact_temperature, self.contact_temperature_error)
 
 
 def losses_along(pair: gears.GearPair, found: HeatedFilms, bulk: tuple[float, float]) -> LossesAlongPath:
@@ -138,7 +182,7 @@ def losses_along(pair: gears.GearPair, found: HeatedFilms, bulk: tuple[float, fl
         film_ratio=found.film_ratio,
         asperity_share=found.asperity_share if found.rough else None,
         closure=np.array([film.losses.closure for film in films if film.losses is not None]),
-        friction_error=_each(films, "traction_error"),
+        friction_error=found.friction_error,
         temperature_error=_each(films, "temperature_error"),
         film_error=_each(films, "error"),
     )

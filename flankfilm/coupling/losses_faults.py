@@ -6,13 +6,13 @@ import numpy as np
 
 import ehl
 from base import Faults, Limit
+from ehl.regimes import BOUNDARY
 from fem.moving_contact import COMPLIANT
 from flankfilm.coupling.films import Held, PlacedMeniscus
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
 
 BALANCE = Limit.above(0.0, 1e6, "W/K", "heat transfer coefficient times area; 1 to 100 W/K are usual")
 TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")
-BOUNDARY = Limit(0.0, 0.5, remedy="0.08 to 0.15 is usual")
 POSITIONS = Limit(2, whole=True)
 
 
@@ -62,13 +62,29 @@ def check_temperatures(
 
 
 def check_numbers(
-    found: Faults, boundary: float, positions: int, roughness: ehl.Roughness | None, supply: Held
+    found: Faults,
+    boundary: float,
+    band: tuple[float, float] | None,
+    positions: int,
+    roughness: ehl.Roughness | None,
+    supply: Held,
 ) -> None:
     """Note faults of the rest."""
     found.number("boundary_friction", boundary, BOUNDARY)
+    if band is not None and not _around(band, boundary):
+        allowed = f"must be two numbers from 0 to {BOUNDARY.high:g} with {boundary:g} between them"
+        found.add("boundary_band", band, allowed, "(0.08, 0.12) is usual")
     found.number("positions", positions, POSITIONS)
     if roughness is not None and not isinstance(roughness, ehl.Roughness):
         found.add("roughness", roughness, "must be an ehl.Roughness", "build one, or leave it out")
     if supply is not None and not isinstance(supply, ehl.Meniscus | ehl.OilLayer | PlacedMeniscus):
         allowed = "must be an ehl.Meniscus, an ehl.OilLayer or a coupling.PlacedMeniscus"
         found.add("supply", supply, allowed, "build one, or leave it out for flooded contacts")
+
+
+def _around(band: tuple[float, float], boundary: float) -> bool:
+    """Whether a band is two numbers, the lower first, with a friction between them."""
+    if np.shape(band) != (2,):
+        return False
+    low, high = band
+    return BOUNDARY.holds(low) and BOUNDARY.holds(high) and low <= boundary <= high

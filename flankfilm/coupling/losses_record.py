@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+import numpy as np
+
 from base import Array, Cost, described, part, quantity, record
 from base.results import EXACT, ITSELF
 from flankfilm.coupling.cycle import MeshCycle
@@ -22,17 +26,47 @@ class LossBand:
     headline = ("error",)
 
     eyring_stress: Array = quantity("Pa", "Eyring's stress", "end", shown="MPa", no_error=EXACT)
-    mean_friction: Array = quantity("1", "mean coefficient of friction", "end", error="error")
-    sliding_loss: Array = quantity("W", "mean power lost by sliding", "end", error="error")
-    rolling_loss: Array = quantity("W", "mean power lost by rolling", "end", error="error")
-    mesh_loss: Array = quantity("W", "mean power lost in the mesh", "end", error="error")
-    efficiency: Array = quantity("1", "power put out over power put in", "end", error="error")
+    mean_friction: Array = quantity("1", "mean coefficient of friction", "end", error="end_error")
+    sliding_loss: Array = quantity("W", "mean power lost by sliding", "end", error="end_error")
+    rolling_loss: Array = quantity("W", "mean power lost by rolling", "end", error="end_error")
+    mesh_loss: Array = quantity("W", "mean power lost in the mesh", "end", error="end_error")
+    efficiency: Array = quantity("1", "power put out over power put in", "end", error="efficiency_error")
     friction_coefficient: Array = quantity(
         "1", "coefficient of friction at the contacts in the order of the path", "end point", error="error"
     )
-    error: float = quantity(
-        "1", "relative error of the ratios by being carried along the path", no_error=ITSELF
+    end_error: Array = quantity(
+        "1",
+        "relative numerical error of the means: of films, and of ratios that are carried along the path",
+        "end",
+        no_error=ITSELF,
     )
+
+    @described("1", no_error=ITSELF)
+    def error(self) -> float:
+        """Greater relative error of both ends."""
+        return float(self.end_error.max())
+
+    @described("1", "end", no_error=ITSELF)
+    def efficiency_error(self) -> Array:
+        """Relative error of the efficiency."""
+        return np.asarray(self.end_error * (1.0 - self.efficiency) / self.efficiency)
+
+
+@record
+class BoundaryBand:
+    """Mean losses at the ends of the band of the asperities' friction: load share, films and temperatures stay."""
+
+    no_error = "that of the mean losses: films and load share are theirs"
+    headline = ("loss_part",)
+
+    boundary_friction: Array = quantity(
+        "1", "coefficient of friction of what asperities carry", "end", no_error=EXACT
+    )
+    mean_friction: Array = quantity("1", "mean coefficient of friction", "end")
+    sliding_loss: Array = quantity("W", "mean power lost by sliding", "end")
+    mesh_loss: Array = quantity("W", "mean power lost in the mesh", "end")
+    efficiency: Array = quantity("1", "power put out over power put in", "end")
+    loss_part: float = quantity("1", "part of the losses that the asperities' friction makes")
 
 
 @record
@@ -50,9 +84,14 @@ class MeshLosses:
     speed: float = quantity("rad/s", "speed of the pinion", shown="rpm", no_error=EXACT)
     input_power: float = quantity("W", "power put in", shown="kW", no_error=EXACT)
     mean_friction: float = quantity(
-        "1", "mean coefficient of friction, weighted by force and sliding", error="error"
+        "1",
+        "mean coefficient of friction, weighted by force and sliding",
+        error="error",
+        model_error="model_errors",
     )
-    sliding_loss: float = quantity("W", "mean power lost by sliding on the path", error="error")
+    sliding_loss: float = quantity(
+        "W", "mean power lost by sliding on the path", error="error", model_error="model_errors"
+    )
     rolling_loss: float = quantity(
         "W", "mean power lost by the oil's flow under its pressure", no_error=ROLLING
     )
@@ -75,6 +114,9 @@ class MeshLosses:
         "W/K", "heat transfer of pinion and wheel; None where bulk temperatures were given", "gear"
     )
     band: LossBand = part("losses at the ends of the band of Eyring's stress")
+    boundary: BoundaryBand | None = part(
+        "losses at the ends of the band of the asperities' friction; None of smooth flanks"
+    )
     rounds: int = quantity("1", "times that films, load share and temperatures were solved", no_error=EXACT)
     share_mismatch: float = quantity(
         "1", "last change of a pair's force over the whole force", no_error=ITSELF
@@ -88,12 +130,12 @@ class MeshLosses:
         "friction, losses and temperatures over the face; None where the load is even along it", default=None
     )
 
-    @described("W", error="error")
+    @described("W", error="error", model_error="model_errors")
     def mesh_loss(self) -> float:
         """Mean power lost in the mesh: by sliding, rolling and tip edges."""
         return self.sliding_loss + self.rolling_loss + self.edge_loss
 
-    @described("1", error="loss_error")
+    @described("1", error="loss_error", model_error="model_errors")
     def efficiency(self) -> float:
         """Power put out over power put in."""
         return 1.0 - self.mesh_loss / self.input_power
@@ -103,12 +145,44 @@ class MeshLosses:
         """Relative error of the efficiency."""
         return self.error * self.mesh_loss / (self.input_power - self.mesh_loss)
 
-    @described("K")
+    @property
+    def model_errors(self) -> Mapping[str, float]:
+        """What the bands of Eyring's stress and of the asperities' friction leave open, relative, by figure."""
+        names = ("mean_friction", "sliding_loss", "mesh_loss", "efficiency")
+        bands = [self.band] if self.boundary is None else [self.band, self.boundary]
+        return {
+            name: sum(_farthest(getattr(band, name), getattr(self, name)) for band in bands) for name in names
+        }
+
+    @described("1", no_error=ITSELF)
+    def model_error(self) -> float:
+        """What these bands leave open of the losses, relative."""
+        return self.model_errors["mesh_loss"]
+
+    @described("K", error="greatest_contact_temperature_error")
     def greatest_contact_temperature(self) -> float:
         """Maximum temperature of the flanks."""
         return self.path.greatest_contact_temperature
 
-    @described("m", shown="um")
+    @property
+    def greatest_contact_temperature_error(self) -> float:
+        """Relative error of the flanks' maximum temperature [K]: of their rise, and of a balanced bulk."""
+        bulk = 0.0
+        if self.heat_transfer is not None:
+            bulk = self.temperature_mismatch + self.error * float(np.max(self.heat / self.heat_transfer))
+        return self.path.greatest_contact_temperature_error + bulk / self.greatest_contact_temperature
+
+    @described("m", shown="um", error="least_film_error")
     def least_film(self) -> float:
         """Minimum film of the contacts."""
         return self.path.least_film
+
+    @property
+    def least_film_error(self) -> float:
+        """Relative error of the minimum film."""
+        return self.path.least_film_error
+
+
+def _farthest(ends: Array, value: float) -> float:
+    """Largest relative difference of the ends of a band from a value."""
+    return float(np.max(np.abs(ends - value))) / abs(value) if value else 0.0

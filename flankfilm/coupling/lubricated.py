@@ -10,6 +10,7 @@ import numpy as np
 import ehl
 import gears
 from base import Array, SolverError, Stopwatch, unclocked
+from ehl.options import warn_of_pressure
 from fem.local_law import film_yielding
 from flankfilm.coupling.along_path import FilmAlongPath, gathered
 from flankfilm.coupling.cycle import MeshCycle
@@ -29,7 +30,7 @@ from flankfilm.coupling.lubricated_face import lubricate_face
 from flankfilm.coupling.lubricated_record import LubricatedCycle
 from flankfilm.coupling.mesh_cycles import resolved
 from flankfilm.coupling.resolution import Resolution
-from flankfilm.coupling.warned import warned_once
+from flankfilm.coupling.warned import pressures_unsaid, warned_once
 
 FILM_POSITIONS = 40
 """Positions of a base pitch at which films are solved and brought into agreement with the load share."""
@@ -181,8 +182,27 @@ def lubricate(
     """
     with unclocked():
         ehl.solve  # noqa: B018 - loads the solver
-    if dry.face is not None:
-        return lubricate_face(teeth, dry, speed, lubricant, resolution, model, profiles=profiles)
+    with pressures_unsaid():
+        if dry.face is None:
+            found = _even(teeth, dry, speed, lubricant, resolution, model, profiles=profiles)
+        else:
+            found = lubricate_face(teeth, dry, speed, lubricant, resolution, model, profiles=profiles)
+    if model.name == "ehl":
+        warn_of_pressure(lubricant, found.film.greatest_pressure)
+    return found
+
+
+def _even(
+    teeth: LoadedTeeth,
+    dry: MeshCycle,
+    speed: float,
+    lubricant: ehl.Lubricant,
+    resolution: Resolution,
+    model: FilmModel,
+    *,
+    profiles: bool,
+) -> LubricatedCycle:
+    """Bring films and load share into agreement where the load is even along the face."""
     run = _Run(teeth, dry, speed, lubricant, resolution, model)
     agreed = run.agree(min(FILM_POSITIONS, dry.position.size))
     path, law = agreed.path, agreed.law

@@ -71,7 +71,7 @@ class LubricatedCycle(MeshCycle):
         """What the film changes the mean secant stiffness by, relative."""
         return self.mean_secant_stiffness / self.dry.mean_secant_stiffness - 1
 
-    @described("1", shown="%", no_error=DIFFERENCE)
+    @described("1", shown="%", no_error=DIFFERENCE, called="tangent_stiffness_change")
     def stiffness_change(self) -> float:
         """What the film changes the mean tangent stiffness by, relative."""
         return self.mean_stiffness / self.dry.mean_stiffness - 1

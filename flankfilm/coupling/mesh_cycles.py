@@ -49,6 +49,9 @@ def mesh_cycle(
     >>> cycle.secant_stiffness.shape, round(cycle.mean_secant_stiffness / 40e6, 1)  # N/(mm um)
     ((120,), 20.3)
     """
+    with Faults() as faults:
+        if positions is not None:
+            faults.whole("positions", positions, 1, 10**6, "120 is usual")
     loaded, asked = resolved(LoadedTeeth(pair, torque, **teeth), tolerance)
     return (
         loaded.sampled(asked.sampling, tolerance)

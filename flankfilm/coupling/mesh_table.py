@@ -29,7 +29,11 @@ class MeshTable:
 
     angle: Array = quantity("rad", "rotation of the pinion after a pair is at A", "position", shown="deg")
     stiffness: Array = quantity(
-        "N/m", "tangent stiffness of the mesh, for small vibration", "position", error="error"
+        "N/m",
+        "tangent stiffness of the mesh, for small vibration",
+        "position",
+        error="error",
+        called="tangent_stiffness",
     )
     secant_stiffness: Array = quantity(
         "N/m", "secant stiffness of the mesh, for motion with separation", "position", error="error"
@@ -37,7 +41,9 @@ class MeshTable:
     transmission_error: Array = quantity(
         "m", "loaded transmission error along the line of action", "position", shown="um", error="error"
     )
-    mean_stiffness: float = quantity("N/m", "mean of the tangent stiffness", error="error")
+    mean_stiffness: float = quantity(
+        "N/m", "mean of the tangent stiffness", error="error", called="mean_tangent_stiffness"
+    )
     mean_secant_stiffness: float = quantity("N/m", "mean of the secant stiffness", error="error")
     force: float = quantity("N", "normal force of the mesh")
     backlash: float = quantity("m", "normal backlash", shown="um")

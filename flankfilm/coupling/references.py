@@ -71,6 +71,7 @@ class StiffnessReferences:
         "mean mesh stiffness (tangent) for each reference of the deflection",
         "reference",
         error="mean_error",
+        called="mean_tangent_stiffness",
     )
     mean_secant_stiffness: Array = quantity(
         "N/m",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -69,7 +69,11 @@ class MotionChanges(NamedTuple):
 
 
 def motion_changes(
-    longer: Longer, motion: PairOscillator | PairDrive, swept: dynamics.SweepResult, at: Integers
+    longer: Longer,
+    motion: PairOscillator | PairDrive,
+    swept: dynamics.SweepResult,
+    at: Integers,
+    began: Callable[[], None] = lambda: None,
 ) -> MotionChanges:
     """What the longer series changes of the figures of swept motions.
 
@@ -81,11 +85,14 @@ def motion_changes(
     swept : SweepResult
     at : ndarray of int, shape (n,)
         Values that are looked at.
+    began : callable
+        Called as each of them begins.
     """
     changes = np.full((len(at), 2), np.nan)
     parts = np.full((len(at), 3, len(motion.outputs)), np.nan)
     given: Any = {"load": motion.mean_force, "outputs": motion.outputs}
     for row, index in enumerate(at.tolist()):
+        began()
         periods, frequency = int(swept.periods[index]), float(swept.values[index])
         if not periods:
             continue

@@ -7,6 +7,8 @@ import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 
+from ehl.options import PressureWarning
+
 NUMBER = re.compile(r"([-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?)")
 
 
@@ -29,6 +31,14 @@ def _joined(group: Sequence[warnings.WarningMessage]) -> warnings.WarningMessage
     if text == str(first.message):
         return first
     return warnings.WarningMessage(first.category(text), first.category, first.filename, first.lineno)
+
+
+@contextmanager
+def pressures_unsaid() -> Iterator[None]:
+    """Leave out warnings of Hertz pressures: of films beside the contacts', such as those that a table is made from."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PressureWarning)
+        yield
 
 
 @contextmanager

@@ -14,6 +14,11 @@ from flankfilm.exchange.rexs_file import read_model
 from flankfilm.exchange.rexs_pair import draft_of
 from flankfilm.scene import parse_scene
 
+MOST_NOTES = 50
+"""Notes that are kept: a file may have thousands of modifications."""
+
+LONGEST_NOTE = 500
+
 
 @dataclass(frozen=True)
 class Imported:
@@ -62,7 +67,10 @@ def imported(file: Path, *, stage: str | None = None, rack: str | None = None) -
                 gear_pair(parse_scene(text))
         except InputError as error:
             faults = error.faults
-    return Imported(text, tuple(draft.notes), faults)
+    notes = tuple(note[:LONGEST_NOTE] for note in draft.notes[:MOST_NOTES])
+    if len(draft.notes) > MOST_NOTES:
+        notes += (f"{len(draft.notes) - MOST_NOTES} more notes are left out.",)
+    return Imported(text, notes, faults)
 
 
 def _name_rack(draft: Draft, name: str) -> None:

@@ -17,12 +17,12 @@ from flankfilm.output.variables import of_record
 if TYPE_CHECKING:
     from flankfilm.coupling import MeshTable
 
-CURVES = ("angle", "stiffness", "secant_stiffness", "transmission_error")
+CURVES = ("angle", "tangent_stiffness", "secant_stiffness", "transmission_error")
 """Columns that change with the angle."""
 
 CONSTANTS = (
     "relative_error",
-    "mean_stiffness",
+    "mean_tangent_stiffness",
     "mean_secant_stiffness",
     "force",
     "backlash",

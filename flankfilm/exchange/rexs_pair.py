@@ -22,6 +22,9 @@ from flankfilm.exchange.rexs_model import Component, Model, Relation
 SAME = 1e-9
 """Relative difference within which two numbers of a file are one number."""
 
+MOST_STAGES = 12
+"""Stages that a message lists."""
+
 MODIFICATIONS = re.compile(
     "(triangular_)?(tip|root)_relief|profile_(crowning|slope|twist|deviation)|helix_(crowning|slope|deviation)|"
     "end_relief_(non_)?datum_face|topographical_modification"
@@ -65,10 +68,15 @@ def draft_of(model: Model, source: str, stage: str | None = None) -> Draft:
 
 def _chosen(model: Model, source: str, stage: str | None) -> Relation:
     found = stages(model)
-    listed = "; ".join(f"--stage {key}: {shorten(model.components[key].name)}" for key in found)
+    listed = "; ".join(
+        f"--stage {key[:60]}: {shorten(model.components[key].name)}" for key in list(found)[:MOST_STAGES]
+    )
+    if len(found) > MOST_STAGES:
+        listed += f"; and {len(found) - MOST_STAGES} more"
     if not found:
         kinds = sorted({c.type for c in model.components.values() if c.type.endswith("stage")})
-        allowed = "holds no stage of cylindrical gears" + (f", but {', '.join(kinds)}" if kinds else "")
+        shown = ", ".join(kind[:60] for kind in kinds[:MOST_STAGES])
+        allowed = "holds no stage of cylindrical gears" + (f", but {shown}" if kinds else "")
         raise InputError.at(source, "", allowed, "Pairs of external spur gears are read alone")
     if stage is None and len(found) > 1:
         raise InputError.at(source, f"{len(found)} stages", "choose one", listed)

@@ -233,7 +233,7 @@ def _scale_of_colours(results: xr.Dataset, folder: Path, field: str, *, over_fac
     import pyvista as pv
 
     if field == STRESS and not over_face:
-        top = 1e6 * stress_of_nearly_all(results)
+        top = max(1e6 * stress_of_nearly_all(results), _in_fillets(results, folder))
     else:
         each = list(steps(folder).values())
         chosen = each if over_face else each[:1]
@@ -251,6 +251,27 @@ def _scale_of_colours(results: xr.Dataset, folder: Path, field: str, *, over_fac
         top = float(np.nanquantile(sizes, 1.0 if over_face else 0.997)) or 1.0
     step = _round(top / 3)
     return step, math.ceil(top / step)
+
+
+def _in_fillets(results: xr.Dataset, folder: Path) -> float:
+    """Maximum von Mises stress below the flanks of the pictured teeth, over all positions [Pa]."""
+    import pyvista as pv
+
+    names = results["path_point"].values.tolist()
+    pitch_point = results["path_point_place"].values[names.index("C")]
+    centres = {"pinion": np.zeros(2), "wheel": results["outline_centre"].values[1]}
+    # the lower half of the fillets, away from contacts at the form circle
+    half_way = 0.5 * (results["pair_form_radii"].values + results["pair_root_radii"].values)
+    below = dict(zip(centres, half_way.tolist(), strict=True))
+    reach, greatest = float(results["field_reach"]), 0.0
+    for files in steps(folder).values():
+        for gear, centre in centres.items():
+            grid = pv.read(files[gear])
+            place = np.asarray(grid.points)[:, :2]
+            at = np.linalg.norm(place - centre, axis=1) < below[gear]
+            at &= np.linalg.norm(place - pitch_point, axis=1) < reach
+            greatest = max(greatest, float(np.max(np.asarray(grid[STRESS])[at], initial=0.0)))
+    return greatest
 
 
 def _round(value: float) -> float:

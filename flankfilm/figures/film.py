@@ -11,7 +11,7 @@ import numpy as np
 from base import Array
 from flankfilm.figures.panels import PATH_LABEL, curves, over_path
 from flankfilm.figures.reading import Reading, beside, labelled, need, read, text, travel
-from flankfilm.figures.style import MARK, Style, colours, from_zero, looks, sheet
+from flankfilm.figures.style import MARK, Style, colours, films_from_zero, from_zero, looks, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,7 +50,8 @@ def film_along_path(results: xr.Dataset, *, style: Style | None = None) -> Figur
         curves(upper, at, films, "film thickness")
         lower.plot(at, pressure.values, color=colours(3)[2])
         lower.set(ylabel=pressure.named("Hertz pressure"))
-        from_zero(upper, lower)
+        films_from_zero(upper)
+        from_zero(lower)
         over_path(results, upper, lower)
     return drawn
 
@@ -154,7 +155,8 @@ def film_families(
             _through(pressure, thickness, results, name, label, look)
             for axes, what in ((hertz, "film_hertz_pressure"), (along, "film_minimum_thickness")):
                 curves(axes, travel(results, "film_rho1"), {label: read(results, what)}, **look)
-        from_zero(pressure, hertz, along)
+        from_zero(pressure, hertz)
+        films_from_zero(along)
         hertz.set(ylabel=read(results, "film_hertz_pressure").named("Hertz pressure"))
         pressure.set(xlim=(-1.5, 1.2))
         thickness.set(xlabel=THROUGH, xlim=(-1.5, 1.2), ylim=(0, 2 * _thickest(thickness)))
@@ -189,10 +191,12 @@ def film_changes(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, FILM, "dry_stiffness", "lubricated_stiffness", "lubricated_label")
-    dry, wet = (read(results, f"{name}_stiffness", per_face=True) for name in ("dry", "lubricated"))
+    need(results, FILM, "dry_tangent_stiffness", "lubricated_tangent_stiffness", "lubricated_label")
+    dry, wet = (read(results, f"{name}_tangent_stiffness", per_face=True) for name in ("dry", "lubricated"))
     position = read(results, "dry_position")
-    cycles = beside(results, "held_stiffness", per_face=True) or {text(results, "lubricated_label"): wet}
+    cycles = beside(results, "held_tangent_stiffness", per_face=True) or {
+        text(results, "lubricated_label"): wet
+    }
     changes = {
         label: Reading(100 * (cycle.values / dry.values - 1), "change by the film", "%")
         for label, cycle in cycles.items()

@@ -9,7 +9,7 @@ import numpy as np
 from base import Array
 from flankfilm.figures.panels import curves, over_path
 from flankfilm.figures.reading import GEARS, Reading, need, read, travel
-from flankfilm.figures.style import MARK, Style, colours, from_zero, legend_over, sheet
+from flankfilm.figures.style import MARK, Style, colours, films_from_zero, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -86,7 +86,8 @@ def temperatures_along_path(results: xr.Dataset, *, style: Style | None = None) 
         ):
             lower.plot(places, film.values, color=colour, linestyle=dash, label=label)
             lower.set(ylabel=film.named("minimum film"))
-        from_zero(upper, lower)
+        from_zero(upper)
+        films_from_zero(lower)
         over_path(results, upper, lower)
         if len(films) > 1:
             legend_over(lower, 2)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flankfilm.figures.reading import PER_FACE, Reading, read_figure, unit_text
-from flankfilm.figures.style import DASHES, colours, from_zero, legend_over, sheet
+from flankfilm.figures.style import DASHES, colours, films_from_zero, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,6 +71,8 @@ def curves(result: object) -> Figure:
             for one, colour, dash in zip(known, colours(len(known)), DASHES, strict=False):
                 axes.plot(x.values, one.values, color=colour, linestyle=dash, label=one.meaning)
             _titled(axes, known)
+            if "minimum_thickness" in names:
+                films_from_zero(axes)
             if kind == "Film" and names == ("thickness",):  # beyond the outlet the gap hides what counts
                 axes.set_ylim(0.0, 4.0 * float(known[0].values[np.argmin(np.abs(x.values))]))
         all_axes[-1].set_xlabel(x.label)
@@ -127,7 +129,8 @@ def losses_along_path(found: LossesAlongPath) -> Figure:
             _curve(film, x, read_figure(found, "minimum_thickness"), "minimum film [µm]")
         else:
             _curve(film, x, read_figure(found, "film_ratio"), "film ratio Λ [-]")
-        from_zero(*panels)
+        from_zero(friction, power, warmth, pressed)
+        films_from_zero(film)
         film.set_xlabel(x.label)
     return drawn
 

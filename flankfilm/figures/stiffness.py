@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 STIFFNESS = 'run a scene that wants "stiffness"'
 
-KINDS = {"secant": "secant_stiffness", "tangent": "stiffness"}
+KINDS = {"secant": "secant_stiffness", "tangent": "tangent_stiffness"}
 """Names of the curves of a mesh cycle."""
 
 
@@ -154,7 +154,7 @@ def over_torque(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    names = {"secant": "torque_secant_stiffness", "tangent": "torque_stiffness"}
+    names = {"secant": "torque_secant_stiffness", "tangent": "torque_tangent_stiffness"}
     wants, first = 'run a scene that wants "torques"', "torque_transmission_error_harmonic_1"
     need(results, wants, *names.values(), first, "pair_face_width")
     torque, error = read(results, "torque"), read(results, "torque_transmission_error")

@@ -10,7 +10,9 @@ from contextlib import chdir, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from base import InputError
 from base.files import replacing
+from base.views import surface
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,7 +104,10 @@ def sheet(
     legend: int = 3,
     **options: Any,
 ) -> Iterator[tuple[Figure, list[Axes]]]:
-    """Give a figure with empty panels in the house's style, free of pyplot's global list, and legend it at the end.
+    """Give a figure with empty panels in the house's style, and legend it at the end.
+
+    It is free of pyplot's global list, unless the surface at hand (`base.views.surface`) is its current figure or axes
+    that somebody gave.
 
     Parameters
     ----------
@@ -119,17 +124,49 @@ def sheet(
         As of ``Figure.subplots``.
     """
     import matplotlib as mpl
-    from matplotlib.figure import Figure
 
     with styled(style):
-        own = tuple(mpl.rcParams["figure.figsize"])
-        drawn = Figure(figsize=own if min(own) > 0 else (width, height))
-        grid = drawn.subplots(rows, columns, squeeze=False, **{"sharex": columns == 1, **options})
-        panels = grid.ravel().tolist()
+        own, on = tuple(mpl.rcParams["figure.figsize"]), surface()
+        if on.axes:
+            panels = _given(on.axes, rows * columns)
+            drawn = panels[0].figure.figure
+        else:
+            drawn = _empty(own if min(own) > 0 else (width, height), on.current)
+            grid = drawn.subplots(rows, columns, squeeze=False, **{"sharex": columns == 1, **options})
+            panels = grid.ravel().tolist()
         yield drawn, panels
         handles, labels = panels[0].get_legend_handles_labels()
-        if legend and labels:
+        if not (legend and labels):
+            return
+        if on.axes:
+            panels[0].legend(handles, labels, handlelength=2.6)
+        else:
             drawn.legend(handles, labels, loc="outside upper left", ncols=legend, handlelength=2.6)
+
+
+def _given(axes: tuple[Any, ...], panels: int) -> list[Axes]:
+    """Axes that somebody gave for the panels of a picture."""
+    from matplotlib.axes import Axes
+
+    if len(axes) != panels or not all(isinstance(one, Axes) for one in axes):
+        kinds = ", ".join(dict.fromkeys(type(one).__name__ for one in axes))
+        remedy = f"Give those of matplotlib's figure.subplots({panels}), or leave ax out"
+        raise InputError.at(
+            "ax", f"{len(axes)} of {kinds}", f"must be {panels} axes, one for each panel", remedy
+        )
+    return list(axes)
+
+
+def _empty(size: tuple[float, ...], current: bool) -> Figure:
+    """Figure without panels; the current one of pyplot where that is wanted and its backend can be loaded."""
+    from matplotlib.figure import Figure
+
+    if current:
+        from matplotlib import pyplot
+
+        with suppress(ImportError):
+            return pyplot.figure(figsize=(size[0], size[1]))
+    return Figure(figsize=(size[0], size[1]))
 
 
 def legend_over(axes: Axes, columns: int) -> None:
@@ -148,6 +185,31 @@ def from_zero(*panels: Axes) -> None:
     """Let the vertical axis begin at zero, and end above the data, level ones too."""
     for axes in panels:
         axes.set_ylim(0.0, 1.08 * float(axes.dataLim.y1) or 1.0)
+
+
+FILM_SHOWN = 2.5
+"""End of an axis of film thickness, over the median of the films."""
+
+
+def films_from_zero(*panels: Axes) -> None:
+    """Let an axis of film thickness begin at zero, and end where nearly unloaded contacts rise far above the others.
+
+    At the ends of a relieved flank a contact carries hardly any load, and its film is many times as thick.
+    """
+    import numpy as np
+
+    for axes in panels:
+        from_zero(axes)
+        values = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.lines])
+        values = values[np.isfinite(values)]
+        if values.size == 0:
+            continue
+        largest, end = float(values.max()), FILM_SHOWN * float(np.median(values))
+        if largest <= end:
+            continue
+        axes.set_ylim(0.0, end)
+        said = f"up to {largest:.2g} at hardly loaded ends"
+        axes.text(0.5, 0.97, said, transform=axes.transAxes, ha="center", va="top", color=MARK)
 
 
 RASTER = 150

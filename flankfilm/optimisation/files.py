@@ -23,8 +23,8 @@ def summary(found: Optimum) -> list[str]:
     """Lines for the terminal."""
     task = found.task
     lines = [
-        f"{len(found.evaluations)} points, {found.computed} of them computed in {found.seconds:.1f} s, at tolerances "
-        f"{task.tolerances[0]:g} and then {task.tolerances[1]:g}"
+        f"{found.points} of at most {task.asked.evaluations} points, {found.computed} of them computed in "
+        f"{found.seconds:.1f} s, at tolerances {task.tolerances[0]:g} and then {task.tolerances[1]:g}"
     ]
     if (both := phases(found)) is not None:
         coarse, fine, saved = both

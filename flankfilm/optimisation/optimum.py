@@ -89,12 +89,17 @@ class Optimum:
         which = f"{len(self.tied)} tie" if len(self.best) == 1 else f"{len(self.best)} on the front"
         settled = "converged" if self.converged else "not converged"
         return (
-            f"Optimum({len(self.evaluations)} points, {which}, error {self.error:.1e}, {settled}, "
-            f"{self.seconds:.3g} s)"
+            f"Optimum({self.points} points, {which}, error {self.error:.1e}, {settled}, {self.seconds:.3g} s)"
         )
 
     _repr_html_ = view
     plot = plot
+
+    @property
+    def points(self) -> int:
+        """Points of the whole search, the scene as it stands among them."""
+        asked = {(one.tolerance, one.values) for one in self.evaluations}
+        return len(asked | ({(self.start.tolerance, self.start.values)} if self.start is not None else set()))
 
     @property
     def cost(self) -> Cost:
@@ -125,7 +130,8 @@ class Optimum:
                 f"the last quarter of the fine points raised the hypervolume of the front by {self.moved:.2g}"
             )
             why += f" of itself; {STILL:g} and less stands still"
-        remedy = "" if self.converged else f"; give more than {self.task.asked.evaluations} evaluations"
+        asked = self.task.asked.evaluations
+        remedy = "" if self.converged else f"; give more than {asked} evaluations, such as {2 * asked}"
         return f"{'converged' if self.converged else 'not converged'}: {why}{remedy}"
 
     @property

@@ -82,8 +82,9 @@ def polish(task: Task, evaluate: Evaluate, best: Array) -> Polish:
     while True:
         around = neighbours(task, at)
         if free.size:
-            if evaluate.left < 2 * free.size + 2 + len(around):
-                return Polish(False, rounds, "the points were used up before a polish could end")
+            if evaluate.left < (need := 2 * free.size + 2 + len(around)):
+                why = f"{evaluate.left} points were left for a polish, which takes {need} or more"
+                return Polish(False, rounds, why)
             rounds += 1
             at, ended = _trust_region(task, evaluate, at, free, evaluate.left - len(around))
             if not ended:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from base import SolverError
+from base import InputError, SolverError
 from flankfilm.optimisation.optimum import Evaluation, Optimum, error_of, judged
 from flankfilm.optimisation.search import front, search
 from flankfilm.optimisation.start import NOT_THERE
@@ -19,7 +19,7 @@ from flankfilm.studies.execution import Execution, Progress
 from flankfilm.studies.kept import KeptRows, Work, kept_rows
 from flankfilm.studies.row import Row, RowResult
 from flankfilm.studies.study_file import Value
-from flankfilm.studies.table import Columns, Line
+from flankfilm.studies.table import ROWS, WITHOUT_IT, Columns, Line
 from flankfilm.studies.workers import Workers
 
 Array = NDArray[np.float64]
@@ -154,8 +154,12 @@ def _points(task: Task, lines: Iterable[Line]) -> Iterator[tuple[Point, RowResul
     ]
     for line in lines:
         tolerance, *texts = line.values
-        values = tuple(
-            NOT_THERE if t == NOT_THERE else int(t) if w else float(t)
-            for t, w in zip(texts, whole, strict=True)
-        )
-        yield (float(tolerance), values), line.result
+        try:
+            values = tuple(
+                NOT_THERE if t == NOT_THERE else int(t) if w else float(t)
+                for t, w in zip(texts, whole, strict=True)
+            )
+            yield (float(tolerance), values), line.result
+        except ValueError as fault:
+            where = f"{ROWS}, row {line.result.index}"
+            raise InputError.at(where, "", "holds a text where a number belongs", WITHOUT_IT) from fault

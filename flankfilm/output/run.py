@@ -25,7 +25,16 @@ from flankfilm.output.flanks import measured_flanks
 from flankfilm.output.geometry import geometry_columns
 from flankfilm.output.passages import fillet_stress, passage
 from flankfilm.output.tables import columns
-from flankfilm.output.variables import figure_of, joined, merged, of_list, of_models, of_quantities, of_record
+from flankfilm.output.variables import (
+    figure_of,
+    joined,
+    merged,
+    of_list,
+    of_models,
+    of_quantities,
+    of_record,
+    with_tolerance,
+)
 from flankfilm.plan.decisions import decisions
 from gears.mesh_figures import MeshFigures
 
@@ -59,7 +68,7 @@ HERTZ = "not estimated: Hertz's law of the contact's force, whose error is not k
 STRESSES = ("eyring_stress", "mean_friction", "sliding_loss", "rolling_loss", "mesh_loss", "efficiency")
 """Figures of a mesh's losses by Eyring's stress."""
 
-CYCLE = ("position", "secant_stiffness", "stiffness", "transmission_error", "load_share")
+CYCLE = ("position", "secant_stiffness", "tangent_stiffness", "transmission_error", "load_share")
 
 
 RESONANCE = (
@@ -212,7 +221,7 @@ def results_dataset(scene: Scene, values: Mapping[str, Any], failures: Sequence[
     parts = list(_records(values, _speed(scene)))
     if (pair := values.get("pair")) is not None:
         parts += measured_flanks(pair, deviations(scene, pair, every_tooth=True))
-    return with_convergence(merged(parts, attributes), values)
+    return with_tolerance(with_convergence(merged(parts, attributes), values), scene.tolerance)
 
 
 def results_tables(data: xr.Dataset) -> dict[str, dict[str, Any]]:

@@ -42,6 +42,8 @@ def columns(
     wanted = [joined(prefix, name) for name in names if joined(prefix, name) in data.variables]
     if axis:
         wanted = [n for n in map(str, data.variables) if data[n].dims[:1] == (joined(prefix, axis),)]
+    older = [n for n in map(str, data.variables) if data[n].attrs.get("alias_of") in wanted]
+    wanted = [*(n for n in wanted if n not in older), *older]
     rows = {
         dim: data.sizes[dim]
         for name in wanted

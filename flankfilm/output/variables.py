@@ -1,9 +1,11 @@
 """Records as variables: a record's own figures say what its variables are called, along what, in which unit.
 
-The variable of a figure is called ``<prefix>_<figure>``. Its axes are the record's own, ``<prefix>_<axis>``, but for
-those that mean the same in every record. Attributes: ``units`` (SI), ``long_name``, ``display_units`` where people
-read another unit; ``error``, where the relative error is known, ``error_variable``, the variable that holds those
-of its entries, or ``error_note``, why there is none. A figure of which nothing says so has none of them, which a test
+The variable of a figure is called ``<prefix>_<figure>``, by the name that the figure has in files. Its axes are the
+record's own, ``<prefix>_<axis>``, but for those that mean the same in every record. Attributes: ``units`` (SI),
+``long_name``, ``display_units`` where people read another unit; ``alias_of``, the variable of which this is the older
+name, kept for one version; ``error``, where the relative error is known, ``error_variable``, the variable that holds
+those of its entries, or ``error_note``, why there is none; ``model_error``, what the model leaves open, where it is
+estimated; ``tolerance_met`` beside an ``error``. A figure of which nothing says so has none of them, which a test
 finds.
 """
 
@@ -16,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base.results import Figure, Quantity, figures, quantities, why_no_error
+from flankfilm.output.uncertainty import held_error, held_model_error, met
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -83,7 +86,12 @@ def of_record(prefix: str, record: object, names: Container[str] | None = None) 
         for name, one in known.items()
         if names is None or name in names
     )
-    return of_quantities(prefix, wanted, _errors(record, known))
+    data = of_quantities(prefix, wanted, _errors(record, known))
+    for name, one in known.items():
+        model = held_model_error(record, name, one.figure)
+        if _finite(model) and joined(prefix, name) in data:
+            data[joined(prefix, name)].attrs["model_error"] = float(model)
+    return data
 
 
 Errors = Mapping[str, "float | str | Mapping[str, float]"]
@@ -108,7 +116,11 @@ def of_quantities(prefix: str, quantities: Iterable[Quantity], errors: Errors | 
             known = errors.get(quantity.name)
             error = _error(prefix, name, figure, known.get(key) if isinstance(known, Mapping) else known)
             attributes = {**_attributes(figure), **error}
-            found[joined(prefix, name)] = (_dims(prefix, figure.dims), _plain(value), attributes)
+            variable = joined(prefix, figure.called or name)
+            found[variable] = (_dims(prefix, figure.dims), _plain(value), attributes)
+            if figure.called:
+                older = {**attributes, "alias_of": variable}
+                found[joined(prefix, name)] = (*found[variable][:2], older)
     data = xr.Dataset(found)
     places = {joined(prefix, place) for place in PLACES}
     return data.set_coords([name for name in map(str, data.data_vars) if name in places])
@@ -181,7 +193,7 @@ def of_models(
     for name, variable in whole.data_vars.items():  # what the first one says is not what all say
         known = [one[name].attrs["error"] for one in each if name in one and "error" in one[name].attrs]
         notes = {one[name].attrs.get("error_note") if name in one else None for one in each}
-        for attribute in ("error", "error_variable", "error_note"):
+        for attribute in ("error", "error_variable", "error_note", "model_error"):
             variable.attrs.pop(attribute, None)
         if held.get(str(name)) in whole:
             variable.attrs["error_variable"] = held[str(name)]
@@ -209,6 +221,14 @@ def merged(parts: Iterable[xr.Dataset], attributes: Mapping[str, str | float]) -
             about = {"units": "", "long_name": axis, "error_note": NAME}
             whole = whole.assign_coords({axis: (axis, np.array(labels), about)})
     return whole.assign_attrs(attributes)
+
+
+def with_tolerance(data: xr.Dataset, tolerance: float) -> xr.Dataset:
+    """Say of every variable that has an error whether this meets the tolerance, and of the dataset which one."""
+    for name in map(str, data.variables):
+        if (error := data[name].attrs.get("error")) is not None:
+            data[name].attrs["tolerance_met"] = int(met(error, tolerance))
+    return data.assign_attrs(tolerance=tolerance)
 
 
 def joined(prefix: str, name: str) -> str:
@@ -257,17 +277,15 @@ def _entries(name: str, figure: Figure, value: Any) -> Iterator[tuple[str, str, 
 
 def _errors(record: object, known: Mapping[str, Quantity]) -> dict[str, Any]:
     """Errors of a record's figures, where they are known."""
-    headline = getattr(type(record), "headline", ())
     found: dict[str, Any] = {}
     for name, one in known.items():
-        holds = one.figure.error or ("error" if name in headline and not one.figure.no_error else "")
-        error: Any = getattr(record, holds, None) if holds else None
-        if isinstance(error, Mapping):
-            error = error.get(name, error)
+        holds, error = held_error(record, name, one.figure)
         if isinstance(error, Mapping) and any(map(np.ndim, error.values())) and holds in known:
             error = {key: f"{holds}_{identifier(key)}" for key in error}
         if np.ndim(error) and holds in known:
             error = holds
+        if isinstance(error, str) and error in known:
+            error = known[error].figure.called or error
         if isinstance(error, str | Mapping | float):
             found[name] = error
     return found

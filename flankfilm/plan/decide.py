@@ -18,7 +18,7 @@ import gears
 from base import SolverError
 from flankfilm.coupling.resolution import COARSEST_FILMS, Resolution, film_tolerance
 from flankfilm.coupling.tolerance import CostLaw, split
-from flankfilm.plan.decisions import Candidate, Decision, per_cent, signed
+from flankfilm.plan.decisions import Candidate, Decision, per_cent, signed, stands
 from flankfilm.plan.film_choice import films
 from flankfilm.plan.options import FilmChange, Option, Options
 from flankfilm.plan.stiffness_choice import teeth
@@ -129,10 +129,14 @@ def decide(scene: Scene, pair: gears.GearPair, foreseen: Callable[[], FilmChange
     why_film = _why_film(tolerance, best.film, oil, weighed)
     left = tolerance - (best.teeth.effect or 0.0)
     wanted = tolerance if "film" in scene.wants else COARSEST_FILMS
+    asks = {
+        name: getattr(scene, name).model != "auto" and stands(scene, name, "model")
+        for name in ("stiffness", "film")
+    }
     return Plan(
         tolerance,
-        _decision("stiffness", scene.stiffness.model, best.teeth, bodies, weighed, tolerance, why_teeth),
-        _decision("film", scene.film.model, best.film, oil, weighed, left, why_film),
+        _decision("stiffness", asks["stiffness"], best.teeth, bodies, weighed, tolerance, why_teeth),
+        _decision("film", asks["film"], best.film, oil, weighed, left, why_film),
         best.shares,
         best.costs,
         best.film.change,
@@ -141,12 +145,12 @@ def decide(scene: Scene, pair: gears.GearPair, foreseen: Callable[[], FilmChange
 
 
 def _series_to_find(scene: Scene) -> bool:
-    asked = scene.dynamics is not None and scene.dynamics.fourier_order == "auto"
+    asked = scene.dynamics is None or scene.dynamics.fourier_order == "auto"
     return asked and bool(MOTION & set(scene.wants))
 
 
 def _decision(
-    subject: str, asked: str, taken: Option, among: Options, weighed: Sequence[_Both], share: float, why: str
+    subject: str, asked: bool, taken: Option, among: Options, weighed: Sequence[_Both], share: float, why: str
 ) -> Decision:
     """Decision for a model, each with the cost of the cheapest pair of models that it is part of."""
     costs = {
@@ -156,7 +160,7 @@ def _decision(
     return Decision(
         subject,
         taken.name,
-        asked != "auto",
+        asked,
         among.why or why,
         taken.effect,
         None if among.why else share,

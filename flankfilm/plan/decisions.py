@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from flankfilm.coupling.series import MOST_HARMONICS
 
 if TYPE_CHECKING:
     from flankfilm.coupling.jumps import SpeedDiagram
+    from flankfilm.coupling.lubricated_record import LubricatedCycle
     from flankfilm.coupling.series import LeftOut, MeshSeries
+    from flankfilm.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -87,13 +89,36 @@ def signed(value: float) -> str:
     return f"{'-' if value < 0 else '+'}{per_cent(abs(value))}"
 
 
+def said(scene: Scene, section: str, key: str) -> str:
+    """Where a value comes from: the scene says it, or it is the default of a key that was left out."""
+    keys = getattr(scene, section)
+    value = f'{section}.{key} = "{getattr(keys, key)}"'
+    return f"the scene asks for {value}" if stands(scene, section, key) else f"{value} is the default"
+
+
+def stands(scene: Scene, section: str, key: str) -> bool:
+    """Whether a key stands in the scene itself, not filled in by its default."""
+    return section in scene.model_fields_set and key in getattr(scene, section).model_fields_set
+
+
 def decisions(values: Mapping[str, Any]) -> tuple[Decision, ...]:
     """Decisions among the results of stages, in the order in which they were made."""
     plan, series = values.get("plan"), values.get("fourier")
     train = values.get("drive") is not None
     order = None if series is None else order_decision(series, values.get("diagram"), train)
     later = (values.get("heat in the film"), order)
-    return (*(() if plan is None else plan.decisions), *(one for one in later if one is not None))
+    models = () if plan is None else (plan.stiffness, _with_change(plan.film, values.get("film")))
+    return (*models, *(one for one in later if one is not None))
+
+
+def _with_change(decision: Decision, film: LubricatedCycle | None) -> Decision:
+    """Decision on the film with what the film was found to change of the stiffness."""
+    if film is None:
+        return decision
+    change = film.secant_stiffness_change
+    reason = f"{decision.reason}; it changes the mean secant stiffness by {signed(change)}"
+    effect = abs(change) if decision.effect is None or decision.asked else decision.effect
+    return replace(decision, reason=reason, effect=effect)
 
 
 def order_decision(
@@ -108,7 +133,8 @@ def order_decision(
     order, share = series.order, series.share
     effect, jumps = float(found.largest[order]), "" if diagram is None else _jumps(series, diagram)
     if share is None:
-        why = f"{order}, as the scene asks; leaves out {_left_out(found, order)}{jumps}"
+        why = f"{order}; the scene asks for dynamics.fourier_order = {order}; "
+        why += f"leaves out {_left_out(found, order)}{jumps}"
         return Decision("Fourier order", str(order), True, why, effect)
     most = min(MOST_HARMONICS, found.curve.size - 1)
     why = f"{order}, leaves out {_left_out(found, order)}"

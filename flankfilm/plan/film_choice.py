@@ -17,6 +17,7 @@ from flankfilm import coupling
 from flankfilm.build import gear_pair, pinion_speed, pinion_torque
 from flankfilm.build_film import lubricant
 from flankfilm.coupling.resolution import ASSUMED_CHANGE, COARSEST_FILMS, LEAST_CHANGE, film_law_of_cost
+from flankfilm.plan.decisions import said
 from flankfilm.plan.options import FilmChange, Option, Options
 from flankfilm.scene import Scene
 from flankfilm.scene.plain_gears import plain_flanks
@@ -42,12 +43,12 @@ def films(scene: Scene, foreseen: Callable[[], FilmChange | None]) -> Options:
     if wanted and asked in ("auto", "none"):
         return Options((_solved(tolerance=tolerance),), "solved; the film itself is wanted")
     if asked == "none":
-        return Options((_LEFT_OUT,), 'left out; the scene asks for film.model = "none"')
+        return Options((_LEFT_OUT,), f"left out; {said(scene, 'film', 'model')}")
     if asked == "dowson":
-        return Options((_BY_FORMULA,), 'by formula; the scene asks for film.model = "dowson"')
+        return Options((_BY_FORMULA,), f"by formula; {said(scene, 'film', 'model')}")
     unknown = _unknown_to_formulas(scene)
     if asked == "ehl":
-        reason = 'solved; the scene asks for film.model = "ehl"'
+        reason = f"solved; {said(scene, 'film', 'model')}"
         if wanted or unknown or tolerance >= FINE or (known := foreseen()) is None:
             return Options((_solved(tolerance=tolerance if wanted else 1.0),), reason)
         return Options((_solved(MOST_OF_FORESEEN * abs(known.mean)),), reason, known)

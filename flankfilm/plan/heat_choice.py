@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from base import SolverError
 from flankfilm.coupling.hot_contacts import COARSEST
-from flankfilm.plan.decisions import Decision, per_cent, signed
+from flankfilm.plan.decisions import Decision, per_cent, said, signed, stands
 
 if TYPE_CHECKING:
     from flankfilm.coupling.hot_contacts import HeatScreen
@@ -33,9 +33,9 @@ def heat_choice(scene: Scene, solved: bool, screen: Callable[[float], HeatScreen
     """
     asked = scene.film.asked_heat
     if asked != "auto":
-        said = "with heat" if asked == "on" else "isothermal"
-        named = f'film.heat = "{asked}"' if scene.film.heat else f'film.model = "{scene.film.model}" alone'
-        return Decision(SUBJECT, asked, True, f"{said}; the scene asks for {named}")
+        how = "with heat" if asked == "on" else "isothermal"
+        given = said(scene, "film", "heat" if scene.film.heat else "model")
+        return Decision(SUBJECT, asked, stands(scene, "film", "heat"), f"{how}; {given}")
     if why := _not_weighed(scene, solved):
         return Decision(SUBJECT, "off", False, f"not weighed; {why}")
     try:

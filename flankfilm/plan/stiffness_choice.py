@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import gears
 from flankfilm.build import pinion_torque
 from flankfilm.coupling.resolution import stiffness_laws
+from flankfilm.plan.decisions import said
 from flankfilm.plan.options import Option, Options
 from flankfilm.scene.needs import needs_of_finite_elements
 
@@ -45,9 +46,9 @@ def teeth(scene: Scene, pair: gears.GearPair) -> Options:
     asked, pairs = scene.stiffness.model, scene.stiffness.pairs
     elements = Option("fem", 0.0, stiffness_laws("fem", pairs), text="finite elements")
     if asked == "fem":
-        return Options((elements,), 'the scene asks for stiffness.model = "fem"')
+        return Options((elements,), f"finite elements; {said(scene, 'stiffness', 'model')}")
     if asked != "auto":
-        reason = f'the scene asks for stiffness.model = "{asked}", whose error is unknown until verified'
+        reason = f"{said(scene, 'stiffness', 'model')}; its error is unknown until verified"
         return Options((Option(asked, None, stiffness_laws(asked, pairs)),), reason)
     if needed := needs_of_finite_elements(scene.model_dump(exclude_none=True), set(scene.wants)):
         return Options((elements,), f"finite elements, which {' and '.join(needed)} needs")
@@ -84,7 +85,9 @@ def _outside(scene: Scene, pair: gears.GearPair) -> str:
     sections = (scene.pair.pinion, scene.pair.wheel)
     if scene.pair.rack != "ISO 53 A" or scene.pair.tool is not None:
         return 'the rack is not "ISO 53 A"'
-    if any(s.tip_relief is not None or s.tip_alteration or s.tip_chamfer_mm for s in sections):
+    if any(s.tip_relief is not None or s.tip_chamfer_mm for s in sections) or any(
+        gear.tip_alteration for gear in both
+    ):
         return "tips are relieved, altered or chamfered"
     if any(gear.generating_shift is not None for gear in both):
         return "a gear is cut at a generating shift"

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     import fem
     from flankfilm.coupling import LubricatedCycle
     from flankfilm.results import Results
+    from flankfilm.scene import Scene
 
 ALONG_FLANKS = ("diameter", "face_place")
 """What measured flanks are drawn over."""
@@ -73,7 +74,17 @@ SHOWN = 5
 
 
 def headlines(results: Results) -> list[Headline]:
-    """Numbers for the page's head and for the terminal."""
+    """Numbers for the page's head and for the terminal, with their errors against the scene's tolerance."""
+    return [one.against(results.scene.tolerance) for one in _headlines(results)]
+
+
+def misses(results: Results) -> list[str]:
+    """Say which of these have errors above the scene's tolerance, and what solvers have to report."""
+    above = [one.miss(results.scene.tolerance) for one in _headlines(results)]
+    return [*filter(None, above), *run_parts.doubts(results)]
+
+
+def _headlines(results: Results) -> list[Headline]:
     values, cycle = results.values, final_cycle(results)
     shown = [] if cycle is None else mesh_parts.headlines(cycle, values["pair"].face_width)
     if _film_failed(results):  # a figure of dry teeth is none of lubricated ones
@@ -97,8 +108,8 @@ def summary(results: Results) -> list[str]:
     if set(results.scene.wants) <= GEOMETRY:
         lines = pair_parts.printed(results.dataset)
     else:
-        lines = [f"{h.name}: {h.with_unit}" + (f" ({h.note})" if h.note else "") for h in headlines(results)]
-    lines += run_parts.misses(results)
+        lines = [_line(one) for one in headlines(results)]
+    lines += misses(results)
     lines += [decision.line for decision in results.decisions]
     if results.plan is not None:
         lines.append(results.plan.line)
@@ -107,6 +118,12 @@ def summary(results: Results) -> list[str]:
         more = ", ..." if len(results.others) > SHOWN else ""
         lines.append(f"kept, not of this run: {', '.join(results.others[:SHOWN])}{more}")
     return lines
+
+
+def _line(one: Headline) -> str:
+    """Headline on the terminal."""
+    note = f" {one.note}" if one.note.startswith("±") else f" ({one.note})" if one.note else ""
+    return f"{one.name}: {one.with_unit}{note}"
 
 
 def final_cycle(results: Results) -> MeshCycle | None:
@@ -132,10 +149,16 @@ def write_report(results: Results, folder: Path) -> Path:
         *run_parts.failures(results),
         *_result_parts(results),
         run_parts.costs(results),
-        *run_parts.decisions(results),
-        run_parts.inputs(scene.model_dump(exclude_none=True), results.dataset.attrs["versions_json"]),
+        *run_parts.decisions(results, misses(results)),
+        run_parts.inputs(_asked(scene), results.dataset.attrs["versions_json"]),
     ]
     return write_page(folder, scene.title or "flankfilm", _facts(results), headlines(results), parts)
+
+
+def _asked(scene: Scene) -> dict[str, Any]:
+    """Plain values of a scene; a section [film] that it does not have says nothing of the film that was solved."""
+    unsaid = set() if "film" in scene.model_fields_set else {"film"}
+    return scene.model_dump(exclude_none=True, exclude=unsaid)
 
 
 def _facts(results: Results) -> list[Fact]:
@@ -152,7 +175,7 @@ def _facts(results: Results) -> list[Fact]:
             at = [f"{value:g} {unit}" for unit, value in asked.items() if value is not None]
             facts.append(Fact("pinion: " + ", ".join(at)))
     facts.append(Fact(f"tolerance {percent(scene.tolerance)}, {seconds(results.seconds)}", "costs"))
-    if count := len(run_parts.misses(results)):
+    if count := len(misses(results)):
         facts.append(Fact(f"{counted(count, 'figure')} beyond the tolerance, or in doubt", "decisions"))
     if count := len({text for run in results.runs.values() for text in run.warnings}):
         facts.append(Fact(counted(count, "warning"), "decisions"))

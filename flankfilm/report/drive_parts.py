@@ -9,8 +9,9 @@ import numpy as np
 
 from base.units import factor
 from flankfilm.coupling.carried import PARTS
+from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import counted, number, percent, plus_minus
+from flankfilm.report.text import counted, number, percent
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -59,12 +60,21 @@ def drive(stage: PairDrive, results: xr.Dataset) -> Part:
             "drive",
             error="unknown" if stage.error is None else percent(stage.error),
             gyroscopic=percent(stage.gyroscopic_change),
-            tilt=percent(stage.tilt_change),
+            tilt=_tilt(stage),
         ),
         *valid(stage),
     ]
     drawn = pictures(results, "drive_modes")
     return Part("drive", "Drive train", figures=drawn, tables=(Table(heads, rows),), notes=tuple(notes))
+
+
+def _tilt(stage: PairDrive) -> str:
+    """How the mesh of the train resists tilt, and what is left out of that."""
+    change = percent(stage.tilt_change)
+    if not stage.tilt_stiffness:
+        return said("drive_gives_way", change=change)
+    centre = number(1e3 * stage.load_centre)
+    return said("drive_resists", change=change, stiffness=number(stage.tilt_stiffness), centre=centre)
 
 
 def valid(stage: PairDrive | DriveSweep) -> list[str]:
@@ -196,15 +206,12 @@ def headlines(stage: DriveSweep) -> list[Headline]:
             getattr(stage, f"{figure}_peak_error")[at],
             RPM * getattr(stage, f"{figure}_peak_speed")[at],
         )
-        error = (
-            f"{plus_minus(off)} by the band of the damping and the search"
-            if np.isfinite(off)
-            else "error unknown"
-        )
+        sampled = min(stage.sampling_error, off)
+        known_off = Uncertainty(sampled, off - sampled) if np.isfinite(off) else Uncertainty(None)
+        note = f"{names[at]}, at {rpm:.0f} rpm; model: the band of the damping and the search"
         if stage.carried_error is not None:
             left = stage.carried_error - stage.sampling_error
             known = f"up to {percent(left)}" if np.isfinite(left) else "more, in places unknown,"
-            error += f", {known} by harmonics that the series leaves out"
-        note = f"{names[at]}, at {rpm:.0f} rpm; {error}"
-        found.append(Headline(what, number(float(values[at])), note, unit))
+            note += f"; {known} by harmonics that the series leaves out"
+        found.append(Headline(what, number(float(values[at])), note, unit, known_off))
     return found

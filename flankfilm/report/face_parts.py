@@ -9,6 +9,7 @@ import numpy as np
 
 from flankfilm.coupling.face_models import LABELS
 from flankfilm.figures.reading import read_figure
+from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent, plus_minus
 
@@ -43,10 +44,11 @@ def headlines(found: fem.FaceLoads) -> list[Headline]:
     """Numbers for the page's head."""
     load = read_figure(found, "greatest_line_load")
     factor = number(found.greatest_face_load_factor)
-    note = f"{plus_minus(found.error)}; {LABELS[found.setting.model]}, {found.setting.cells} cells"
+    note = f"{LABELS[found.setting.model]}, {found.setting.cells} cells"
+    of_load = Uncertainty(found.line_load_error)
     return [
-        Headline(GREATEST, factor, note),
-        Headline(load.meaning, number(float(load.values)), plus_minus(found.line_load_error), load.unit),
+        Headline(GREATEST, factor, note, uncertainty=Uncertainty(found.error)),
+        Headline(load.meaning, number(float(load.values)), unit=load.unit, uncertainty=of_load),
     ]
 
 

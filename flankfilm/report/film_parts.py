@@ -10,11 +10,13 @@ import numpy as np
 
 from base import Array
 from base.units import factor
+from ehl.regimes import MEASURED, regime
 from flankfilm.coupling.least_film import parts_of
 from flankfilm.figures.reading import PER_FACE, read_figure, unit_text
 from flankfilm.output.run import held_as_it_is
+from flankfilm.output.uncertainty import Uncertainty, uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import counted, number, percent, plus_minus
+from flankfilm.report.text import counted, number, percent
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -159,7 +161,14 @@ def _mixed(stage: FilmAlongPath) -> Iterator[str]:
         least, largest = (percent(share) for share in _ends(stage.asperity_share))
         low, high = _ends(stage.film_ratio)
         ratio = low if stage.least_film_ratio is None else min(low, stage.least_film_ratio), high
-        yield said("mixed", ratio=ratio, least=least, largest=largest)
+        yield said(
+            "mixed", ratio=ratio, least=least, largest=largest, regimes=_regimes(*ratio), measured=MEASURED
+        )
+
+
+def _regimes(low: float, high: float) -> str:
+    """Regimes between two film ratios."""
+    return " to ".join(dict.fromkeys((regime(low), regime(high))))
 
 
 def _ends(curve: Array) -> tuple[float, float]:
@@ -167,32 +176,39 @@ def _ends(curve: Array) -> tuple[float, float]:
     return float(curve.min()), float(curve.max())
 
 
-def _off(cycle: LubricatedCycle) -> str:
+def _off(cycle: LubricatedCycle) -> Uncertainty:
     """Error of what the film changes the mean secant stiffness by: of both cycles, which share their meshes."""
     known = [one.mean_error for one in (cycle, cycle.dry)]
     errors = [error for error in known if error is not None]
     if cycle.film.error is None or len(errors) < len(known):
-        return "by formula; error unknown" if cycle.film.error is None else "error unknown"
-    return f"± {percent(math.hypot(*errors))[:-2]} points"
+        return Uncertainty(None)
+    return Uncertainty(math.hypot(*errors), size=100.0, unit="points")
+
+
+def regime_said(ratio: float) -> str:
+    """Regime at the least film ratio of a film."""
+    return f"{regime(ratio)} lubrication (below 1 boundary, below 3 mixed)"
 
 
 def headlines(cycle: LubricatedCycle) -> list[Headline]:
     """Numbers for the page's head."""
     stage = cycle.film
-    off = stage.least_film_error
-    note = plus_minus(off) if off is not None else "by formula; error unknown"
+    off, note = uncertainty(stage, "least_film"), "" if stage.error is not None else "by formula"
     least, change = read_figure(stage, "least_film"), read_figure(cycle, "secant_stiffness_change")
     changed = f"{float(change.values):+.2f}"
     shown = [
-        Headline(LEAST, f"{float(least.values):.3g}", note, least.unit),
-        Headline("mean secant stiffness, change by the film", changed, _off(cycle), change.unit),
+        Headline(LEAST, f"{float(least.values):.3g}", note, least.unit, off),
+        Headline("mean secant stiffness, change by the film", changed, note, change.unit, _off(cycle)),
     ]
     if stage.starvation is not None:
         supply = f"supply: {stage.supply}"
-        error = plus_minus(None if stage.error is None else math.sqrt(2.0) * stage.error)
+        error = Uncertainty(None if stage.error is None else math.sqrt(2.0) * stage.error)
         least_part = f"{stage.starvation.min():.3g}"
-        shown.append(Headline("starved over flooded film, the least", least_part, f"{error}; {supply}"))
-    if stage.film_ratio is not None and stage.asperity_share is not None:
-        share = f"asperities carry up to {percent(stage.asperity_share.max())}"
-        shown.append(Headline("least film ratio Lambda", f"{stage.least_film_ratio:.3g}", f"{note}; {share}"))
+        name = "starved over flooded film, the least"
+        shown.append(Headline(name, least_part, supply, uncertainty=error))
+    ratio = stage.least_film_ratio
+    if ratio is not None and stage.asperity_share is not None:
+        share = f"{regime_said(ratio)}; asperities carry up to {percent(stage.asperity_share.max())}"
+        error = uncertainty(stage, "least_film_ratio")
+        shown.append(Headline("least film ratio Lambda", f"{ratio:.3g}", share, uncertainty=error))
     return shown

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehl.regimes import MEASURED, regime
 from flankfilm.build_heat import shearing_oil, warmth
 from flankfilm.figures.reading import read_figure
+from flankfilm.output.uncertainty import Uncertainty, uncertainty
+from flankfilm.report.film_parts import regime_said
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import number, percent, plus_minus
+from flankfilm.report.text import number, percent, plain
 from flankfilm.scene.key import ZERO_CELSIUS
 
 if TYPE_CHECKING:
@@ -31,34 +35,67 @@ def losses(found: MeshLosses, results: xr.Dataset, scene: Scene) -> Part:
     return Part(
         "losses",
         "Friction, losses and temperatures",
-        (_lost(found), _by_stress(found, scene), _warm(found, scene)),
+        (_lost(found), _by_stress(found, scene), *_rubbing(found, scene), _warm(found, scene)),
         drawn,
-        (_band(found), _greatest(found)),
+        (_band(found), *_boundary(found), _greatest(found)),
         (said("losses_model", supply="starved" if scene.film.starved else "flooded"),),
     )
 
 
 def headlines(found: MeshLosses) -> list[Headline]:
     """Numbers for the page's head."""
-    off = plus_minus(found.error)
     band = " to ".join(number(loss, 3) for loss in np.sort(found.band.mesh_loss))
     least = read_figure(found.path, "least_film")
-    film_error = float(np.max(found.path.film_error))
+    bands = f"{band} W {_BAND}"
+    if found.boundary is not None:
+        low, high = (f"{number(loss, 3)}" for loss in np.sort(found.boundary.mesh_loss))
+        ends = " to ".join(f"{one:g}" for one in found.boundary.boundary_friction)
+        bands += f", {low} to {high} W for a boundary friction of {ends}"
     hottest = found.greatest_contact_temperature - ZERO_CELSIUS
-    return [
-        Headline("power lost in the mesh", number(found.mesh_loss), f"{off}; {band} W {_BAND}", "W"),
+    shown = [
         Headline(
-            "efficiency of the mesh", f"{100 * found.efficiency:.3f}", plus_minus(found.loss_error), "%"
+            "power lost in the mesh",
+            number(found.mesh_loss),
+            bands,
+            "W",
+            uncertainty(found, "mesh_loss"),
         ),
-        Headline("mean coefficient of friction", f"{found.mean_friction:.4f}", off),
+        Headline(
+            "efficiency of the mesh",
+            f"{100 * found.efficiency:.3f}",
+            unit="%",
+            uncertainty=uncertainty(found, "efficiency"),
+        ),
+        Headline(
+            "mean coefficient of friction",
+            f"{found.mean_friction:.4f}",
+            uncertainty=uncertainty(found, "mean_friction"),
+        ),
         Headline(
             "greatest temperature of the flanks",
             f"{hottest:.1f}",
-            f"± {_warmer(found):.1g} K; {_bulk(found)}",
+            _bulk(found),
             "°C",
+            in_kelvin(found, "greatest_contact_temperature"),
         ),
-        Headline("least film with heat", f"{float(least.values):.3g}", plus_minus(film_error), least.unit),
+        Headline(
+            "least film with heat",
+            f"{float(least.values):.3g}",
+            unit=least.unit,
+            uncertainty=uncertainty(found.path, "least_film"),
+        ),
     ]
+    if (ratio := found.path.least_film_ratio) is not None:
+        off = uncertainty(found.path, "least_film_ratio")
+        shown.append(
+            Headline("least film ratio Lambda with heat", f"{ratio:.3g}", regime_said(ratio), uncertainty=off)
+        )
+    return shown
+
+
+def in_kelvin(found: object, name: str) -> Uncertainty:
+    """Uncertainty of a temperature of a record, or of a rise, shown in K."""
+    return replace(uncertainty(found, name), size=float(getattr(found, name)), unit="K")
 
 
 _BAND = "for Eyring stresses of 5 to 10 MPa"
@@ -89,6 +126,26 @@ def _by_stress(found: MeshLosses, scene: Scene) -> str:
     )
 
 
+def _rubbing(found: MeshLosses, scene: Scene) -> Iterator[str]:
+    """What the asperities' friction leaves open, and the regime; nothing of smooth flanks."""
+    band, ratio = found.boundary, found.path.least_film_ratio
+    if band is None or ratio is None or scene.roughness is None:
+        return
+    low, high = np.sort(band.mesh_loss)
+    yield said(
+        "losses_boundary",
+        ratio=number(ratio, 3),
+        regime=regime(ratio),
+        measured=MEASURED,
+        friction=f"{scene.roughness.boundary_friction:g}",
+        part=percent(band.loss_part),
+        first=f"{band.boundary_friction[0]:g}",
+        second=f"{band.boundary_friction[1]:g}",
+        low=number(low, 3),
+        high=number(high, 3),
+    )
+
+
 def _warm(found: MeshLosses, scene: Scene) -> str:
     """Temperatures of the flanks and where they come from."""
     known = warmth(scene)
@@ -106,18 +163,16 @@ def _bulk(found: MeshLosses) -> str:
     return f"bulk {first:.1f} and {second:.1f} °C"
 
 
-def _warmer(found: MeshLosses) -> float:
-    """Error of the hottest flank's temperature, as its contact's rise errs [K]."""
-    path = found.path
-    at = int(np.argmax(path.contact_temperature))
-    return float(path.temperature_error[at] * path.surface_temperature_rise[:, at].max())
-
-
 def _rise(found: MeshLosses) -> str:
     path = found.path
-    oil, flank = float(path.oil_temperature_rise.max()), float(path.surface_temperature_rise.max())
-    off = float(np.max(path.temperature_error))
-    return f"{oil:.1f} K in the oil and {flank:.1f} K on the flanks ({plus_minus(off)})"
+    gear = int(np.argmax(path.greatest_flank_rise))
+    flank = float(path.greatest_flank_rise[gear])
+    oil_off = float(path.greatest_oil_rise * path.greatest_oil_rise_error)
+    flank_off = float(flank * path.greatest_flank_rise_error[gear])
+    return (
+        f"{path.greatest_oil_rise:.1f} K in the oil (± {plain(oil_off)} K) and {flank:.1f} K on the flanks "
+        f"(± {plain(flank_off)} K)"
+    )
 
 
 def _band(found: MeshLosses) -> Table:
@@ -131,6 +186,7 @@ def _band(found: MeshLosses) -> Table:
             number(band.rolling_loss[k]),
             number(band.mesh_loss[k]),
             f"{100 * band.efficiency[k]:.3f}",
+            percent(float(band.end_error[k])),
         )
         for k in range(band.eyring_stress.size)
     )
@@ -141,8 +197,26 @@ def _band(found: MeshLosses) -> Table:
         "rolling [W]",
         "whole [W]",
         "efficiency [%]",
+        "numerical error of the losses",
     )
-    return Table(heads, rows, f"Means over the path; right to {percent(found.error + band.error)}.")
+    return Table(heads, rows, "Means over the path.")
+
+
+def _boundary(found: MeshLosses) -> list[Table]:
+    """Means at the ends of the band of the asperities' friction; none of smooth flanks."""
+    band = found.boundary
+    if band is None:
+        return []
+    heads = ("boundary friction [-]", "mean friction [-]", "sliding [W]", "whole [W]", "efficiency [%]")
+    columns = (
+        [f"{one:g}" for one in band.boundary_friction],
+        [f"{one:.4f}" for one in band.mean_friction],
+        list(map(number, band.sliding_loss)),
+        list(map(number, band.mesh_loss)),
+        [f"{100 * one:.3f}" for one in band.efficiency],
+    )
+    caption = "Means over the path; films, load share and temperatures stay."
+    return [Table(heads, tuple(zip(*columns, strict=True)), caption)]
 
 
 def _greatest(found: MeshLosses) -> Table:

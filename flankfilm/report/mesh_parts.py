@@ -9,6 +9,7 @@ import numpy as np
 
 from flankfilm.coupling.references import MEANINGS, PARTS, RELATIVE, relative_to
 from flankfilm.figures.reading import read, read_figure
+from flankfilm.output.uncertainty import Uncertainty, uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import alike, number, percent, plus_minus
 
@@ -193,18 +194,15 @@ def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
     """Numbers for the page's head."""
     secant, tangent = (read_figure(cycle, n, face_width) for n in ("mean_secant_stiffness", "mean_stiffness"))
     error = read_figure(cycle, "transmission_error_range")
-    numerical = f"{plus_minus(cycle.mean_error)}, {cycle.label}"
-    if cycle.model_error is not None:
-        numerical += f"; model of the contacts {percent(cycle.model_error)}"
-    small = f"for small vibration; {plus_minus(cycle.errors['mean_stiffness'])}"
-    spread = f"peak to peak; {plus_minus(cycle.range_error)}"
-    names = (secant.meaning, tangent.meaning, "loaded transmission error")
-    first, second, third = (relative_to(name, cycle.reference) for name in names)
-    return [
-        Headline(first, f"{float(secant.values):.4g}", numerical, secant.unit),
-        Headline(second, f"{float(tangent.values):.4g}", small, tangent.unit),
-        Headline(third, f"{float(error.values):.3g}", spread, error.unit),
+    figures = ((secant, ".4g", cycle.label), (tangent, ".4g", "for small vibration"))
+    shown = [
+        (relative_to(one.meaning, cycle.reference), format(float(one.values), digits), note, one.unit)
+        for one, digits, note in figures
     ]
+    lag = relative_to("loaded transmission error", cycle.reference)
+    shown.append((lag, f"{float(error.values):.3g}", "peak to peak", error.unit))
+    names = ("mean_secant_stiffness", "mean_stiffness", "transmission_error_range")
+    return [Headline(*one, uncertainty(cycle, name)) for one, name in zip(shown, names, strict=True)]
 
 
 def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
@@ -258,10 +256,11 @@ def root_headlines(stage: RootStresses) -> list[Headline]:
     """Greatest stresses of both gears."""
     largest = [read_figure(stage.stress, f"{gear}_tension_Pa") for gear in ("pinion", "wheel")]
     values = " and ".join(f"{float(one.values):.4g}" for one in largest)
-    note = plus_minus(stage.error)
+    note = ""
     if stage.iso is not None:
-        note += f"; ISO 6336-3 nominal {' and '.join(f'{1e-6 * one:.4g}' for one in stage.iso.stresses)}"
-    return [Headline("greatest root stress, pinion and wheel", values, note, largest[0].unit)]
+        note = f"ISO 6336-3 nominal {' and '.join(f'{1e-6 * one:.4g}' for one in stage.iso.stresses)}"
+    name = "greatest root stress, pinion and wheel"
+    return [Headline(name, values, note, largest[0].unit, Uncertainty(stage.error))]
 
 
 def _iso(iso: Iso6336RootStress) -> Table:
@@ -275,7 +274,7 @@ def _iso(iso: Iso6336RootStress) -> Table:
 
 def over_torque(stage: TorqueCurves, results: xr.Dataset) -> Part:
     """Stiffness and transmission error over torque."""
-    names = ("secant_stiffness", "stiffness", "transmission_error", "harmonic_1")
+    names = ("secant_stiffness", "tangent_stiffness", "transmission_error", "harmonic_1")
     curves = [read(results, f"torque_{name}", per_face=name.endswith("stiffness")) for name in names]
     shown = [read(results, "torque"), *curves]
     cells = zip(*([number(value, 5) for value in one.values.tolist()] for one in shown), strict=True)

@@ -13,8 +13,9 @@ from base.units import factor
 from flankfilm.coupling.references import MEANINGS
 from flankfilm.figures.motion import scale
 from flankfilm.figures.reading import read, read_figure
+from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import counted, number, percent, plain, plus_minus
+from flankfilm.report.text import counted, number, percent, plus_minus
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,11 +67,12 @@ def fourier_headlines(stage: MeshSeries) -> list[Headline]:
     if stage.remainder is None:
         return [Headline("stiffness, first harmonic over the mean", f"{kappa:.4f}", "as given")]
     errors = stage.harmonic_error
-    left = "error unknown" if errors is None or not len(errors) else f"± {plain(float(errors[0]), 1)}"
-    left += f"; beyond {counted(stage.order, 'harmonic')} {percent(stage.remainder)} of the mean"
+    known = None if errors is None or not len(errors) else float(errors[0])
+    left = f"beyond {counted(stage.order, 'harmonic')} {percent(stage.remainder)} of the mean"
     if stage.left_out is not None and stage.left_out.motion is not None:
         left += f" and up to {percent(float(stage.left_out.motion[stage.order]))} of the motion"
-    return [Headline("stiffness, first harmonic over the mean", f"{kappa:.4f}", left)]
+    off = Uncertainty(known, size=1.0)
+    return [Headline("stiffness, first harmonic over the mean", f"{kappa:.4f}", left, uncertainty=off)]
 
 
 def scaling(stage: PairOscillator, _: xr.Dataset) -> Part:
@@ -180,12 +182,13 @@ def sweep_headlines(stage: SpeedSweep) -> list[Headline]:
     if stage.least_grazing is None:
         return [Headline(name, "none in range", "by the orbit that never leaves contact"), *_greatest(stage)]
     budget = stage.grazing_budget
-    exact = "exact to rounding for the stiffness as given"
-    note = exact if set(budget) == {"flow"} else plus_minus(stage.least_grazing_error)
+    exact = set(budget) == {"flow"}
+    note = "exact to rounding for the stiffness as given" if exact else ""
+    off = None if exact else Uncertainty(_finite(stage.least_grazing_error))
     if budget.get("truncation", 0.0) > NEGLIGIBLE * (stage.least_grazing_error or 0.0):
-        note += f", {percent(budget['truncation'])} by harmonics that the series leaves out"
+        note = f"{percent(budget['truncation'])} of it by harmonics that the series leaves out"
     value = number((rpm or 1.0) * stage.least_grazing, 5 if rpm else 6)
-    return [Headline(name if rpm else f"{name} ω", value, note, unit), *_greatest(stage)]
+    return [Headline(name if rpm else f"{name} ω", value, note, unit, off), *_greatest(stage)]
 
 
 def _greatest(stage: SpeedSweep) -> list[Headline]:
@@ -196,12 +199,19 @@ def _greatest(stage: SpeedSweep) -> list[Headline]:
     at = float(stage.frequency[int(np.nanargmax(np.nanmax(factors, axis=0)))])
     rpm = _speed(stage)
     where = f"ω = {at:.4g}" if rpm is None else f"{rpm * at:.0f} rpm"
-    note = f"at {where} of the speeds swept; ± {percent(stage.sampling_error)} by samples"
+    note, error = f"at {where} of the speeds swept", float(stage.sampling_error)
     if stage.force_change is not None and stage.checked is not None:
         way = max(stage.force_factor, key=lambda one: np.nanmax(stage.force_factor[one], initial=-np.inf))
         left = stage.force_change[way][int(np.argmin(np.abs(stage.checked - at)))]
-        note += f", {percent(float(left))} by harmonics that the series leaves out"
-    return [Headline("greatest force over the mean force", f"{np.nanmax(factors):.3g}", note)]
+        note += f"; {percent(float(left))} of the error by harmonics that the series leaves out"
+        error += float(left)
+    off = Uncertainty(_finite(error))
+    return [Headline("greatest force over the mean force", f"{np.nanmax(factors):.3g}", note, "", off)]
+
+
+def _finite(error: float | None) -> float | None:
+    """Error where it is known."""
+    return None if error is None or not np.isfinite(error) else float(error)
 
 
 def _speed(stage: SpeedSweep) -> float | None:
@@ -219,14 +229,16 @@ def diagram_headlines(stage: SpeedDiagram) -> list[Headline]:
     at = ", ".join(f"{_shown(stage, j.frequency, 5)} {'up' if j.rising else 'down'}" for j in stage.jumps[:6])
     rest = f" and {len(stage.jumps) - 6} more" if len(stage.jumps) > 6 else ""
     worst = max((j for j in stage.jumps if j.budget), key=lambda j: j.error, default=None)
-    note = f"error up to {percent(worst.error)}" if worst else ""
+    off, note = Uncertainty(_finite(worst.error)) if worst else None, ""
     if worst and not np.isfinite(worst.error):
         lost = sum(not np.isfinite(j.error) for j in stage.jumps)
         note = f"error of {lost} unknown: {stage.longer_order} harmonics leave no such jump"
     elif worst and worst.budget["truncation"] > 0.5 * worst.error:
-        note += f", {percent(worst.budget['truncation'])} of it by harmonics that the series leaves out"
+        note = f"{percent(worst.budget['truncation'])} of it by harmonics that the series leaves out"
     note = "; ".join(filter(None, (note, more)))
-    return [Headline("jump speeds", at + rest, note, "rpm" if stage.speed_of_one else "")]
+    if len(stage.jumps) > 1 and off is not None:
+        note = "; ".join(filter(None, ("of the least certain jump", note)))
+    return [Headline("jump speeds", at + rest, note, "rpm" if stage.speed_of_one else "", off)]
 
 
 def diagram(stage: SpeedDiagram, results: xr.Dataset) -> Part:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base import Booleans
 from flankfilm import figures
 from flankfilm.coupling.references import relative_to
 from flankfilm.coupling.verification import UNITS
@@ -18,12 +19,13 @@ from flankfilm.figures.optima import can_be_mapped
 from flankfilm.figures.reading import key_title, key_words, titled, unit_of, unit_text, words
 from flankfilm.figures.studies import varied_numbers
 from flankfilm.optimisation.words import gained, tied
+from flankfilm.output.uncertainty import Uncertainty, met
 from flankfilm.report import face_parts
 from flankfilm.report.page import Fact, Headline, Part, Table, picture, pictures, said, write_page
 from flankfilm.report.run_parts import inputs
-from flankfilm.report.text import counted, number, percent, plus_minus, seconds
+from flankfilm.report.text import counted, number, off, percent, plus_minus, seconds
 from flankfilm.scene import Scene, parse_tolerance
-from flankfilm.studies.output_errors import ERROR_OF, exact
+from flankfilm.studies.output_errors import ERROR_OF, MODEL_ERROR_OF, exact
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +38,7 @@ if TYPE_CHECKING:
     from flankfilm.studies.run import StudyResults
     from flankfilm.studies.study_file import Value
 
-ERRORS = frozenset(ERROR_OF.values())
+ERRORS = frozenset((*ERROR_OF.values(), *MODEL_ERROR_OF.values()))
 """Outputs that are relative errors of others."""
 
 MOST_ROWS = 100
@@ -241,8 +243,13 @@ def _tolerance(data: xr.Dataset) -> Fact:
     """What every row was computed to."""
     if "tolerance" in data.coords:
         return Fact("tolerances of the rows beside them", "rows")
+    return Fact(f"tolerance of each row {percent(_asked(data))}")
+
+
+def _asked(data: xr.Dataset) -> float:
+    """Tolerance of the scene that is varied."""
     asked = json.loads(data.attrs["scene_json"]).get("tolerance", Scene.model_fields["tolerance"].default)
-    return Fact(f"tolerance of each row {percent(parse_tolerance(asked))}")
+    return float(parse_tolerance(asked))
 
 
 def _range(data: xr.Dataset, name: str) -> Headline:
@@ -253,11 +260,27 @@ def _range(data: xr.Dataset, name: str) -> Headline:
     if name in ERRORS:
         ends = dict.fromkeys((percent(least), percent(most)))
         return Headline(words(data, name), " to ".join(ends), meaning)
-    if (error := ERROR_OF.get(name)) in data:
-        worst = float(data[error].values[np.isfinite(values)].max())
-        meaning += f"; {plus_minus(worst)}{' at most' if np.isfinite(worst) else ''}"
+    if ERROR_OF.get(name) in data:
+        meaning += f"; at most {_off(data, name, np.isfinite(values))}"
     ends = dict.fromkeys((_output(least), _output(most)))
     return Headline(words(data, name), " to ".join(ends), meaning, unit_of(data, name, ""))
+
+
+def _off(data: xr.Dataset, name: str, rows: Booleans) -> str:
+    """Largest uncertainty of an output over rows, marked where one does not meet the tolerance of its row."""
+    errors = data[ERROR_OF[name]].values[rows]
+    model = MODEL_ERROR_OF.get(name)
+    left = data[model].values[rows] if model in data else None
+    known = None if left is None or not np.isfinite(left).all() else float(left.max())
+    if not np.isfinite(errors).all():
+        return "error unknown"
+    if "tolerance" in data.coords:
+        asked = data["tolerance"].values[rows]
+        tolerances = [float(parse_tolerance(str(one))) for one in np.broadcast_to(asked, errors.shape)]
+    else:
+        tolerances = [_asked(data)] * errors.size
+    missed = [one for one, allowed in zip(errors.tolist(), tolerances, strict=True) if not met(one, allowed)]
+    return off(Uncertainty(float(errors.max()), known), min(tolerances) if missed else None)
 
 
 def _rows(

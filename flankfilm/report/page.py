@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from flankfilm import figures
 from flankfilm.figures.style import to_svg
 from flankfilm.output.files import write_text
+from flankfilm.output.uncertainty import Uncertainty
+from flankfilm.report.text import off, percent
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -115,12 +117,31 @@ class Headline:
         Error estimate and how it came about.
     unit : str
         Of the value; empty for pure numbers.
+    uncertainty : Uncertainty or None
+        What `against` puts before the note; None where nothing is to be estimated.
     """
 
     name: str
     text: str
     note: str = ""
     unit: str = ""
+    uncertainty: Uncertainty | None = None
+
+    def against(self, tolerance: float) -> Headline:
+        """Put the uncertainty before the note, marked where it does not meet the tolerance."""
+        if self.uncertainty is None:
+            return self
+        return replace(self, note="; ".join(filter(None, (off(self.uncertainty, tolerance), self.note))))
+
+    def miss(self, tolerance: float) -> str:
+        """Say that its error is above the tolerance; empty where it is not, or not known."""
+        found = self.uncertainty
+        if found is None or found.numerical is None or found.met(tolerance):
+            return ""
+        return (
+            f"{self.name}: its numerical error of {percent(found.numerical)} is above the tolerance of "
+            f"{percent(tolerance)}"
+        )
 
     @property
     def with_unit(self) -> str:

@@ -76,7 +76,8 @@ def _cells(row: Row) -> tuple[str, ...]:
 
 def _aligned(unit: str, values: Sequence[float]) -> tuple[str, ...]:
     """Numbers of one row with the same decimals, as few as show all of them."""
-    texts = [f"{value:.{DECIMALS.get(unit, 5)}f}" if math.isfinite(value) else "-" for value in values]
+    # z: what rounds to 0 has no sign
+    texts = [f"{value:z.{DECIMALS.get(unit, 5)}f}" if math.isfinite(value) else "-" for value in values]
     spare = min((len(text) - len(text.rstrip("0")) for text in texts if text != "-"), default=0)
     return tuple((text[: len(text) - spare] if text != "-" else text).rstrip(".") for text in texts)
 

@@ -102,27 +102,11 @@ def failures(results: Results) -> list[Part]:
     return [Part("failures", "Not computed", (said("failures"),), tables=(table,))]
 
 
-def misses(results: Results) -> list[str]:
-    """Say which wanted figures have errors above the scene's tolerance, and what solvers have to report."""
-    values, wants, tolerance = results.values, results.scene.wants, results.scene.tolerance
-    film, roots = values.get("film"), values.get("root stress")
-    cycle = values.get("dry cycle") if film is None else film
-    errors: dict[str, float | None] = {}
-    if cycle is not None and "stiffness" in wants:
-        errors["mean mesh stiffness"] = cycle.mean_error
-    if film is not None and "film" in wants:
-        errors["film thickness"] = film.film.error
-    if roots is not None:
-        errors["greatest root stress"] = roots.error
-    if (lost := values.get("losses")) is not None:
-        errors["power lost in the mesh"] = lost.error
-    above = [
-        f"{name}: its error of {percent(error)} is above the tolerance of {percent(tolerance)}"
-        for name, error in errors.items()
-        if error is not None and not error <= tolerance
-    ]
+def doubts(results: Results) -> list[str]:
+    """What solvers say that do not believe their figures."""
+    values = results.values
     doubted = [name for name in results.runs if getattr(values.get(name), "converged", True) is False]
-    return above + [f"{results.runs[name].title}: {values[name].message}" for name in doubted]
+    return [f"{results.runs[name].title}: {values[name].message}" for name in doubted]
 
 
 def _known(text: Callable[[float], str], value: float | None) -> str:
@@ -130,8 +114,8 @@ def _known(text: Callable[[float], str], value: float | None) -> str:
     return "" if value is None else text(value)
 
 
-def decisions(results: Results) -> list[Part]:
-    """What was decided, how the tolerance was split, and what was warned of; no section without any of it."""
+def decisions(results: Results, misses: Sequence[str] = ()) -> list[Part]:
+    """What was decided, how the tolerance was split, what missed it, and what was warned of; no section without any."""
     plan, decided = results.plan, results.decisions
     heard: dict[str, list[str]] = {}
     for run in results.runs.values():
@@ -139,7 +123,7 @@ def decisions(results: Results) -> list[Part]:
             heard.setdefault(text, []).append(run.title)
     warned = [f"{', '.join(titles)}: {text}" for text, titles in heard.items()]
     planned = [] if plan is None else [plan.line]
-    lines = (*misses(results), *(d.line for d in decided), *planned, *warned)
+    lines = (*misses, *(d.line for d in decided), *planned, *warned)
     if not lines:
         return []
     tables = ([_decided(decided)] if decided else []) + ([_shares(plan)] if plan and len(plan.shares) else [])

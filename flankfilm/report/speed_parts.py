@@ -8,6 +8,7 @@ import numpy as np
 
 from base import Array
 from flankfilm.figures.motion import scale
+from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.drive_parts import carried_table
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent
@@ -125,6 +126,7 @@ def dynamic_map(stage: DynamicMap, results: xr.Dataset) -> Part:
 def map_headlines(stage: DynamicMap) -> list[Headline]:
     """Greatest factor of the map."""
     row, column = np.unravel_index(int(np.nanargmax(stage.factor)), stage.factor.shape)
-    error = percent(stage.sampling_error)
-    note = f"at {RPM * stage.speed[column]:.0f} rpm and {stage.torque[row]:g} N m; ± {error} by samples"
-    return [Headline("greatest dynamic factor K_v of the map", f"{stage.greatest:.3g}", note)]
+    note = f"at {RPM * stage.speed[column]:.0f} rpm and {stage.torque[row]:g} N m"
+    off = Uncertainty(float(stage.sampling_error))
+    name = "greatest dynamic factor K_v of the map"
+    return [Headline(name, f"{stage.greatest:.3g}", note, uncertainty=off)]

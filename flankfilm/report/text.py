@@ -7,6 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from flankfilm.output.uncertainty import Uncertainty
+
 SMALLEST = 1e-6
 """Relative value below which nobody wants to know how small it is."""
 
@@ -63,6 +65,37 @@ def plus_minus(value: float | None) -> str:
     ('± 0.0072 %', 'error unknown')
     """
     return "error unknown" if (text := percent(value)) == "unknown" else f"± {text}"
+
+
+def off(found: Uncertainty, tolerance: float | None = None) -> str:
+    """Total uncertainty of a figure with its parts, and a mark where it does not meet the tolerance.
+
+    Examples
+    --------
+    >>> off(Uncertainty(0.0012, 0.37))
+    '± 37 % (numerical 0.12 %, model 37 %)'
+    >>> off(Uncertainty(0.018), 0.01)
+    '± 1.8 % (numerical; model not estimated); ! above the tolerance of 1 %'
+    >>> off(Uncertainty(5e-4, size=378.0, unit="K"))
+    '± 0.19 K (numerical; model not estimated)'
+    """
+    if found.total is None:
+        return "error unknown"
+
+    def shown(error: float | None) -> str:
+        return f"{plain(found.size * (error or 0.0))} {found.unit}".strip() if found.size else percent(error)
+
+    parts = "numerical; model not estimated"
+    if found.model is not None:
+        parts = f"numerical {shown(found.numerical)}, model {shown(found.model)}"
+    mark = ""
+    if tolerance is not None and not found.met(tolerance):
+        mark = f"; {MARK} above the tolerance of {percent(tolerance)}"
+    return f"± {shown(found.total)} ({parts}){mark}"
+
+
+MARK = "!"
+"""Before what does not meet the tolerance."""
 
 
 def counted(count: int, noun: str, plural: str = "") -> str:

@@ -133,8 +133,8 @@ class DynamicsSection(Section):
     fourier_order: Annotated[int, Field(ge=1, le=50)] | Literal["auto"] = key(
         'harmonics of the mesh stiffness, or "auto": as few as the tolerance allows (with shafts by the pair on rigid '
         "ones)",
-        1,
-        example="auto",
+        "auto",
+        shown=True,
     )
     stiffness: Literal["secant", "tangent"] = key(
         "force over deflection, or the slope for small vibration", "secant", shown=True
@@ -159,7 +159,7 @@ class DynamicsSection(Section):
         "if left out",
         None,
         of="error_amplitude",
-        example=10,
+        example=0,
     )
     error_phase_deg: Annotated[tuple[float, ...], harmonics(PHASE_DEG)] = key(
         "phase of this error when a pair is at A, one for each harmonic",

@@ -12,9 +12,10 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from base import Fault, InputError, shorten
-from base.units import unit_of
+from base.units import factor, unit_of
 from flankfilm.scene.key import Key, key_of
 from flankfilm.scene.section import Section
+from flankfilm.scene.toml import toml
 
 _ALLOWED = {
     "greater_than": "must be greater than {gt:g}",
@@ -42,6 +43,21 @@ _RANGES = tuple(_ALLOWED)[:4]
 MOST_FAULTS = 90
 """Faults of one file that are explained; a list of thousands helps nobody."""
 
+HELICAL = ("helix", "beta")
+"""How keys of helical gears begin."""
+
+PLAIN = ("bool", "int", "float", "str")
+"""What a union of plain values adds to the path of a finding."""
+
+SHAPES = {"tuple_type": tuple, "model_type": dict}
+"""Findings about lists and tables, of which a key's example shows the form."""
+
+INCHES = ("_in", "_inch", "_inches")
+"""Ends of keys in inches."""
+
+INCH = 0.0254
+"""[m]"""
+
 LONGEST_PATH = 200
 """Characters of a key's path in a fault."""
 
@@ -49,7 +65,15 @@ LONGEST_PATH = 200
 def explain_all(items: Iterable[Mapping[str, Any]], model: type[Section]) -> list[Fault]:
     """Faults for all findings, those of one key (a union's members) joined by "or"."""
     joined: dict[str, Fault] = {}
-    for fault in (fault for item in items for fault in explain(item, model)):
+    found = _once(list(items))
+    inches = {
+        (*item["loc"][:-1], name)
+        for item in found
+        if item["type"] == "extra_forbidden" and str(item["loc"][-1]).endswith(INCHES)
+        for name in _in_metric(str(item["loc"][-1]))
+    }
+    shown = (item for item in found if item["type"] != "missing" or tuple(item["loc"]) not in inches)
+    for fault in (fault for item in shown for fault in explain(item, model)):
         if len(joined) >= MOST_FAULTS:
             joined["more"] = Fault("the rest", "", "has more faults", "Fix these first")
             break
@@ -60,6 +84,12 @@ def explain_all(items: Iterable[Mapping[str, Any]], model: type[Section]) -> lis
             also = fault.allowed.removeprefix("must be ")
             joined[fault.where] = replace(same, allowed=f"{same.allowed}, or {also}")
     return list(joined.values())
+
+
+def _once(items: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Findings without those of other forms that a number which is not finite could have had."""
+    endless = {_path(item) for item in items if item["type"] == "finite_number"}
+    return [item for item in items if item["type"] == "finite_number" or _path(item) not in endless]
 
 
 def explain(item: Mapping[str, Any], model: type[Section]) -> Iterator[Fault]:
@@ -73,7 +103,7 @@ def explain(item: Mapping[str, Any], model: type[Section]) -> Iterator[Fault]:
         The model of the whole file, to suggest keys from.
     """
     location = tuple(item["loc"])
-    path = [str(part) for part in location if not _names_a_type(part)]
+    path = _path(item)
     where = ".".join(path)[:LONGEST_PATH] or model.called
     refused = item.get("ctx", {}).get("error")
     if isinstance(refused, InputError):
@@ -82,14 +112,24 @@ def explain(item: Mapping[str, Any], model: type[Section]) -> Iterator[Fault]:
                 fault, where=".".join([*path, *filter(None, [fault.where])])[:LONGEST_PATH] or where
             )
     elif item["type"] == "extra_forbidden":
-        yield _unknown_key(where, location, model)
+        yield _unknown_key(where, location, model, item.get("input"))
     else:
         field = _field_at(location, model)
         about = Key("") if field is None else key_of(field)
         allowed = about.allowed if item["type"] in _OF_NUMBERS else ""
         allowed = allowed or _ALLOWED.get(item["type"], item["msg"]).format(**item.get("ctx", {}))
+        if item["type"] in SHAPES and isinstance(about.example, SHAPES[item["type"]]):
+            allowed = f"{allowed.partition(', such as ')[0]}, such as {toml(about.example)}"
         value = "" if item["type"] in ("missing", "value_error") else shorten(item["input"])
         yield Fault(where, value, allowed, _remedy(item, about))
+
+
+def _path(item: Mapping[str, Any]) -> tuple[str, ...]:
+    """Keys that lead to a finding, as the user wrote them."""
+    location = tuple(item["loc"])
+    if location and location[-1] in PLAIN and item["type"] != "extra_forbidden":
+        location = location[:-1]
+    return tuple(str(part) for part in location if not _names_a_type(part))
 
 
 def _names_a_type(part: object) -> bool:
@@ -97,10 +137,17 @@ def _names_a_type(part: object) -> bool:
     return isinstance(part, str) and (part.endswith("Section") or part.startswith("literal["))
 
 
-def _unknown_key(where: str, location: tuple[Any, ...], model: type[Section]) -> Fault:
+def _unknown_key(where: str, location: tuple[Any, ...], model: type[Section], value: object) -> Fault:
     key = str(location[-1])
     fields = _model_at(location[:-1], model).model_fields
     keys = [field.alias or name for name, field in fields.items()]
+    if key.startswith(HELICAL):
+        allowed = "is not supported yet: gears are spur gears"
+        return Fault(
+            where, shorten(value), allowed, "Leave it out for spur gears; helical gears cannot be computed"
+        )
+    if key.endswith(INCHES) and (lengths := [k for k in keys if k in _in_metric(key)]):
+        return Fault(where, shorten(value), "is in inches, which are not read", _converted(value, lengths[0]))
     near = difflib.get_close_matches(key, keys, n=1, cutoff=0.75) or [
         k for k in keys if k.split("_")[0] == key.split("_")[0] and len(key) > 2
     ]
@@ -108,6 +155,19 @@ def _unknown_key(where: str, location: tuple[Any, ...], model: type[Section]) ->
     if near and unit_of(near[0]) != unit_of(key):
         remedy += " The unit is part of the key"
     return Fault(where, "", f"is not a key of {model.called}", remedy)
+
+
+def _in_metric(key: str) -> list[str]:
+    """Names that a key in inches would have in units of the metre."""
+    stem = key.removesuffix(next(end for end in INCHES if key.endswith(end)))
+    return [f"{stem}_{unit}" for unit in ("mm", "um")]
+
+
+def _converted(value: object, key: str) -> str:
+    """Remedy for a length in inches: the key with its value in its own unit."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return f"Write {key}; 1 inch is 25.4 mm"
+    return f"Write {key} = {value * INCH / factor(unit_of(key)):.10g}"
 
 
 def _model_at(location: Sequence[Any], model: type[BaseModel]) -> type[BaseModel]:

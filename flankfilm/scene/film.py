@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import itertools
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from base import Limit
 from ehl.asperities import LIMITS as ROUGHNESS
 from ehl.grades import LIMITS as GRADE
 from ehl.lubricant import LIMITS as OIL
 from ehl.lubricant import STRESS_LIMITS
+from ehl.regimes import BOUNDARY, BOUNDARY_FRICTION
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
 
@@ -47,7 +48,9 @@ _ROUGHNESS = {
     "peaks": _DRAWN,
     "density": Limit(1e6, 1e15, "1/m2"),
     "tip_radius": Limit(1e-9, 0.1, "m"),
+    "boundary_friction": BOUNDARY,
 }
+_Two = Annotated[tuple[float, float], Field(strict=False)]
 
 
 class LubricantSection(Section):
@@ -204,6 +207,33 @@ class RoughnessSection(Section):
     mean_plane_offset: float = key(
         "from the mean plane of heights to that of the asperities, times sigma", 1.15, of="offset"
     )
+    boundary_friction: float = key(
+        "coefficient of friction of what the asperities carry: 0.08 to 0.12 is usual of steel in oils for gears, and "
+        "measured values are better; losses and friction of rough flanks hang on it",
+        BOUNDARY_FRICTION,
+        shown=True,
+    )
+    boundary_friction_band: _Two | None = key(
+        "lowest and highest that it may be, whose effect is in the model error of friction and losses; if left out a "
+        "fifth below and above",
+        None,
+        of=None,
+        such_as=(0.08, 0.12),
+    )
+
+    @model_validator(mode="after")
+    def _friction_within_its_band(self) -> RoughnessSection:
+        if self.boundary_friction_band is None:
+            return self
+        low, high = self.boundary_friction_band
+        if not (BOUNDARY.holds(low) and BOUNDARY.holds(high) and low <= self.boundary_friction <= high):
+            allowed = (
+                f"must be two numbers from {BOUNDARY.low:g} to {BOUNDARY.high:g}, the lower first, that have "
+                f"boundary_friction = {self.boundary_friction:g} between them"
+            )
+            band = f"[{low:g}, {high:g}]"
+            raise refused(allowed, "[0.08, 0.12] is usual", where="boundary_friction_band", value=band)
+        return self
 
     @model_validator(mode="after")
     def _one_measure_of_height(self) -> RoughnessSection:

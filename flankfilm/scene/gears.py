@@ -9,7 +9,7 @@ from pydantic import model_validator
 from base import InputError, Limit
 from flankfilm.scene.flank_sections import DeviationsSection, WearSection, wrong_counts
 from flankfilm.scene.key import key
-from flankfilm.scene.section import Limits, Section
+from flankfilm.scene.section import Limits, Section, refused
 from gears.blank import LIMITS as BLANK
 from gears.face import LEAD_LIMITS as LEAD
 from gears.gear import LIMITS as GEAR
@@ -17,6 +17,8 @@ from gears.gear import RELIEF_LIMITS as RELIEF
 from gears.pair import BACKLASH
 from gears.pair import LIMITS as PAIR
 from gears.rack import LIMITS as RACK
+
+TIP_DIAMETER = Limit.above(0.0, 1e4, "m")
 
 
 class RackSection(Section):
@@ -115,6 +117,13 @@ class GearSection(Section):
         such_as=0.0,
     )
     tip_alteration: float = key("moves the tip outwards, times the module", 0.0)
+    tip_diameter_mm: float | None = key(
+        "diameter of the tip circle, in place of tip_alteration, which then follows; by the rack if left out",
+        None,
+        of=None,
+        limit=TIP_DIAMETER,
+        such_as=76.0,
+    )
     thickness_allowance_um: float = key("thins each tooth, arc at the reference circle", 0.0)
     tip_relief: ReliefSection | None = key("material removed towards the tip; none if left out", None)
     tip_chamfer_mm: float = key("height of a chamfer of 45 degrees at the tip's edges", 0.0)
@@ -178,7 +187,12 @@ class GearSection(Section):
 
     @model_validator(mode="after")
     def _whole(self) -> GearSection:
-        """Refuse lists without an entry for each tooth."""
+        """Refuse lists without an entry for each tooth, and two keys that give the tip circle."""
+        if self.tip_diameter_mm is not None and self.tip_alteration:
+            value = f"{self.tip_alteration:g}"
+            raise refused(
+                "follows from tip_diameter_mm", "Give one of them", where="tip_alteration", value=value
+            )
         if faults := list(wrong_counts(self.teeth, self.deviations, self.wear)):
             raise InputError(faults)
         return self

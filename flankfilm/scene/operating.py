@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+import math
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -13,6 +14,11 @@ from flankfilm.scene.section import Limits, Section, refused
 
 TORQUE = Limit(-1e9, 1e9, "N m")
 
+POWER = Limit(-1e9, 1e9, "W")
+
+SAME = 1e-9
+"""Relative difference of a given torque from that of the power which is rounding."""
+
 LEAST = 1e-9
 """Minimum torque of either sign [N m]."""
 
@@ -21,6 +27,18 @@ AMPLITUDE = Limit(-1000.0, 1000.0)
 
 GIVEN = ("mean_N_per_m", "amplitudes", "phases_deg")
 """Keys of a given stiffness."""
+
+
+def _number(value: object) -> float:
+    """Finite number of a key that is not checked yet; nan for anything else."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        return math.nan
+    return float(value)
+
+
+def _torque(power_kW: float, speed_rpm: float) -> float:
+    """Torque [N m] of a power at a speed."""
+    return power_kW * factor("kW") / (speed_rpm * factor("rpm"))
 
 
 class OperatingSection(Section):
@@ -38,6 +56,14 @@ class OperatingSection(Section):
         example=600,
     )
     pinion_speed_rpm: float | None = key("speed of the pinion, which the film needs", None, example=2000)
+    power_kW: float | None = key(
+        "power into the pinion, in place of pinion_torque_Nm, which then follows from pinion_speed_rpm; negative "
+        "where the wheel drives",
+        None,
+        of=None,
+        limit=POWER,
+        such_as=125,
+    )
     friction: float = key(
         "coefficient of friction, which tilts the forces against the sliding; wanted losses compute their friction"
         " separately",
@@ -56,6 +82,31 @@ class OperatingSection(Section):
     first_teeth: Annotated[tuple[int, int], Field(strict=False)] = key(
         "numbers of the teeth of pinion and wheel that meet at A first", (0, 0)
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _torque_of_power(cls, raw: Any) -> Any:
+        """Fill in the torque that follows from power and speed."""
+        if not isinstance(raw, dict) or raw.get("power_kW") is None or "pinion_torque_Nm" in raw:
+            return raw
+        power, speed = _number(raw["power_kW"]), _number(raw.get("pinion_speed_rpm"))
+        # where they are faulty the scene is refused for them, and not for a torque that nobody gave
+        return {
+            **raw,
+            "pinion_torque_Nm": _torque(power, speed) if speed > 0.0 and math.isfinite(power) else 1.0,
+        }
+
+    @model_validator(mode="after")
+    def _power_over_speed(self) -> OperatingSection:
+        if self.power_kW is None:
+            return self
+        if self.pinion_speed_rpm is None:
+            raise refused("is required by power_kW", "Give the pinion's speed", where="pinion_speed_rpm")
+        follows, value = _torque(self.power_kW, self.pinion_speed_rpm), self.pinion_torque_Nm
+        if not math.isclose(value, follows, rel_tol=SAME):
+            allowed = f"must be {follows:.6g} by power_kW and pinion_speed_rpm"
+            raise refused(allowed, "Give torque or power", where="pinion_torque_Nm", value=f"{value:g}")
+        return self
 
     @model_validator(mode="after")
     def _some_torque(self) -> OperatingSection:

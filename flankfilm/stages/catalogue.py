@@ -22,6 +22,7 @@ from flankfilm.coupling.believed import believed
 from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.film_choice import foreseen_change
 from flankfilm.plan.options import FilmChange
+from flankfilm.plausible import warn_of_overload
 from flankfilm.scene.ground import under_keys
 from flankfilm.scene.plain_gears import held_on_hubs, plain_flanks
 from flankfilm.stages.engine import Engine, stage
@@ -75,6 +76,7 @@ def FILM_FORESEEN(run: Engine) -> FilmChange | None:
 )
 def PLAN(run: Engine) -> Plan:
     """Models of the run and shares of its tolerance."""
+    warn_of_overload(run.scene, run[PAIR])
     return decide(run.scene, run[PAIR], lambda: run[FILM_FORESEEN])
 
 

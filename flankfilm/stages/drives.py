@@ -29,11 +29,11 @@ from flankfilm.stages.ranges import speeds_looked_at
 )
 def DRIVE(run: Engine) -> coupling.PairDrive:
     """The pair with its shafts, bearings, motor and load."""
-    speed, given = of_the_pair(run, run[FOURIER])
-    given["speeds"] = speeds_looked_at(run, run[FOURIER], speed)
-    return coupling.pair_drive(
-        run[PAIR], run[FOURIER], pinion_torque(run.scene), speed, **drive_arguments(run.scene), **given
-    )
+    series = run[FOURIER]
+    speed, given = of_the_pair(run, series)
+    given["speeds"] = speeds_looked_at(run, series, speed)
+    given |= drive_arguments(run.scene) | coupling.tilting_mesh(series.cycle)
+    return coupling.pair_drive(run[PAIR], series, pinion_torque(run.scene), speed, **given)
 
 
 def moving(run: Engine) -> coupling.PairOscillator | coupling.PairDrive:
@@ -49,6 +49,7 @@ def DRIVE_SWEEP(run: Engine) -> coupling.DriveSweep:
     section = required(run.scene.dynamics, "[dynamics]", "the sweep")
     asked = required(section.sweep, "dynamics.sweep", "the sweep", "add the range")
     values = np.linspace(*asked.ends, asked.points)
+    drive, rows = run[DRIVE], run.rows(DRIVE_SWEEP)
     if asked.frequency is not None:
-        return coupling.drive_sweep(run[DRIVE], frequency=values)
-    return coupling.drive_sweep(run[DRIVE], values * math.pi / 30.0)
+        return coupling.drive_sweep(drive, frequency=values, progress=rows)
+    return coupling.drive_sweep(drive, values * math.pi / 30.0, progress=rows)

@@ -13,6 +13,7 @@ from typing import Any, Generic, TypeVar, get_type_hints
 from base import InputError, SolverError
 from flankfilm.cache import Cache
 from flankfilm.coupling.warned import distinct
+from flankfilm.progress import Progress, rows_of, silent
 from flankfilm.scene import Scene
 from flankfilm.scene.section import Section
 from flankfilm.stages.failures import Failure, failure_of
@@ -162,6 +163,7 @@ class Engine:
     on_start: Callable[[Stage[Any]], None] = lambda stage: None
     runs: dict[str, StageRun] = field(default_factory=dict)
     failures: dict[str, Failure] = field(default_factory=dict)
+    progress: Progress = silent
     _values: dict[str, Any] = field(default_factory=dict)
     _elsewhere: list[float] = field(default_factory=list)
     _parts: list[KeptPart] = field(default_factory=list)
@@ -207,6 +209,10 @@ class Engine:
     def parts(self) -> KeptPart:
         """Keeper of parts of the running stage's result that other scenes have too, such as a gear of another pair."""
         return self._parts[-1]
+
+    def rows(self, stage: Stage[Any]) -> Callable[[str, int, int], None]:
+        """Shows what a long stage counts, how many are done and of how many, with the time left."""
+        return rows_of(self.progress, stage.title)
 
     def _obtain(self, stage: Stage[T]) -> T:
         packages = packages_of(stage)

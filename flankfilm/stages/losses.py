@@ -7,7 +7,7 @@ from dataclasses import replace
 import ehl
 from flankfilm import coupling
 from flankfilm.build import pinion_speed, pinion_torque
-from flankfilm.build_film import roughness, supply
+from flankfilm.build_film import boundary_friction, roughness, supply
 from flankfilm.build_heat import shearing_oil, solids, warmth
 from flankfilm.plan.decisions import Decision
 from flankfilm.plan.heat_choice import heat_choice
@@ -72,6 +72,7 @@ def LOSSES(run: Engine) -> coupling.MeshLosses:
             ambient_temperature=warm.ambient,
             tolerance=scene.tolerance,
             roughness=roughness(scene),
+            **boundary_friction(scene),
             supply=supply(scene),
             model=teeth.model,
             pairs=teeth.pairs,

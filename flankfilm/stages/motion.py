@@ -40,10 +40,11 @@ def _series(run: Engine) -> coupling.MeshSeries:
     scene, section = run.scene, run.scene.dynamics
     if scene.stiffness.model == "given":
         return coupling.given_series(**scene.stiffness.si(*GIVEN))
+    share = run[PLAN].series or scene.tolerance
     if section is None:
-        return coupling.mesh_series(run[MESH], order=1)
+        return coupling.mesh_series(run[MESH], share=share)
     order = None if section.fourier_order == "auto" else section.fourier_order
-    share, bounds = run[PLAN].series or scene.tolerance, frequency_range(run, section)
+    bounds = frequency_range(run, section)
     return coupling.mesh_series(run[MESH], section.stiffness, order, share, bounds, damping_ratio(run))
 
 

@@ -110,7 +110,10 @@ def DYNAMIC_MAP(run: Engine) -> coupling.DynamicMap:
         cycle = _mesh_at(run, torque)
         series = coupling.mesh_series(cycle, section.stiffness, order)
         if shafts is not None:
-            return coupling.pair_drive(run[PAIR], series, torque, float(speeds[0]), **shafts, **given)
+            tilting = coupling.tilting_mesh(cycle)
+            return coupling.pair_drive(
+                run[PAIR], series, torque, float(speeds[0]), **shafts, **given, **tilting
+            )
         return coupling.pair_oscillator(run[PAIR], series, torque, float(speeds[0]), **given)
 
     return coupling.dynamic_map(at, operating.torques_Nm, speeds)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from operator import attrgetter
 
 import numpy as np
 
 from base import Figure
 from base.results import figures
+from ehl.regimes import NUMBERS, regime_number
 from flankfilm.coupling.losses_along_path import LossesAlongPath
 from flankfilm.coupling.losses_record import MeshLosses
 from flankfilm.stages.losses import LOSSES
@@ -39,7 +41,7 @@ def _gears() -> list[Named]:
         (
             "flank_temperature_rise",
             "maximum rise of the {}'s flank above its bulk",
-            "path.surface_temperature_rise",
+            "path.greatest_flank_rise",
         ),
     )
     return [
@@ -56,6 +58,32 @@ def _of_gear(figure: str, gear: int) -> Take:
     return lambda found: np.max(attrgetter(figure)(found)[gear])
 
 
+def _boundary() -> Iterator[Named]:
+    """Regime of the films with heat, and what the asperities' friction makes and leaves open."""
+
+    def of(value: Take) -> Take:
+        return lambda found: None if found.boundary is None else value(found.boundary)
+
+    def at(end: int) -> Take:
+        return lambda band: np.sort(band.mesh_loss)[end]
+
+    about = figures(MeshLosses)["mesh_loss"]
+    for end, which in enumerate(("least", "most")):
+        said = f"{{}} within the band of the boundary friction, {which}; nan if smooth"
+        yield output_of(
+            f"mesh_loss_by_boundary_{which}", about, "losses", in_result(LOSSES, of(at(end))), said
+        )
+    part = Figure("1", "part of the losses that the asperities' friction makes; nan if smooth", shown="%")
+    yield output_of("boundary_friction_part", part, "losses", in_result(LOSSES, of(attrgetter("loss_part"))))
+
+    def regime_of(found: MeshLosses) -> float | None:
+        ratio = found.path.least_film_ratio
+        return None if ratio is None else regime_number(ratio)
+
+    about = Figure("1", f"regime at the minimum film ratio with heat: {NUMBERS}; nan if smooth")
+    yield output_of("regime_with_heat", about, "losses", in_result(LOSSES, regime_of))
+
+
 def _error(name: str, meaning: str, value: Take) -> Named:
     return output_of(name, Figure("1", meaning), "losses", in_result(LOSSES, value))
 
@@ -68,24 +96,39 @@ LOSS_OUTPUTS: tuple[Named, ...] = (
     _losses("rolling_loss"),
     _losses("efficiency", name="mesh_efficiency"),
     _losses("loss_factor"),
-    _path("oil_temperature_rise", np.max, said="{} along the path"),
+    _path("greatest_oil_rise", name="oil_temperature_rise"),
     _losses("greatest_contact_temperature", name="flank_temperature"),
     _path("flash_temperature", np.max, said="maximum flash temperature after Blok along the path, a rise"),
     *_gears(),
     _path("least_film", name="least_film_with_heat", said="{} along the path, with heat and shear thinning"),
-    _path("film_ratio", np.min, "film_ratio_with_heat", "minimum {} along the path with heat; nan if smooth"),
+    _path("least_film_ratio", name="film_ratio_with_heat", said="{} with heat; nan if smooth"),
+    _losses("model_error", name="losses_model_error"),
+    *_boundary(),
     _path("greatest_pressure_times_sliding", name="pressure_times_sliding"),
     _error("losses_error", "estimated relative error of mean friction and losses", attrgetter("error")),
+    *(
+        _error(
+            f"losses_error_by_{stress}_MPa",
+            f"the same with an Eyring stress of {stress} MPa",
+            _at_end("end_error", end),
+        )
+        for end, stress in enumerate((5, 10))
+    ),
     _error("efficiency_error", "estimated relative error of the mesh's efficiency", attrgetter("loss_error")),
     _error(
         "temperature_rise_error",
-        "largest estimated relative error of the oil's and the flanks' rises along the path",
-        lambda found: np.max(found.path.temperature_error),
+        "larger estimated relative error of the largest rises of oil and flanks",
+        lambda found: max(found.path.greatest_oil_rise_error, found.path.greatest_flank_rise_error.max()),
+    ),
+    _error(
+        "flank_temperature_error",
+        "estimated relative error of the flanks' maximum temperature, in K",
+        attrgetter("greatest_contact_temperature_error"),
     ),
     _error(
         "film_with_heat_error",
-        "largest estimated relative error of the films with heat",
-        lambda found: np.max(found.path.film_error),
+        "estimated relative error of the minimum film with heat",
+        attrgetter("least_film_error"),
     ),
 )
 """Outputs by name."""

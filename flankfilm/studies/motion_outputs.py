@@ -193,6 +193,9 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
         in_result(DRIVE, lambda found: max(found.lowest_frequency_error, found.mesh_frequency_error)),
     ),
     _drive("valid_to", name="drive_valid_to"),
+    _drive("tilt_stiffness", name="drive_tilt_stiffness"),
+    _drive("load_centre", name="drive_load_centre"),
+    _drive("tilt_change", name="drive_tilt_change"),
     _carried("greatest_bearing_force"),
     _carried("greatest_shaft_torque"),
     output_of(

@@ -11,7 +11,7 @@ ROUNDING = 1e-12
 
 _HELD: Mapping[str, tuple[str, ...]] = {
     "stiffness_error": ("mean_secant_stiffness_N_per_mm_um",),
-    "tangent_stiffness_error": ("mean_stiffness_N_per_mm_um",),
+    "tangent_stiffness_error": ("mean_tangent_stiffness_N_per_mm_um", "mean_stiffness_N_per_mm_um"),
     "transmission_error_error": ("transmission_error_um",),
     "face_load_factor_error": ("face_load_factor",),
     "greatest_line_load_error": ("greatest_line_load_N_per_mm",),
@@ -22,20 +22,22 @@ _HELD: Mapping[str, tuple[str, ...]] = {
     "root_stress_error": tuple(
         f"root_{kind}_{gear}_MPa" for kind in ("tension", "compression") for gear in ("pinion", "wheel")
     ),
+    "least_film_error": ("least_film_um", "film_ratio"),
     "film_error": (
-        "least_film_um",
         "least_central_film_um",
         "film_at_C_um",
-        "film_ratio",
         *(f"least_film_at_{point}_um" for point in "ABCDE"),
     ),
     "losses_error": (
         "mean_friction",
         "mesh_loss_W",
         "sliding_loss_W",
-        "mesh_loss_by_5_MPa_W",
-        "mesh_loss_by_10_MPa_W",
+        "mesh_loss_by_boundary_least_W",
+        "mesh_loss_by_boundary_most_W",
     ),
+    "losses_error_by_5_MPa": ("mesh_loss_by_5_MPa_W",),
+    "losses_error_by_10_MPa": ("mesh_loss_by_10_MPa_W",),
+    "flank_temperature_error": ("flank_temperature_K",),
     "efficiency_error": ("mesh_efficiency",),
     "temperature_rise_error": (
         "oil_temperature_rise_K",
@@ -61,6 +63,12 @@ _HELD: Mapping[str, tuple[str, ...]] = {
     "jump_error_rising": ("jump_speed_rising_rpm", "jump_frequency_rising"),
     "jump_error_falling": ("jump_speed_falling_rpm", "jump_frequency_falling"),
 }
+
+MODEL_ERROR_OF: Mapping[str, str] = {
+    "mean_secant_stiffness_N_per_mm_um": "stiffness_model_error",
+    "mesh_loss_W": "losses_model_error",
+}
+"""Output to the output that holds what its model leaves open, relative."""
 
 ERROR_OF: Mapping[str, str] = {name: error for error, names in _HELD.items() for name in names}
 """Output to the output that holds its relative error; the others have none."""

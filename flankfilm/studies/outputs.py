@@ -15,6 +15,7 @@ import numpy as np
 import gears
 from base import Figure
 from base.results import figures
+from ehl.regimes import NUMBERS, regime_number
 from flankfilm.build import pinion_speed, pinion_torque
 from flankfilm.coupling.along_path import FilmAlongPath
 from flankfilm.coupling.cycle import MeshCycle
@@ -30,6 +31,8 @@ from flankfilm.studies.loss_outputs import LOSS_OUTPUTS
 from flankfilm.studies.motion_outputs import MOTION_OUTPUTS
 from flankfilm.studies.output import Named, Output, Take, in_result, output_of, outputs_from
 from gears import GearPair, WarmPair
+
+OLDER = "older name, kept for one version, of"
 
 UNRESOLVED = "nan where it is narrower than grids resolve"
 
@@ -101,6 +104,12 @@ def _of_spike(value: Callable[[Any, Any], float]) -> Take:
         return value(film.spike, film.contact) if known else None
 
     return of
+
+
+def _regime(found: LubricatedCycle) -> float | None:
+    """Regime of the minimum film; None for smooth flanks."""
+    ratio = found.film.least_film_ratio
+    return None if ratio is None else regime_number(ratio)
 
 
 def _roots() -> Iterator[Named]:
@@ -176,7 +185,8 @@ OUTPUTS: Mapping[str, Output] = dict(
             "largest {}, A to E",
         ),
         _per_face("mean_secant_stiffness"),
-        _per_face("mean_stiffness"),
+        _per_face("mean_stiffness", name="mean_tangent_stiffness"),
+        _per_face("mean_stiffness", said=f"{{}}; {OLDER} mean_tangent_stiffness_N_per_mm_um"),
         _per_face("least_secant_stiffness"),
         _per_face("greatest_secant_stiffness", name="largest_secant_stiffness"),
         _mesh("transmission_error_range", name="transmission_error"),
@@ -253,8 +263,26 @@ OUTPUTS: Mapping[str, Output] = dict(
             lambda film: film.minimum_thickness / film.central_thickness,
         ),
         _film("least_film_ratio", name="film_ratio", said="{}; nan if smooth"),
+        output_of(
+            "regime",
+            Figure("1", f"regime at the minimum film ratio: {NUMBERS}; nan if smooth"),
+            "film",
+            in_result(FILM, _regime),
+        ),
         _film("asperity_share", np.max, said="largest {} along the path; nan if smooth"),
         _film("starvation", np.min, said="minimum {} along the path; nan if flooded"),
+        output_of(
+            "least_film_error",
+            Figure("1", "estimated relative error of the minimum film and film ratio; nan where unknown"),
+            "film",
+            in_result(FILM, attrgetter("film.least_film_error")),
+        ),
+        output_of(
+            "stiffness_model_error",
+            Figure("1", "what the model of the contacts leaves open of the mean secant stiffness, relative"),
+            "stiffness",
+            in_result(MESH, attrgetter("model_error")),
+        ),
         output_of(
             "film_error",
             Figure("1", "largest estimated relative error of the films; nan where unknown"),

@@ -8,20 +8,26 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from base import Faults, plot, view
+from flankfilm.output.files import cell
 from flankfilm.studies.execution import Execution, Progress
 from flankfilm.studies.kept import Work, kept_rows
 from flankfilm.studies.plan import Plan
 from flankfilm.studies.row import Row, RowResult
-from flankfilm.studies.table import ROWS, WITHOUT_IT, Columns
+from flankfilm.studies.table import ROWS, WITHOUT_IT, Columns, Line
 from flankfilm.views import register
 
 
-def refuse_unknown(folder: Path, done: Iterable[int], rows: int) -> None:
-    """Refuse numbers of rows that the plan does not have."""
+def refuse_unknown(folder: Path, lines: Iterable[Line], plan: Plan) -> None:
+    """Refuse rows that the plan does not have, by their numbers or by the values of their keys."""
+    rows = plan.rows
     with Faults() as faults:
-        for index in done:
-            if not 0 <= index < rows:
-                faults.add(f"{folder / ROWS}, row {index}", "", f"must be one of 0 to {rows - 1}", WITHOUT_IT)
+        for line in lines:
+            index = line.result.index
+            where = f"{folder / ROWS}, row {index}"
+            if not 0 <= index < len(rows):
+                faults.add(where, "", f"must be one of 0 to {len(rows) - 1}", WITHOUT_IT)
+            elif line.values != tuple(str(cell(value)) for value in rows[index]):
+                faults.add(where, "", "has other values of the keys than the study", WITHOUT_IT)
 
 
 @dataclass(frozen=True)
@@ -88,7 +94,7 @@ def run_study(
     work = Work("study", plan.title, plan.identity(), Columns(plan.keys, plan.outputs))
     with kept_rows(folder, work, how.resume) as kept, how.staff() as staff:
         done = {line.result.index: line.result for line in kept.lines}
-        refuse_unknown(folder, done, len(plan.rows))
+        refuse_unknown(folder, kept.lines, plan)
         missing = [
             Row(index, plan.raw_scene(index), plan.outputs, how.cache)
             for index in range(len(plan.rows))

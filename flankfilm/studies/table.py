@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import os
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from base import Faults, InputError
+from base import Faults, InputError, printable
 from base.files import replacing
 from flankfilm.output.files import cell
 from flankfilm.studies.row import RowResult
@@ -78,11 +79,22 @@ def read_lines(path: Path, columns: Columns) -> list[Line]:
             if len(line) != len(columns.header) or _checksum(line[:-1]) != line[-1]:
                 faults.add(f"{path}, line {number}", "", "was changed since it was written", WITHOUT_IT)
     first, last = 1 + len(columns.keys), 1 + len(columns.keys) + len(columns.outputs)
-    found = []
-    for line in lines[1:]:
-        values = tuple(float(text) for text in line[first:last])
-        result = RowResult(int(line[0]), values, float(line[last]), line[last + 1])
-        found.append(Line(result, tuple(line[1:first])))
+    found: list[Line] = []
+    seen: set[int] = set()
+    with Faults() as faults:
+        for number, line in enumerate(lines[1:], start=2):
+            try:
+                values = tuple(float(text) for text in line[first:last])
+                index, spent = int(line[0]), float(line[last])
+            except ValueError:
+                faults.add(f"{path}, line {number}", "", "holds a text where a number belongs", WITHOUT_IT)
+                continue
+            if index < 0 or index in seen or not 0.0 <= spent < math.inf:
+                faults.add(f"{path}, line {number}", "", "holds a row that no run wrote", WITHOUT_IT)
+            seen.add(index)
+            found.append(
+                Line(RowResult(index, values, spent, printable(line[last + 1])), tuple(line[1:first]))
+            )
     return found
 
 

@@ -7,6 +7,8 @@ import pytest
 
 from base import InputError
 from dynamics import (
+    FourierStiffness,
+    GearOscillator,
     basins,
     boundary_crises,
     boundary_crisis,
@@ -38,6 +40,21 @@ def test_chaos_beside_6_4_4_ends_where_it_meets_the_saddle():
             a.label for a in basins(here, (-1.5, 1.5, 8), (-1.5, 1.5, 8), limit=10_000).attractors if a.share
         }
         assert labels == kinds
+
+
+def test_the_points_of_the_manifold_are_in_the_error():
+    """More points, and points elsewhere: lobes that one of them meets first are seen by all of them."""
+    osc = GearOscillator(FourierStiffness(1.0, (0.5,), (0.0,)), 0.06, 0.1, 0.778, 0.4, half_backlash=0.8)
+    met = next(o for o in find_orbits(osc, (1,)).orbits if o.label == "U1-1-0")
+    found = [
+        boundary_crisis(met, "error_amplitude", (0.777, 0.783), points=points, periods=30)
+        for points in (100, 120, 200)
+    ]
+    for one in found:
+        assert one.converged
+        assert one.error < 1e-10
+        for other in found:
+            assert abs(one.parameter - other.parameter) <= one.error * one.parameter
 
 
 @pytest.mark.slow

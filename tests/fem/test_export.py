@@ -19,7 +19,7 @@ TORQUE = 600.0
 @pytest.fixture(scope="module")
 def cycles(article_pair, article_bodies):
     return {
-        beyond: fem.mesh_cycle(article_pair, TORQUE, 40, article_bodies, beyond_path=beyond)
+        beyond: fem.mesh_cycle(article_pair, TORQUE, 40, article_bodies, beyond_path=beyond, reference="bore")
         for beyond in (False, True)
     }
 

@@ -23,7 +23,7 @@ from meshes import Sizes
 
 @pytest.fixture(scope="module")
 def cycle(article_pair, article_bodies):
-    return fem.mesh_cycle(article_pair, 600.0, 40, article_bodies, beyond_path=False)
+    return fem.mesh_cycle(article_pair, 600.0, 40, article_bodies, beyond_path=False, reference="bore")
 
 
 @pytest.fixture(scope="module")

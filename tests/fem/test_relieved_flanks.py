@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem.relieved_flanks import SPAN, ends_of_flanks, touch
+from fem.relieved_flanks import SPAN, ends_of_flanks, gentle, touch
 from fem.setting import Setting
 from fem.sharing import solve
 from fem.tip_geometry import gap_at, lever_ratio
@@ -97,3 +97,13 @@ def test_least_gap_is_well_below_that_of_the_nominal_place():
     place = np.array([given.ends[0]])
     nominal = given.removed[0](place) + given.removed[1](pair.line_of_action - place)
     assert 0.5e-6 < float(nominal[0] - touch(given, place, given.removed).gap[0]) < 2e-6
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.1, 0.14])
+def test_flanks_that_begin_at_their_base_circle_have_no_hollow(shift):
+    """No flank is looked at below its base circle, where one would have a curvature radius that is no number."""
+    relief = TipRelief(10e-6, 0.5e-3)
+    with np.errstate(invalid="raise"):
+        for teeth in (17, 34, 40):
+            gears = Gear(17, shift, tip_relief=relief), Gear(teeth, tip_relief=relief)
+            assert gentle(Setting(GearPair(*gears, 2e-3, 0.02), 8))

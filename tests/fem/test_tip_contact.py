@@ -310,7 +310,7 @@ def test_cycle_uses_lever_and_gap(article_pair, article_bodies):
 
 def test_edge_and_flank_deflect_as_the_pinion_turns(article_pair, article_bodies):
     """Way along each pair's own normal, kappa D, against forces and compliances put together anew."""
-    cycle = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
+    cycle = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies, reference="bore")
     pressed = (cycle.forces > 0) & cycle.edge & (cycle.pair_offset[None, :] > 0)
     rows = np.flatnonzero(pressed.any(axis=1) & ((cycle.forces > 0).sum(axis=1) == 2))
     assert len(rows) >= 4

@@ -144,9 +144,9 @@ def test_the_report_shows_every_section(folder):
 
 TABLES = {
     "path_of_contact": "rho1_mm rho2_mm radius_mm entrainment_m_per_s sliding_m_per_s",
-    "mesh_cycle_dry": "position secant_stiffness_N_per_m stiffness_N_per_m transmission_error_um load_share",
+    "mesh_cycle_dry": "position secant_stiffness_N_per_m tangent_stiffness_N_per_m stiffness_N_per_m load_share",
     "contacts_dry": "position forces_N hertz_pressure_MPa half_width_um sliding_m_per_s",
-    "mesh_cycle_lubricated": "position secant_stiffness_N_per_m stiffness_N_per_m transmission_error_um load_share",
+    "mesh_cycle_lubricated": "position secant_stiffness_N_per_m tangent_stiffness_N_per_m transmission_error_um",
     "film_along_path": "rho1_mm load_N_per_mm central_thickness_um minimum_thickness_um hertz_pressure_GPa",
     "sweep_up": "speed_rpm frequency",
 }

@@ -69,6 +69,36 @@ def test_no_worker_outlives_a_study_that_is_ended(tmp_path, name, status):
     assert len({line.split(",")[0] for line in kept[1:]}) == len(kept) - 1 > 4
 
 
+POOL = """
+import multiprocessing, os, sys, time
+from flankfilm.studies.executors import executor
+if __name__ == "__main__":
+    with executor("processes", 1) as pool:
+        print(pool.executor.submit(os.getpid).result(), flush=True)
+        time.sleep(60)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the system kills children with their parent on Linux")
+def test_a_stopped_worker_does_not_outlive_a_parent_that_is_killed(tmp_path):
+    """Stopped processes answer no signal but the one that kills."""
+    (tmp_path / "pool.py").write_text(POOL)
+    paths = {"PYTHONPATH": os.pathsep.join(sys.path)}
+    command = [sys.executable, str(tmp_path / "pool.py")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, env={**os.environ, **paths}) as parent:
+        assert parent.stdout is not None
+        worker = int(parent.stdout.readline())
+        os.kill(worker, signal.SIGSTOP)
+        parent.kill()
+    until = time.monotonic() + 10.0
+    while Path(f"/proc/{worker}").exists() and time.monotonic() < until:
+        time.sleep(0.05)
+    left = Path(f"/proc/{worker}").exists()
+    if left:
+        os.kill(worker, signal.SIGKILL)
+    assert not left
+
+
 def test_workers_import_nothing_from_the_current_folder(tmp_path):
     (tmp_path / "study.toml").write_text(STUDY.replace("3000", "2"))
     for name in ("numpy", "pickle", "multiprocessing", "flankfilm", "json"):

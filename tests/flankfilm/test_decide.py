@@ -24,7 +24,7 @@ from flankfilm.plan.film_choice import FORMULA_OFF, MOST_OF_FORESEEN, FilmChange
 from flankfilm.plan.stiffness_choice import LARGEST_DIFFERENCE
 from flankfilm.report.contents import summary
 from flankfilm.running import run_scene
-from flankfilm.scene import Scene, read_scene
+from flankfilm.scene import Scene, parse_scene, read_scene, template
 from flankfilm.scene.reader import validated
 from flankfilm.stages.catalogue import BODIES, DRY_CYCLE, FILM, FILM_FORESEEN, PLAN
 from flankfilm.stages.engine import Engine
@@ -135,6 +135,31 @@ def test_what_the_scene_names_is_taken():
     wanted = plan(scene(0.4, wants=["film"]))
     assert wanted.film.choice == "ehl"
     assert wanted.film_tolerance <= 0.1
+
+
+def test_only_what_the_scene_says_is_said_to_be_asked_for():
+    raw = scene(0.4, stiffness={}).model_dump(exclude_unset=True)
+    silent = plan(validated({name: section for name, section in raw.items() if name != "film"}))
+    assert silent.stiffness.reason == 'finite elements; stiffness.model = "fem" is the default'
+    assert silent.film.reason == 'left out; film.model = "none" is the default'
+    assert not silent.stiffness.asked
+    assert not silent.film.asked
+    named = plan(scene(0.4, stiffness={"model": "fem"}, film={"model": "none"}))
+    assert named.stiffness.reason == 'finite elements; the scene asks for stiffness.model = "fem"'
+    assert named.film.reason == 'left out; the scene asks for film.model = "none"'
+
+
+def test_the_order_is_found_unless_the_scene_says_one():
+    for dynamics in ({}, {"fourier_order": "auto"}):
+        assert plan(scene(0.01, wants=["fourier"], dynamics=dynamics)).series is not None
+    assert plan(scene(0.01, wants=["fourier"])).series is not None  # no [dynamics] at all
+    assert plan(scene(0.01, wants=["fourier"], dynamics={"fourier_order": 3})).series is None
+
+
+def test_the_template_has_no_error_but_that_of_the_teeth():
+    dynamics = parse_scene(template()).dynamics
+    assert dynamics.error_amplitude_um == (0.0,)
+    assert dynamics.fourier_order == "auto"
 
 
 def test_a_wanted_film_is_solved_to_the_scenes_tolerance_one_for_the_stiffness_to_its_share():

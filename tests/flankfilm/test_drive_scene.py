@@ -25,7 +25,7 @@ from flankfilm.running import run_scene
 from flankfilm.scene import Scene, parse_scene
 from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FILM
 from flankfilm.stages.catalogue import PAIR as PAIR_STAGE
-from flankfilm.stages.drives import DRIVE
+from flankfilm.stages.drives import DRIVE, DRIVE_SWEEP
 from flankfilm.stages.engine import Engine
 from flankfilm.studies.outputs import OUTPUTS
 from flankfilm.studies.plan import plan_of
@@ -145,6 +145,24 @@ def test_a_train_is_in_tables_report_and_outputs(train):
     assert OUTPUTS["greatest_force_factor"].value(engine) == most
     with pytest.raises(InputError, match="rigid shafts"):
         OUTPUTS["contact_loss_speed_rpm"].value(engine)
+
+
+def test_a_sweep_shows_what_it_has_done(train, monkeypatch):
+    """Speeds up and down, then parts whose peaks are sought, then motions with the longer series, each to its end."""
+    monkeypatch.setattr("flankfilm.progress.PATIENCE", 0.0)
+    shown: list[tuple[str, int, int]] = []
+    engine = Engine(parse_scene(TRAIN), Cache(None), progress=lambda *one: shown.append(one))
+    engine._values.update({name: one for name, one in train.values.items() if name != "drive sweep"})
+    swept = engine[DRIVE_SWEEP]
+    title = DRIVE_SWEEP.title
+    assert [one[1:] for one in shown if " speeds, " in one[0]] == [(done, 4) for done in range(1, 5)]
+    parts = 1 + len(swept.bearings) + len(swept.shafts)
+    assert [one[1:] for one in shown if " peaks, " in one[0]] == [(n, parts) for n in range(1, parts + 1)]
+    many = 2 * len(swept.checked)
+    rest = [one for one in shown if " motions with more harmonics, " in one[0]]
+    assert [one[1:] for one in rest] == [(done, many) for done in range(1, many + 1)]
+    assert rest[-1][0] == f"{title}: {many} of {many} motions with more harmonics, 0 s left"
+    assert len(shown) == 4 + parts + many
 
 
 def test_a_run_up_a_map_and_orders_carry_what_settled_motions_do(train):

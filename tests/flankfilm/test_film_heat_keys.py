@@ -9,7 +9,7 @@ import pytest
 from base import InputError
 from ehl import Lubricant
 from flankfilm.build import gear_pair
-from flankfilm.build_film import flank_temperatures, lubricant
+from flankfilm.build_film import boundary_friction, flank_temperatures, lubricant
 from flankfilm.scene import parse_scene, template
 
 NUMBERS = "viscosity_Pa_s = 0.075\npressure_viscosity_per_GPa = 19.6\n"
@@ -55,6 +55,26 @@ def test_flanks_have_the_temperature_of_the_gears_where_it_is_given():
     ratio, slope = colder.hot_log_viscosity(0.0, 353.15)
     assert of_the_oil.viscosity == pytest.approx(0.075 * math.exp(ratio))
     assert of_the_oil.pressure_viscosity == pytest.approx(float(slope))
+
+
+def rough_of(more: str = ""):
+    return scene_of(GRADE, f"[roughness]\nRa_um = 0.4\n{more}")
+
+
+def test_the_friction_of_asperities_is_a_key_with_a_band():
+    assert boundary_friction(scene_of(GRADE)) == {}
+    assert boundary_friction(rough_of()) == {"boundary_friction": 0.1, "boundary_band": None}
+    given = rough_of("boundary_friction = 0.07\nboundary_friction_band = [0.05, 0.08]\n")
+    assert boundary_friction(given) == {"boundary_friction": 0.07, "boundary_band": (0.05, 0.08)}
+    assert "boundary_friction = 0.1" in template()
+    for wrong in (
+        "boundary_friction = 0.9\n",
+        "boundary_friction = 0.2\nboundary_friction_band = [0.08, 0.12]\n",
+        "boundary_friction_band = [0.12, 0.08]\n",
+        "boundary_friction_band = [0.08]\n",
+    ):
+        with pytest.raises(InputError, match="boundary_friction"):
+            rough_of(wrong)
 
 
 def test_a_grade_is_not_known_at_every_temperature_of_gears():

@@ -351,7 +351,7 @@ class Rows(Kind):
         plan = read_plan(self.source / "rows.toml")
         work = Work("study", plan.title, plan.identity(), Columns(plan.keys, plan.outputs))
         with kept_rows(rows, work, True) as kept:
-            refuse_unknown(self.folder, [line.result.index for line in kept.lines], len(plan.rows))
+            refuse_unknown(self.folder, kept.lines, plan)
 
 
 class Lists(Kind):

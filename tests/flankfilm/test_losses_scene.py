@@ -18,13 +18,16 @@ from flankfilm.build import gear_pair
 from flankfilm.build_heat import shearing_oil, solids, warmth
 from flankfilm.cache import Cache
 from flankfilm.output.run import results_dataset, results_tables
+from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.plan.heat_choice import heat_choice
 from flankfilm.report import losses_parts
+from flankfilm.report.text import percent
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import FILM, PAIR
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.goals import goals
 from flankfilm.stages.losses import HEAT_CHOICE, HOT_CONTACT, HOT_FILM, LOSSES
+from flankfilm.studies.output_errors import ERROR_OF
 from flankfilm.studies.outputs import OUTPUTS
 
 EXAMPLE = Path("examples/losses.toml").read_text(encoding="utf-8")
@@ -210,7 +213,24 @@ def test_files_pictures_and_page_of_losses(few):
     assert [row[0] for row in part.tables[0].rows] == ["5", "10"]
     assert len(part.figures) == 3
     head = {one.name: one for one in losses_parts.headlines(lost)}
-    assert "W for Eyring stresses of 5 to 10 MPa" in head["power lost in the mesh"].note
+    power, hottest = head["power lost in the mesh"], head["greatest temperature of the flanks"]
+    assert "W for Eyring stresses of 5 to 10 MPa" in power.note
+    # one quantity, one error: the page, its tables and the files
+    assert power.uncertainty == Uncertainty(lost.error, lost.model_error)
+    assert data["losses_mesh_loss"].attrs["model_error"] == lost.model_error
+    assert lost.model_error == pytest.approx(lost.band.mesh_loss[1] / lost.mesh_loss - 1.0, rel=1e-3)
+    assert data["losses_band_mesh_loss"].attrs["error_variable"] == "losses_band_end_error"
+    assert lost.band.end_error[0] == lost.error < lost.band.end_error[1]
+    assert part.tables[0].rows[0][-1] == percent(lost.error)
+    kelvin = data["losses_greatest_contact_temperature"].attrs["error"] * lost.greatest_contact_temperature
+    assert hottest.uncertainty.numerical * hottest.uncertainty.size == pytest.approx(kelvin)
+    at = int(np.argmax(lost.path.contact_temperature))
+    rises = lost.path.temperature_error * lost.path.surface_temperature_rise.max(axis=0)
+    assert rises[at] <= kelvin * (1 + 1e-9)
+    assert kelvin <= rises.max() * (1 + 1e-9)
+    film = head["least film with heat"].uncertainty.numerical
+    assert film == data["losses_least_film"].attrs["error"] == data["losses_path_least_film"].attrs["error"]
+    assert data["losses_least_film"].attrs["tolerance_met"] == int(film <= scene.tolerance)
 
 
 def test_outputs_of_studies_are_those_of_the_losses(few):
@@ -226,7 +246,13 @@ def test_outputs_of_studies_are_those_of_the_losses(few):
     assert found["flank_temperature_rise_wheel_K"] == lost.path.surface_temperature_rise[1].max()
     assert found["bulk_temperature_pinion_K"] == 353.15
     assert np.isnan(found["film_ratio_with_heat"])
-    assert all(np.isfinite(value) for name, value in found.items() if name != "film_ratio_with_heat")
+    of_rough = {name for name in found if "film_ratio" in name or "boundary" in name or "regime" in name}
+    assert {name for name, value in found.items() if np.isnan(value)} == of_rough
+    for name, error in ERROR_OF.items():
+        if name in asked and name not in of_rough:
+            assert 0.0 < found[error] < 0.2, error
+    assert found["losses_model_error"] == lost.model_error
+    assert found["film_with_heat_error"] == lost.least_film_error
 
 
 @pytest.mark.slow

@@ -27,7 +27,7 @@ def test_a_run_opens_with_coordinates_units_and_errors(folder):
     data = ff.open_results(folder)
     assert data.identical(ff.open_results(str(folder / "results.nc")))
     assert {"dry_position", "single_pair_rho1"} <= set(data.coords)
-    assert data.dry_stiffness.units == "N/m"
+    assert data.dry_tangent_stiffness.units == data.dry_stiffness.units == "N/m"
     near = data.dry_stiffness.sel(dry_position=0.5, method="nearest")
     assert float(near) > 0
     for name, variable in data.variables.items():

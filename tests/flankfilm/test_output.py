@@ -84,3 +84,24 @@ def test_single_numbers_of_records_become_an_axis():
 
     found = merged([of_list("iso6336_3", "gear", (Section(1.9), Section(2.1)))], {})
     assert float(found.iso6336_3_Y_F.sel(gear="wheel")) == 2.1
+
+
+def test_a_tangent_says_so_in_files_and_keeps_its_older_name_for_one_version():
+    @record
+    class Cycle:
+        position: object = quantity("1", "base pitches from A", "position")
+        stiffness: object = quantity(
+            "N/m", "tangent stiffness", "position", error="error", called="tangent_stiffness"
+        )
+        error: float = 0.01
+
+    data = of_record("dry", Cycle(np.array([0.25, 0.75]), np.array([1e9, 2e9])))
+    assert data.dry_tangent_stiffness.attrs["error"] == 0.01
+    assert data.dry_stiffness.attrs == {
+        **data.dry_tangent_stiffness.attrs,
+        "alias_of": "dry_tangent_stiffness",
+    }
+    np.testing.assert_array_equal(data.dry_stiffness, data.dry_tangent_stiffness)
+    for given in ({"names": ("position", "tangent_stiffness")}, {"axis": "position"}):
+        found = columns(data, "dry", **given)
+        assert list(found) == ["position", "tangent_stiffness_N_per_m", "stiffness_N_per_m"]

@@ -15,8 +15,9 @@ from base import PartWarning, SolverError
 from flankfilm import cli, coupling
 from flankfilm.cache import Cache
 from flankfilm.guarded import guarded
-from flankfilm.report.contents import headlines, summary
-from flankfilm.report.run_parts import misses
+from flankfilm.output.uncertainty import Uncertainty
+from flankfilm.report.contents import headlines, misses, summary
+from flankfilm.report.page import Headline
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import DRY_CYCLE, FILM, PAIR
@@ -163,11 +164,11 @@ def test_a_row_keeps_the_outputs_that_do_not_need_what_failed(without_film):
 
 def test_an_error_above_the_tolerance_is_said(found):
     def said(error):
-        return misses(replace(found, values={**found.values, "root stress": SimpleNamespace(error=error)}))
+        return Headline("stress", "1", unit="MPa", uncertainty=Uncertainty(error, 0.3)).miss(0.005)
 
-    assert said(0.0123) == ["greatest root stress: its error of 1.2 % is above the tolerance of 0.5 %"]
-    assert said(0.004) == []
-    assert len(said(float("nan"))) == 1
+    assert said(0.0123) == "stress: its numerical error of 1.2 % is above the tolerance of 0.5 %"
+    assert said(0.004) == said(None) == ""
+    assert misses(found) == []
     torques = SimpleNamespace(converged=False, message="1e+09 N m: reduce the torque")
     run = StageRun("torques", "mesh cycles over torque", 0.1, cached=False)
     doubted = replace(found, values={**found.values, "torques": torques}, runs={**found.runs, "torques": run})

@@ -129,3 +129,43 @@ def test_the_ground_packages_load_what_draws_by_an_entry_point_alone(tmp_path):
     (about / "METADATA").write_text("Metadata-Version: 2.1\nName: drawers\nVersion: 1.0\n", encoding="utf-8")
     (about / "entry_points.txt").write_text(f"[{GROUP}]\na = flankfilm.views:register\n", encoding="utf-8")
     subprocess.run([sys.executable, "-c", ALONE.format(folder=str(tmp_path))], check=True)
+
+
+def test_a_picture_is_drawn_into_given_axes():
+    from matplotlib.figure import Figure
+
+    path = PAIR.path_of_contact(9)
+    mine = Figure()
+    axes = mine.subplots()
+    assert path.plot(ax=axes) is mine
+    assert len(axes.lines) == 3
+    assert axes.get_legend() is not None
+    cycle = ff.mesh_cycle(PAIR, torque=600.0, model="ishikawa")
+    two = Figure().subplots(2)
+    assert cycle.plot(two) is two[0].figure
+    assert all(len(panel.lines) for panel in two)
+    for wrong in (axes, [axes] * 3, "axes"):
+        with pytest.raises(InputError, match="2 axes, one for each panel"):
+            cycle.plot(ax=wrong)
+
+
+SAVED = """
+import matplotlib
+matplotlib.use("agg")
+from matplotlib import pyplot as plt
+from gears import Gear, GearPair
+from flankfilm.views import register
+register()
+pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=0.04)
+figure = pair.path_of_contact(9).plot()
+assert plt.gcf() is figure
+plt.savefig("saved.png")
+assert plt.imread("saved.png").min() < 0.5
+pair._repr_html_()
+assert len(plt.get_fignums()) == 1
+"""
+
+
+def test_pyplot_saves_the_picture_and_not_a_blank_one(tmp_path):
+    """The figure was not pyplot's, whose `savefig` wrote an empty one."""
+    subprocess.run([sys.executable, "-c", SAVED], check=True, cwd=tmp_path)

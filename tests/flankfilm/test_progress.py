@@ -9,7 +9,7 @@ import xarray as xr
 from numba import njit
 
 from base import hide_compilation
-from flankfilm.progress import compiling_line, console_progress, console_rows
+from flankfilm.progress import compiling_line, console_progress, console_rows, row_lines, rows_of
 from flankfilm.report.contents import summary
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
@@ -46,6 +46,22 @@ def test_a_log_has_a_line_for_each_tenth_of_the_rows(capsys):
     assert said(capsys.readouterr().err) == [f"{20 * tenth} of 200 rows" for tenth in range(11)]
 
 
+def test_rows_of_a_stage_are_shown_from_five_seconds_on(capsys):
+    """Every 5 s with the time left by the pace so far; what is counted next has a pace of its own."""
+    now = [0.0]
+    with console_progress() as progress:
+        rows = rows_of(progress, "sweep", lambda: now[0])
+        for done in range(1, 11):
+            now[0] += 2.0
+            rows("speeds", done, 10)
+        for done in range(1, 4):
+            now[0] += 6.0
+            rows("peaks", done, 3)
+    expected = ["3 of 10 speeds, 14", "6 of 10 speeds, 8", "9 of 10 speeds, 2"]
+    expected += ["1 of 3 peaks, 12", "2 of 3 peaks, 6", "3 of 3 peaks, 0"]
+    assert said(capsys.readouterr().err) == [f"sweep: {one} s left" for one in expected]
+
+
 def test_geometry_alone_needs_no_material_is_printed_and_written(tmp_path):
     found = run_scene(parse_scene(GEOMETRY), tmp_path, use_cache=False)
     printed = {
@@ -61,3 +77,16 @@ def test_geometry_alone_needs_no_material_is_printed_and_written(tmp_path):
         assert data.dimensions_span.values[0] == pytest.approx(7.660439e-3, abs=1e-9)
         assert data.path_specific_sliding.dims == ("path_station", "gear")
     assert "span W_k over k teeth" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_slow_rows_have_a_line_each_with_the_time_left():
+    """Of 30 rows only every third had a line, and none the time left."""
+    said: list[str] = []
+    time = iter(10.0 * row for row in range(31))
+    show = row_lines(lambda what, done, total: said.append(what), clock=time.__next__)
+    for done in range(31):
+        show(done, 30)
+    assert len(said) == 31
+    assert said[1] == "1 of 30 rows, about 5 min left"
+    assert said[29] == "29 of 30 rows, about 10 s left"
+    assert said[30] == "30 of 30 rows"

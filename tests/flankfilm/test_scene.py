@@ -146,7 +146,7 @@ def test_dynamics_alone_is_a_complete_scene():
 
 
 def test_mixed_units_of_the_oscillator_are_refused():
-    found = faults(changed("error_amplitude_um = 10", "error_amplitude_um = 10\nmean_force = 0.1"))
+    found = faults(changed("error_amplitude_um = 0", "error_amplitude_um = 10\nmean_force = 0.1"))
     assert "half_backlash" in found["dynamics"]
 
 

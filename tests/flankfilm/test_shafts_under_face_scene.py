@@ -10,7 +10,8 @@ import pytest
 from base import InputError, SolverError
 from flankfilm.cache import Cache
 from flankfilm.output.run import results_dataset, results_tables
-from flankfilm.report import face_parts
+from flankfilm.report import drive_parts, face_parts
+from flankfilm.report.text import number
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import DRY_CYCLE, PAIR
 from flankfilm.stages.drives import DRIVE
@@ -89,6 +90,29 @@ def test_a_wheel_that_overhangs_is_no_stiffer_than_an_aligned_one(overhung, alig
     drive = overhung[DRIVE]
     assert np.all(drive.natural_frequencies > 0.0)
     assert drive.rigid.series.mean > 0.0
+
+
+def test_the_drive_train_has_the_tilt_of_the_mesh_on_its_shafts(overhung):
+    """Means of the mesh cycle's matrix, in train, report and studies; a train without cells gives way to tilt."""
+    drive, matrix = overhung[DRIVE], overhung[DRY_CYCLE].contact.face.mesh_matrix.mean(axis=0)
+    place = matrix[1, 0] / matrix[0, 0]
+    assert drive.load_centre == pytest.approx(place, rel=1e-12)
+    assert drive.tilt_stiffness == pytest.approx(matrix[1, 1] - place * matrix[1, 0], rel=1e-12)
+    values = {stage.name: overhung[stage] for stage in (PAIR, DRY_CYCLE, DRIVE)}
+    data = results_dataset(overhung.scene, values)
+    for name, scale in (("tilt_stiffness_Nm_per_rad", 1.0), ("load_centre_mm", 1e3), ("tilt_change", 1.0)):
+        figure = name.removesuffix("_Nm_per_rad").removesuffix("_mm")
+        assert float(data[f"drive_{figure}"]) == getattr(drive, figure)
+        told = OUTPUTS[f"drive_{name}"].value(overhung)
+        assert told == pytest.approx(scale * getattr(drive, figure), rel=1e-12)
+    (note, *_) = drive_parts.drive(drive, data).notes
+    for words in (f"{number(drive.tilt_stiffness)} N m/rad", f"{number(1e3 * place)} mm from mid-face"):
+        assert words in note
+    plain = (OVERHUNG + SHAFTS).replace('[alignment]\ncells = 8\nface_model = "walls"\n', "")
+    without = _engine(plain)[DRIVE]
+    assert without.tilt_stiffness == without.load_centre == 0.0
+    assert 0.0 < drive.tilt_change < 0.5 * without.tilt_change
+    assert "if it bore evenly" in drive_parts.drive(without, data).notes[0]
 
 
 @pytest.mark.slow

@@ -180,3 +180,13 @@ def test_import_is_light():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.1, 0.2, 0.3])
+def test_what_rounding_leaves_of_no_backlash_is_zero(shift):
+    for teeth in range(18, 90, 5):
+        first, second = Gear(21, shift), Gear(teeth, shift)
+        distance = GearPair(first, second, 2e-3, 0.02).working_centre_distance
+        pair = GearPair(first, second, 2e-3, 0.02, centre_distance=distance)
+        assert pair.backlash == 0.0
+        assert pair.with_backlash(50e-6).with_backlash(0.0).backlash == 0.0

@@ -73,3 +73,16 @@ def test_flexibility_is_symmetric_and_definite():
 def test_a_gear_that_is_set_off_sits_where_its_own_middle_is():
     own = shaft_over_face(_shaft(0.05), Z + 0.01, 0.03).between
     np.testing.assert_allclose(shaft_over_face(_shaft(0.05), Z, 0.03, -0.01).between, own, rtol=1e-7)
+
+
+@pytest.mark.parametrize("off", [1e-17, 1e-16, -1e-15, 1e-13, 1e-11])
+def test_a_step_of_the_shaft_at_a_place_but_for_rounding(off):
+    """Two nodes as far apart as rounding made the flexibility twice as large."""
+
+    def stepped(end: float) -> np.ndarray:
+        segments = ShaftSegment(end, 0.03), ShaftSegment(0.2 - end, 0.04)
+        shaft = Shaft(segments, (Bearing(0.0, 1e9), Bearing(0.2, 1e9)), 0.1, 0.0, STEEL)
+        return shaft_over_face(shaft, np.linspace(-0.01, 0.01, 16), 0.03).between
+
+    at = 0.1 + np.linspace(-0.01, 0.01, 16)[5]
+    np.testing.assert_allclose(stepped(at + off), stepped(at), rtol=1e-8)

@@ -36,8 +36,8 @@ def bodies(pair):
 def test_vanishing_load(pair, bodies):
     """F -> 0: no tip edge reaches, and the tangent of a pair falls as 1/(own + 2/(pi E*) ln(1/F))."""
     torques = [1e-6, 1e-4, 1e-2]
-    held = fem.mesh_cycle(pair, torques, 40, bodies, beyond_path=False)
-    free = fem.mesh_cycle(pair, torques, 40, bodies)
+    held = fem.mesh_cycle(pair, torques, 40, bodies, beyond_path=False, reference="bore")
+    free = fem.mesh_cycle(pair, torques, 40, bodies, reference="bore")
     for one, two in zip(held, free, strict=True):
         np.testing.assert_allclose(two.transmission_error, one.transmission_error, rtol=1e-6)
         assert not np.any(two.forces[two.edge] > 0)
@@ -68,7 +68,7 @@ def test_three_pairs_touch_and_then_four(pair, bodies):
 
 def test_more_load_looks_farther_out(pair, bodies):
     """At 20 kN m the deflection, 0.6 mm, closes gaps beyond 0.6 base pitches: they are looked for, and found."""
-    cycle = fem.mesh_cycle(pair, 2e4, 40, bodies)
+    cycle = fem.mesh_cycle(pair, 2e4, 40, bodies, reference="bore")
     assert cycle.converged
     place = pair.points.A + (cycle.position[:, None] + cycle.pair_offset) * pair.base_pitch
     outside = np.maximum(pair.points.A - place, place - pair.points.E) / pair.base_pitch

@@ -47,7 +47,9 @@ def test_strips_as_wide_as_elements_press_as_elements_do(article_pair, monkeypat
             tip, "RESOLVED", min(0.01, 0.2 * width / article_pair.module) if width > 1e-6 else 0.01
         )
         tips = [tip.tip_strips(*both) for both in zip(rings, article_pair.teeth_profiles, strict=True)]
-        cycle = fem.mesh_cycle(article_pair, 600.0, 200, replace(bodies, tip_strips=tuple(tips)))
+        cycle = fem.mesh_cycle(
+            article_pair, 600.0, 200, replace(bodies, tip_strips=tuple(tips)), reference="bore"
+        )
         k, edge = at_pitch_point(article_pair, cycle)
         stiffness.append(k)
         force.append(edge)
@@ -60,7 +62,9 @@ def test_strips_as_wide_as_elements_press_as_elements_do(article_pair, monkeypat
 def test_a_round_edge_presses_less(article_pair):
     bodies = fem.compliance(article_pair)
     found = [
-        at_pitch_point(article_pair, fem.mesh_cycle(article_pair, 600.0, 200, bodies, tip_rounding=r))
+        at_pitch_point(
+            article_pair, fem.mesh_cycle(article_pair, 600.0, 200, bodies, tip_rounding=r, reference="bore")
+        )
         for r in (0.0, 20e-6, 50e-6)
     ]
     assert found[0][0] > found[1][0] > found[2][0]

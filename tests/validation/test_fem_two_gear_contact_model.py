@@ -21,7 +21,7 @@ def cycles(article_pair):
     bodies = fem.compliance(article_pair)
     # 200 positions: 0.1, 0.25 and so on of the base pitch lie within half an interval of a row
     return {
-        beyond: fem.mesh_cycle(article_pair, TORQUE, 200, bodies, beyond_path=beyond)
+        beyond: fem.mesh_cycle(article_pair, TORQUE, 200, bodies, beyond_path=beyond, reference="bore")
         for beyond in (False, True)
     }
 

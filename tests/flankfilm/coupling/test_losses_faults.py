@@ -53,6 +53,8 @@ def test_a_plastic_gear_is_no_steel():
             "left out beside heat_transfer",
         ),
         ({"boundary_friction": 0.7}, "boundary_friction"),
+        ({"boundary_band": (0.11, 0.2)}, "boundary_band"),
+        ({"boundary_band": 0.1}, "boundary_band"),
         ({"roughness": 4e-7}, "roughness.*ehl.Roughness"),
         ({"positions": 1}, "positions"),
         ({"tolerance": 0.0}, "tolerance"),

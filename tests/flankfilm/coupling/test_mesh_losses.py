@@ -11,6 +11,7 @@ import ehl
 import flankfilm as ff
 from base import SolverError
 from ehl import Lubricant, Roughness
+from ehl.options import PressureWarning
 from flankfilm.coupling import MeshLosses, PlacedMeniscus
 from gears import Gear, GearPair
 from gears.closed_form import ohlendorf_loss_factor
@@ -150,6 +151,37 @@ def test_rough_flanks_rub():
     assert path.film_ratio == pytest.approx(path.minimum_thickness / 0.3e-6)
     assert np.all(path.asperity_share > 0.0)
     assert smooth.mean_friction < found.mean_friction < 0.12
+    assert smooth.boundary is None
+
+
+def test_the_friction_of_asperities_has_a_band_in_the_model_error():
+    rough = Roughness(deviation=0.3e-6, density=3e11, tip_radius=4e-7)
+    given = {"roughness": rough, "boundary_friction": 0.12, "positions": 2}
+    found = losses(boundary_band=(0.09, 0.12), **given)
+    band = found.boundary
+    assert band.boundary_friction.tolist() == [0.09, 0.12]
+    assert band.mesh_loss[1] == pytest.approx(found.mesh_loss, rel=1e-9)
+    lower = losses(**{**given, "boundary_friction": 0.09})
+    assert band.mesh_loss[0] == pytest.approx(lower.mesh_loss, rel=0.01)  # load share and films stay
+    assert lower.boundary.boundary_friction == pytest.approx([0.072, 0.108])
+    part = (0.12 / 0.03) * (1.0 - band.mesh_loss[0] / found.mesh_loss)  # linear in the friction
+    assert band.loss_part == pytest.approx(part, rel=1e-9)
+    by_stress = np.max(np.abs(found.band.mesh_loss / found.mesh_loss - 1.0))
+    assert found.model_error == pytest.approx(by_stress + 0.25 * band.loss_part, rel=1e-9)
+
+
+def test_a_tolerance_that_films_do_not_reach_keeps_the_losses(found):
+    fine = losses(tolerance=1e-4, positions=2)
+    assert 1e-4 < fine.least_film_error < 0.05
+    assert fine.mesh_loss == pytest.approx(found.mesh_loss, rel=0.05)
+
+
+@pytest.mark.filterwarnings("default:Hertz pressure")
+def test_the_pressure_that_is_warned_of_is_that_of_a_contact():
+    with pytest.warns(PressureWarning) as heard:
+        found = losses(900.0, positions=2)
+    said = [str(one.message) for one in heard if "Hertz pressure" in str(one.message)]
+    assert [one.split()[2] for one in said] == [f"{1e-9 * found.path.hertz_pressure.max():.2f}"]
 
 
 @pytest.mark.slow
