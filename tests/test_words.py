@@ -16,13 +16,13 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
-PACKAGES = ("base", "gears", "meshes", "ehl", "fem", "dynamics", "flankfilm")
+PACKAGES = ("base", "gears", "meshes", "ehl", "fem", "dynamics", "flankfilm", "examples")
 
 REFUSED = {  # pattern: what to write instead
     r"\btold\b": "reported, distinguished",
     r"\btells?\b": "reports, shows",
     r"\b(comes?|came|coming) to\b": "reaches",
-    r"\bby what\b": "name it",
+    r"(?<!affected )\bby what\b": "name it",
     r"\bof (its|their|our) own\b": "separate",
     r"(?<!\bat )\bleast\b(?! common multiple)(?![- ]squares)": "minimum, smallest",
     r"\bgreatest\b(?! common divisor)": "maximum, largest",
@@ -36,8 +36,14 @@ REFUSED = {  # pattern: what to write instead
     r"\bthe turn of\b": "rotation",
     r"\bplay\b": "backlash",
 }
+REFUSED_ON_PAGES = {  # things that are not alive
+    r"\bknows?\b(?! how)": "includes, describes, depends on",
+    r"\bfeels?\b": "is affected by",
+    r"\basks? for\b": "needs, requires",
+}
 NOT_YET = frozenset((ROOT / "flankfilm" / "report").iterdir())
 WORDS = {re.compile(pattern, re.IGNORECASE): instead for pattern, instead in REFUSED.items()}
+WORDS_OF_PAGES = WORDS | {re.compile(pattern): instead for pattern, instead in REFUSED_ON_PAGES.items()}
 NAMES = re.compile(
     r"`[^`]*`|\{[^{}]*\}|^\s*(\w+, )*\w+ : "
 )  # inline code, fields of a format, documented parameters
@@ -68,11 +74,12 @@ def refused(path: Path) -> list[str]:
     if path in NOT_YET:
         return []
     text = path.read_text(encoding="utf-8")
-    lines = prose_of_code(text) if path.suffix == ".py" else prose_of_page(text)
+    code = path.suffix == ".py"
+    lines = prose_of_code(text) if code else prose_of_page(text)
     return [
         f"{path.relative_to(ROOT)}:{number}: {found[0]!r}, write: {instead}"
         for number, line in lines
-        for pattern, instead in WORDS.items()
+        for pattern, instead in (WORDS if code else WORDS_OF_PAGES).items()
         if (found := pattern.search(line))
     ]
 

@@ -1,4 +1,4 @@
-"""Which of the motions possible at one speed a pair comes to, by where it starts."""
+"""Which of the motions possible at one speed a pair reaches, by where it starts."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def draw() -> Figure:
         print(f"best of these: {1e6 * CROWNINGS[best]:.0f} um, {robust[best]:.3f}")
         factor.plot(1e6 * CROWNINGS[best], robust[best], "o", color="k", markersize=4)
         load.set(xlabel="place on the face [mm]", ylabel="line load [N/mm]")
-        factor.set(xlabel="crowning of the pinion [µm]", ylabel="greatest face-load\nfactor [-]")
+        factor.set(xlabel="crowning of the pinion [µm]", ylabel="maximum face-load\nfactor [-]")
         for axes in (load, factor):
             legend_over(axes, 3)
     return drawn

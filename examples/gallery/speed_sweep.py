@@ -16,7 +16,7 @@ SPEEDS = np.linspace(4000.0, 14000.0, 161)  # rpm of the pinion
 
 
 def draw() -> Figure:
-    """Greatest tooth force over the speed, up and down, with the speeds at which a stable motion ends."""
+    """Maximum tooth force over the speed, up and down, with the speeds at which a stable motion ends."""
     pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3, material=STEEL).with_backlash(50e-6)
     cycle = ff.mesh_cycle(pair, TORQUE)
     motion = ff.pair_oscillator(pair, cycle, TORQUE, SPEEDS[0] * RPM, error_amplitude=10e-6)
@@ -43,7 +43,7 @@ def draw() -> Figure:
             label = None if k else "jumps"
             axes.axvline(speed, color=MARK, linewidth=0.9, label=label)
         axes.axvline(lost, color=MARK, linewidth=0.9, linestyle=":", label="contact first lost")
-        axes.set(xlabel="speed of the pinion [rpm]", ylabel="greatest force over the mean force [-]")
+        axes.set(xlabel="speed of the pinion [rpm]", ylabel="maximum force over the mean force [-]")
         axes.set(xlim=(SPEEDS[0], SPEEDS[-1]), ylim=(0.0, None))
     return drawn
 

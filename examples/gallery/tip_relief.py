@@ -1,4 +1,4 @@
-"""Where the transmission error is least, over tip relief and torque."""
+"""Where the transmission error is smallest, over tip relief and torque."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def draw() -> Figure:
             markeredgecolor="k",
             markersize=5,
             clip_on=False,
-            label="least of each torque",
+            label="minimum of each torque",
         )
         axes.set(xlabel="torque of the pinion [N m]", ylabel="tip relief of both gears [µm]")
         drawn.colorbar(shades, label="transmission error, peak to peak [µm]")

@@ -137,7 +137,7 @@ def ended(end: End) -> str:
 
 
 def chaos(end: End) -> np.ndarray:
-    """A state of the chaos that a sweep from the stable motion comes to."""
+    """A state of the chaos that a sweep from the stable motion reaches."""
     scan, period = SCANS[end.section], period_of(end.label)
     here = scan.at(end.first)
     orbits = dynamics.find_orbits(here, (period,)).orbits

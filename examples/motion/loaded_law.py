@@ -81,7 +81,7 @@ class Curve:
     name : str
         Law.
     rpm, swing, highest : (m,) array
-        Pinion speed, peak-to-peak and greatest displacement [um].
+        Pinion speed, peak-to-peak and maximum displacement [um].
     stable : (m,) array of bool
         Stability.
     jumps : tuple of (float, float)
@@ -195,7 +195,7 @@ def curve(name: str, osc: GearOscillator | SmoothOscillator, given: Setting) -> 
 
 
 def extent(osc: GearOscillator | SmoothOscillator, frequency: float, state: Array) -> tuple[float, float]:
-    """Least and greatest X of the motion of period 1 through a state."""
+    """Minimum and maximum X of the motion of period 1 through a state."""
     here = osc.with_parameter("frequency", float(frequency))
     if isinstance(here, SmoothOscillator):
         events = dynamics.period_map(here, state, extrema=True, tolerance=1e-8).events
@@ -234,14 +234,14 @@ def figure(given: Setting, curves: Sequence[Curve], order: int) -> Figure:
 
 
 def summary(given: Setting, curves: Sequence[Curve], order: int) -> str:
-    """Jump speeds, greatest swings, and what differs."""
+    """Jump speeds, maximum swings, and what differs."""
     lines = [f"{order} harmonic(s)"]
     for one in curves:
         jumps = ", ".join(f"{speed:.0f}" for speed, _ in one.jumps) or "none"
         steady = np.where(one.stable, one.swing, -np.inf)
         peak = int(np.argmax(steady))
         lines.append(
-            f"  {one.name:10s} jumps at {jumps} rpm; greatest stable swing {one.swing[peak]:.1f} um at "
+            f"  {one.name:10s} jumps at {jumps} rpm; maximum stable swing {one.swing[peak]:.1f} um at "
             f"{one.rpm[peak]:.0f} rpm, contact {one.highest[peak] - 1e6 * given.play:.0f} um deep; "
             f"{one.branch.message}"
         )
@@ -254,7 +254,7 @@ def summary(given: Setting, curves: Sequence[Curve], order: int) -> str:
 
 
 def lowest_branch(one: Curve, rpm: float) -> tuple[Array, Array]:
-    """The two neighbours of a speed between which the stable swing is least."""
+    """The two neighbours of a speed between which the stable swing is smallest."""
     between = (one.rpm[:-1] - rpm) * (one.rpm[1:] - rpm) <= 0.0
     good = np.flatnonzero(between & one.stable[:-1] & one.stable[1:])
     if not good.size:

@@ -59,10 +59,10 @@ class AlignmentSection(Section):
         limit=TOLERANCE,
         such_as=10,
     )
-    cells: int = key("equal cells of the face that bear apart, an even number", USUAL, of=None, limit=CELLS)
+    cells: int = key("number of equal cells of the face, an even number", USUAL, of=None, limit=CELLS)
     face_model: Literal["free-ends", "walls", "slices"] = key(
         "what couples the cells: gears with free ends; gears between frictionless walls, quicker and too stiff "
-        "at the ends; nothing but the common approach, which bears too evenly",
+        "at the ends; slices coupled by the common approach only, which share the load too evenly",
         FREE_ENDS,
         of=None,
     )

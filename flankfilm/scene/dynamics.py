@@ -145,7 +145,7 @@ class DynamicsSection(Section):
         such_as="bore",
     )
     damping_ratio: Annotated[float, within(_DAMPING)] | Literal["film"] = key(
-        'damping of the mesh over the critical one, or "film": what its oil films damp, and nothing else',
+        'damping of the mesh over the critical one, or "film": the damping of its oil films alone',
         0.05,
         shown=True,
     )
@@ -191,7 +191,7 @@ class DynamicsSection(Section):
         "dimensionless amplitude of the transmission error, or a list of its harmonics", None, such_as=0.2
     )
     half_backlash: float | None = key("dimensionless half of the backlash", None, such_as=0.2)
-    one_sided: bool = key("whether there is no second flank, as with much backlash", False, shown=True)
+    one_sided: bool = key("whether the back flank never touches, as with large backlash", False, shown=True)
     sweep: SweepSection | None = key(
         "range of the wanted sweep up and down", None, example={"speed_rpm": (500, 30000), "points": 400}
     )

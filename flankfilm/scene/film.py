@@ -78,7 +78,8 @@ class LubricantSection(Section):
         "grade instead of the numbers above: viscosity at 40 degC in mm2/s", None, of="vg", such_as=100
     )
     temperature_C: float | None = key(
-        "temperature of the oil, required of a graded one; flanks have it too unless [heat] gives the gears theirs",
+        "temperature of the oil, required of a graded one; also of the flanks unless [heat] gives the gears' "
+        "temperatures",
         None,
         celsius="temperature",
         such_as=60,
@@ -95,7 +96,7 @@ class LubricantSection(Section):
         "density of a graded oil at 15 degC; typical of the base if left out", None, such_as=880
     )
     viscosity_slope_per_K: float | None = key(
-        "fall of the viscosity's logarithm with the temperature; if left out 0.04, or by ASTM D341 of a graded oil",
+        "decrease of the logarithm of viscosity per kelvin; if left out 0.04, or by ASTM D341 of a graded oil",
         None,
         such_as=0.04,
     )
@@ -172,7 +173,7 @@ class RoughnessSection(Section):
         example=0.4,
     )
     wheel_Ra_um: float | None = key(
-        "mean roughness Ra of the wheel's flanks, where it is another", None, of="mean", such_as=0.8
+        "mean roughness Ra of the wheel's flanks, if different", None, of="mean", such_as=0.8
     )
     Rz_um: float | None = key(
         "mean peak-to-valley height Rz of each flank, instead of Ra; of the pinion's alone beside wheel_Rz_um",
@@ -181,7 +182,7 @@ class RoughnessSection(Section):
         such_as=2.4,
     )
     wheel_Rz_um: float | None = key(
-        "the same of the wheel's flanks, where it is another", None, of="peaks", such_as=4.8
+        "the same of the wheel's flanks, if different", None, of="peaks", such_as=4.8
     )
     sigma_um: float | None = key(
         "standard deviation of heights, both flanks together, instead of Ra and Rz",
@@ -198,7 +199,7 @@ class RoughnessSection(Section):
         "radius of the asperities' tips; a thousand times sigma if left out", None, such_as=700
     )
     law: Literal["greenwood-tripp", "greenwood-williamson", "zhu-hu"] | None = key(
-        "what shares the load: elastic asperities of two rough flanks or of one, or the film ratio; "
+        "rule that shares the load: elastic asperities of two rough flanks or of one, or the film ratio; "
         "zhu-hu unless given, greenwood-tripp beside density_per_mm2 or tip_radius_um",
         None,
         such_as="greenwood-tripp",
@@ -255,7 +256,7 @@ class FilmSection(Section):
     }
 
     model: Literal["ehl", "dowson", "none", "auto"] = key(
-        "by the film's equations, by formulas, left out, or left out where it changes less than the tolerance",
+        "solved, by formulas, left out, or left out where it changes less than the tolerance",
         "auto",
         example="ehl",
     )
@@ -271,7 +272,7 @@ class FilmSection(Section):
         example="approach",
     )
     supply: Literal["flooded", "meniscus", "oil-layer"] = key(
-        "oil at the inlet, what stays as the load changes", "flooded", shown=True
+        "oil at the inlet: the quantity that is constant when the load changes", "flooded", shown=True
     )
     meniscus_mm: float | None = key(
         "where the gap fills, ahead of the contact's middle, for a supply by meniscus", None, such_as=0.3

@@ -162,7 +162,7 @@ class DeviationsSection(Section):
         such_as={"roll_deg": (10.0, 28.0), "material_um": (0.0, -10.0)},
     )
     traces: TracesSection | None = key(
-        "measured profile of each tooth instead; one base pitch knows their mean, the revolution every tooth",
+        "measured profile of each tooth instead; one base pitch uses their mean, the revolution every tooth",
         None,
         such_as={"file": "pinion_traces.csv"},
     )

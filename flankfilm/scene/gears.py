@@ -89,7 +89,7 @@ class HubSection(Section):
         "stiffness of bearings and shaft along the line of action; rigid if left out", None, such_as=5e8
     )
     torsional_stiffness_Nm_per_rad: float | None = key(
-        "stiffness of the shaft against turning; rigid if left out", None, such_as=1e6
+        "torsional stiffness of the shaft; rigid if left out", None, such_as=1e6
     )
     hub_mm: float | None = key(
         "diameter of the rigid hub, larger than the bore; the bore's if left out",
@@ -128,7 +128,7 @@ class GearSection(Section):
     tip_relief: ReliefSection | None = key("material removed towards the tip; none if left out", None)
     tip_chamfer_mm: float = key("height of a chamfer of 45 degrees at the tip's edges", 0.0)
     tip_rounding_um: float = key(
-        "radius of the tip's edges, where they touch; the finite elements' own if left out",
+        "rounding radius of the tip edges that touch; the default of the finite elements if left out",
         0.0,
         of=None,
         limit=Limit(0.0, 0.05, "m"),
@@ -179,7 +179,7 @@ class GearSection(Section):
         such_as={"roll_deg": (10.0, 20.0, 28.0), "depth_um": (12.0, 0.0, 5.0)},
     )
     hub: HubSection | None = key(
-        "rigid hub on a shaft and bearings that yield; a rigid shaft in the bore if left out",
+        "rigid hub on an elastic shaft and bearings; a rigid shaft in the bore if left out",
         None,
         of="support",
         such_as={"hub_mm": 40.0, "radial_stiffness_N_per_m": 5e8},
@@ -225,8 +225,8 @@ class PairSection(Section):
         example=50,
     )
     centre_distance_mm: float | None = key(
-        "distance of the axes, if not by the backlash, which then follows; one that is short of no backlash by a "
-        "rounded digit, up to 0.002 modules, is taken for that of none",
+        "distance of the axes instead of the backlash, which then follows; one that is too short for zero backlash"
+        " by a rounded digit, up to 0.002 modules, is taken for that of none",
         None,
         such_as=76.0,
     )

@@ -65,14 +65,14 @@ class HeatSection(Section):
         "coefficient of linear expansion of the housing; steel if left out", 11.5e-6, such_as=23e-6
     )
     heat_transfer_W_per_K: HeatTransfer | None = key(
-        "heat transfer coefficient times area of each gear, instead of the gears' temperatures: flanks are then as "
-        "warm as takes away the losses of the mesh, and gears do not grow",
+        "heat transfer coefficient times area of each gear, instead of the gears' temperatures: flanks then reach "
+        "the temperature that removes the losses of the mesh, and gears do not grow",
         None,
         of=None,
         such_as={"pinion": 10.0, "wheel": 12.0},
     )
     ambient_temperature_C: float | None = key(
-        "temperature of what takes this heat, oil and air in the housing; the oil's if left out",
+        "temperature of the oil and air in the housing that take this heat; the oil's if left out",
         None,
         celsius="ambient_temperature",
         such_as=60.0,

@@ -19,7 +19,7 @@ class ElasticSection(Section):
     ground = MATERIAL
 
     name: str | None = key(
-        "of the list of materials, of which the other keys change single constants",
+        "name in the list of materials; the other keys change single constants",
         None,
         of=None,
         such_as="steel",
@@ -70,7 +70,7 @@ class MaterialSection(Section):
     ground = MATERIAL
 
     name: str | None = key(
-        "of both gears in the list of materials, of which the next keys change single constants",
+        "name of both gears' material in the list of materials; the next keys change single constants",
         None,
         of=None,
         such_as="steel 16MnCr5",

@@ -65,7 +65,8 @@ class OperatingSection(Section):
         such_as=125,
     )
     friction: float = key(
-        "coefficient of friction, which tilts the forces against the sliding; wanted losses find their own beside it",
+        "coefficient of friction, which tilts the forces against the sliding; wanted losses compute their friction"
+        " separately",
         0.0,
         such_as=0.05,
     )
@@ -138,7 +139,7 @@ class StiffnessSection(Section):
         "whether loaded teeth may touch outside A..E with their tip edges", True, shown=True
     )
     moving_contact: bool | None = key(
-        "whether contacts of coupled finite elements move along the flanks under load; those of plastics if left out",
+        "whether the deflection shifts the contacts of coupled finite elements along the flanks; plastics if left out",
         None,
         such_as=True,
     )

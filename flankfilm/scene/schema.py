@@ -84,13 +84,13 @@ class Scene(Section):
 
     title: str = key("title of the report", "", example="A spur-gear pair", max_length=200)
     wants: Annotated[tuple[Want, ...], Field(strict=False)] = key(
-        "what to compute, any of these; nothing else is computed",
+        "results to compute, any of these; nothing else is computed",
         example=("stiffness", "film", "sweep", "vtk", "report"),
         min_length=1,
         max_length=20,
     )
     tolerance: Annotated[float, BeforeValidator(parse_tolerance)] = key(
-        'relative, on the wanted figures, also as "0.5%"; the report says how it was split',
+        'relative error allowed for the wanted figures, also as "0.5%"; the report shows how it was split',
         0.005,
         limit=TOLERANCE,
         shown=True,
@@ -107,9 +107,7 @@ class Scene(Section):
         None,
     )
     operating: OperatingSection | None = key("Load and speed", None, shown=True)
-    lubricant: LubricantSection | None = key(
-        "Oil: by its numbers, or by its grade and temperature", None, shown=True
-    )
+    lubricant: LubricantSection | None = key("Oil: properties, or grade and temperature", None, shown=True)
     roughness: RoughnessSection | None = key(
         "Rough flanks make the film mixed: asperities carry a share of the load; smooth if left out", None
     )

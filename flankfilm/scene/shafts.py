@@ -189,19 +189,18 @@ class ShaftsSection(Section):
     )
     damping_ratio: Annotated[tuple[Annotated[float, within(RATIO)], ...], Field(strict=False)] = key(
         "modal damping of shafts, bearings and couplings without the mesh over the critical one: of all modes, or "
-        "a list from the lowest mode on, of which the last holds for all above; dampers of bearings come on top",
+        "a list from the lowest mode on, of which the last holds for all higher modes; dampers of bearings are added",
         ONE_RATIO,
         such_as=0.01,
         min_length=1,
     )
     damping_band: Band = key(
-        "minimum and maximum damping of shafts and bearings that is likely, over the given one: counts in the error "
-        "of peaks",
+        "likely minimum and maximum damping of shafts and bearings over the given one, for the error of peaks",
         DAMPING_BAND,
     )
     reduction_tolerance: float = key(
-        "what modes of shafts that are not retained may change of the swing of a force, within the speeds that are "
-        "looked at",
+        "allowed change of the swing of a force by modes of shafts that are not retained, within the speeds of the"
+        " scene",
         0.05,
         limit=TOLERANCE,
     )
