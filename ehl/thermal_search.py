@@ -181,7 +181,7 @@ class Search:
     def _refine(self, base: Level, old: Neighbour | None, nodes: int | None) -> Compared | None:
         """Double the grid until the estimate meets what is asked; a grid that fails is passed over.
 
-        Where no grid meets it the two that differ smallest are given back, with what they differ by.
+        Where no grid meets it the two that differ by the smallest amount are given back, with what they differ by.
         """
         sizes = [_MOST_NODES if nodes is None else nodes]
         while (

@@ -19,7 +19,9 @@ def draw() -> Figure:
     pair = pair.with_backlash(0.2e-3)
     bodies = fem.compliance(pair)
     moving, staying = (
-        fem.mesh_cycle(pair, TORQUES, positions=200, compliance=bodies, moving_contact=moves)
+        fem.mesh_cycle(
+            pair, TORQUES, positions=200, compliance=bodies, moving_contact=moves, reference="bore"
+        )
         for moves in (True, False)
     )
     scale = 1e-9 / pair.face_width  # N/m to N/(mm um)

@@ -16,7 +16,7 @@ from flankfilm.bench.tables import HEADS, clock, known_ratios, number, summaries
 from flankfilm.figures import bench as figures
 from flankfilm.figures.style import to_svg
 from flankfilm.output.files import write_text
-from flankfilm.report.page import Drawing, Fact, Headline, Part, Table, render
+from flankfilm.report.page import Drawing, Fact, Head, Headline, Part, Table, render
 
 LEAD = (
     "Processor time and relative error of every solver on this machine: true errors against the finest solution, "
@@ -43,7 +43,7 @@ def write_page(found: Bench, folder: Path) -> list[Path]:
         _machine(found),
     ]
     paths.append(folder / "report.html")
-    write_text(paths[-1], render("Error against cost", [Fact(LEAD)], _headlines(found), parts))
+    write_text(paths[-1], render(Head("Error against cost", [Fact(LEAD)], _headlines(found)), parts))
     return paths
 
 

@@ -1,4 +1,4 @@
-"""Errors of the smallest and the largest of values that have errors."""
+"""Errors of the minimum and the maximum of values that have errors."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from base import Array
 
 
 def of_greatest(values: Array, errors: Array) -> float:
-    """Relative error of the largest of positive values, by the relative errors of all; 0 where all are 0.
+    """Relative error of the maximum of positive values, by the relative errors of all; 0 where all are 0.
 
-    The largest is off as the values near it are: one that is small may err by far more.
+    The maximum is off as the values near it are: one that is small may err by far more.
 
     Examples
     --------
@@ -25,7 +25,7 @@ def of_greatest(values: Array, errors: Array) -> float:
 
 
 def of_least(values: Array, errors: Array) -> float:
-    """Relative error of the smallest of positive values, by the relative errors of all.
+    """Relative error of the minimum of positive values, by the relative errors of all.
 
     Examples
     --------

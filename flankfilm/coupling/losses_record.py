@@ -184,5 +184,5 @@ class MeshLosses:
 
 
 def _farthest(ends: Array, value: float) -> float:
-    """Largest relative difference of the ends of a band from a value."""
+    """Maximum relative difference of the ends of a band from a value."""
     return float(np.max(np.abs(ends - value))) / abs(value) if value else 0.0

@@ -97,6 +97,14 @@ class SpeedSweep:
     spread: Mapping[str, Array] = quantity(
         "1", "root mean square of the displacement about its mean", "frequency", error="sampling_error"
     )
+    operating_frequency: float = quantity(
+        "1", "mesh frequency over natural frequency of the oscillator at its own speed", no_error=SCALED
+    )
+    operating_force_factor: float = quantity(
+        "1",
+        "maximum force over the mean force at that speed, the motion settled from rest in contact",
+        error="sampling_error",
+    )
     sampling_error: float = quantity(
         "1", "largest relative change of force and spread with half as many samples of a period"
     )
@@ -189,13 +197,15 @@ def speed_sweep(
     (['1-0-0', '1-1-0', '1-1-1'], 0.6335)
     """
     with unclocked():
-        from dynamics import contact_grazing
+        from dynamics import contact_grazing, sweep
         from dynamics.up_and_down import up_and_down
     watch = Stopwatch()
     values, speeds = frequencies_of(motion, speed, frequency)
     oscillator = motion.oscillator
     found = up_and_down(oscillator, "frequency", values)
     grazing = contact_grazing(oscillator, "frequency", (float(values[0]), float(values[-1])))
+    settled = sweep(oscillator, "frequency", [oscillator.frequency])
+    operating = vibrations(oscillator, settled)
     solved: list[Result] = [*found.values(), grazing]
     shaken = {direction: vibrations(oscillator, result) for direction, result in found.items()}
     touched = grazing.columns()
@@ -220,7 +230,9 @@ def speed_sweep(
         force_factor={direction: one.force for direction, one in shaken.items()},
         separated={direction: one.separated for direction, one in shaken.items()},
         spread={direction: one.spread for direction, one in shaken.items()},
-        sampling_error=max(one.change for one in shaken.values()),
+        operating_frequency=oscillator.frequency,
+        operating_force_factor=float(operating.force[0]),
+        sampling_error=max(one.change for one in (*shaken.values(), operating)),
         grazing_budget=_first_loss(motion, touched, left_out, grazing.error),
         longer_order=None if longer is None else longer.order,
         grazing_error=left_out,

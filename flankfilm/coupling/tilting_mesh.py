@@ -40,7 +40,7 @@ def resistance_and_place(matrix: Array) -> tuple[Array, Array]:
 
 
 def change_over_cycle(train: Train, squares: Array, modes: Array, matrix: Array, place: float) -> float:
-    """Largest relative change of a natural frequency by the tilt and place of the mesh at one position of its cycle.
+    """Maximum relative change of a natural frequency by the tilt and place of the mesh at one position of its cycle.
 
     Parameters
     ----------

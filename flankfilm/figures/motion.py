@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base import Array
 from flankfilm.figures.panels import beside
 from flankfilm.figures.reading import Reading, need, read
 from flankfilm.figures.style import COLOURS, MARK, Style, colours, from_zero, legend_over, sheet
@@ -201,16 +202,13 @@ def diagram(results: xr.Dataset, *, style: Style | None = None) -> Figure:
 
 def _branches(axes: Axes, results: xr.Dataset) -> None:
     colour = colours(1)[0]
-    number, stable = (results[f"diagram_{name}"].values for name in ("branch", "stable"))
-    values, x = over_speed(results, "diagram").values, read(results, "diagram_displacement")
-    length = scale(results, "length")
-    for branch in np.unique(number):
-        mine = number == branch
+    x, length = read(results, "diagram_displacement"), scale(results, "length")
+    for values, heights, stable in _curves_of_branches(results):
         for wanted, dash, width in ((True, "-", 1.4), (False, "--", 0.6)):
-            keep = stable[mine].astype(bool) == wanted
+            keep = stable == wanted
             keep[1:] |= keep[:-1].copy()
-            height = np.where(keep, float(length.values) * x.values[mine], np.nan)
-            axes.plot(values[mine], height, dash, color=colour, linewidth=width)
+            height = np.where(keep, float(length.values) * heights, np.nan)
+            axes.plot(values, height, dash, color=colour, linewidth=width)
     kinds = results["special_kind"].values
     for kind, (mark, shade) in MARKS.items():
         mine = kinds == kind
@@ -220,6 +218,19 @@ def _branches(axes: Axes, results: xr.Dataset) -> None:
     axes.set(ylabel=length.named(x.meaning))
     if length.unit != "-":
         beside(axes, float(length.values), "over the length scale [-]")
+
+
+def _curves_of_branches(results: xr.Dataset) -> Iterator[tuple[Array, Array, Array]]:
+    """Place, displacement and stability along every branch, and again at each further period of its orbits."""
+    for prefix, further in (("diagram", ()), ("return", ("periods",))):
+        if f"{prefix}_displacement" not in results or results[f"{prefix}_displacement"].size == 0:
+            continue
+        values, x = over_speed(results, prefix).values, read(results, f"{prefix}_displacement").values
+        stable = results[f"{prefix}_stable"].values.astype(bool)
+        which = np.array([results[f"{prefix}_{name}"].values for name in ("branch", *further)])
+        for one in np.unique(which, axis=1).T:
+            mine = np.all(which == one[:, None], axis=0)
+            yield values[mine], x[mine], stable[mine]
 
 
 def _forces(axes: Axes, results: xr.Dataset) -> None:

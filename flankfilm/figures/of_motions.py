@@ -61,21 +61,35 @@ def branch(found: dynamics.Branch) -> Figure:
 
 
 def branches(found: dynamics.Diagram) -> Figure:
-    """Draw all branches of a diagram."""
-    return _branches(found.branches, found.parameter)
+    """Draw all branches of a diagram, orbits of several periods at the start of each."""
+    return _branches(found.branches, found.parameter, further=_returns(found))
+
+
+def _returns(found: dynamics.Diagram) -> Array:
+    """Points of orbits of several periods after each; none for trains, whose states are drawn."""
+    from dynamics.returns import returns
+
+    return returns(found) if found.oscillator.is_exact else np.empty((0, 6))
 
 
 def _branches(
-    found: Sequence[dynamics.Branch], parameter: str, mark: Callable[[Axes], None] = lambda axes: None
+    found: Sequence[dynamics.Branch],
+    parameter: str,
+    mark: Callable[[Axes], None] = lambda axes: None,
+    further: Array | None = None,
 ) -> Figure:
     with sheet(None, height=3.6, legend=4) as (drawn, (axes,)):
         kinds: dict[str, list[tuple[float, float]]] = {}
-        for one in found:
-            x, y = one.values, one.states[:, 0]
+        pieces = [(one.values, one.states[:, 0], np.asarray(one.stable)) for one in found]
+        if further is not None and len(further):
+            for which in np.unique(further[:, :2], axis=0):
+                rows = further[np.all(further[:, :2] == which, axis=1)]
+                pieces.append((rows[:, 2], rows[:, 3], rows[:, 5].astype(bool)))
+        for x, y, settled in pieces:
             for stable, dash in ((True, "-"), (False, "--")):
                 # a point of the other kind ends each piece
-                kept = np.where(np.asarray(one.stable) == stable, y, np.nan)
-                axes.plot(x, kept, linestyle=dash, color=colours(1)[0])
+                axes.plot(x, np.where(settled == stable, y, np.nan), linestyle=dash, color=colours(1)[0])
+        for one in found:
             for point in one.points:
                 kinds.setdefault(point.kind, []).append((point.parameter, float(point.state[0])))
         for (kind, places), colour, marker in zip(
@@ -199,4 +213,4 @@ def speed_diagram(found: SpeedDiagram) -> Figure:
             if np.isfinite(error):
                 axes.axvspan(at * (1.0 - error), at * (1.0 + error), color="#dddddd")
 
-    return _branches(found.diagram.branches, found.diagram.parameter, jumps)
+    return _branches(found.diagram.branches, found.diagram.parameter, jumps, _returns(found.diagram))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base.results import EXACT, ITSELF
+from dynamics.returns import returns
 from flankfilm.output.variables import figure_of, of_quantities
 from gears.closed_form.record import STANDARD
 
@@ -26,6 +27,9 @@ LONGER = "not estimated: of the longer series that the truncation of jumps is me
 
 COLUMNS: Mapping[str, tuple[str, str]] = {
     "branch": ("i8", "branch of periodic motions"),
+    "periods": ("i8", "whole mesh periods after tau = 0, of an orbit of several periods"),
+    "return_displacement": ("f8", "displacement at the start of that period"),
+    "return_velocity": ("f8", "velocity at the start of that period"),
     "kind": ("U16", "kind of special point"),
     "motion": ("U24", "motion n-p-q"),
     "frequency": ("f8", "mesh frequency over natural frequency"),
@@ -47,7 +51,7 @@ COLUMNS: Mapping[str, tuple[str, str]] = {
 """Type and meaning of the columns; all numbers are pure."""
 
 REASONS: Mapping[str, str] = {
-    **dict.fromkeys(("branch", "stable"), EXACT),
+    **dict.fromkeys(("branch", "stable", "periods"), EXACT),
     **dict.fromkeys(("error", *(f"error_by_{source}" for source in SOURCES)), ITSELF),
     "longer_frequency": LONGER,
     "factor_iso6336": STANDARD,
@@ -83,11 +87,13 @@ def branch_tables(found: SpeedDiagram) -> list[xr.Dataset]:
         )
 
     points, special = map(tuple, found.diagram.columns().tolist()), (row[:5] for row in found.diagram.table())
+    further = map(tuple, returns(found.diagram).tolist())
     stable = ((stretch.label, stretch.low, stretch.high) for stretch in found.stable)
     forces = zip(found.force_frequency, found.force_factor, found.force_factor_iso6336, strict=True)
     errors = " ".join(f"error_by_{source}" for source in SOURCES)
     return [
         table("diagram", "point", "branch frequency displacement velocity stable", points),
+        table("return", "point", "branch periods frequency displacement velocity stable", further),
         table("special", "point", "branch kind frequency motion displacement", special),
         table(
             "jump",

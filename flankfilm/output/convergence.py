@@ -25,7 +25,7 @@ STAGES: Mapping[str, str] = {
     "run_up": "run-up",
     "dynamic_map": "dynamic-map",
     **dict.fromkeys(("sweep", "portrait"), "sweep"),
-    **dict.fromkeys(("diagram", "special", "jump", "missed", "stable", "force"), "diagram"),
+    **dict.fromkeys(("diagram", "return", "special", "jump", "missed", "stable", "force"), "diagram"),
     "field": "fields",
 }
 """Stage that the variables of each prefix are of; those of the geometry alone are of none."""

@@ -185,6 +185,7 @@ TABLES: Mapping[str, Table] = {
     ),
     "resonance": Table("sweep", "force_factor_up", RESONANCE),
     "diagram": Table("diagram", "frequency", axis="point"),
+    "diagram_returns": Table("return", "frequency", axis="point"),
     "special_points": Table("special", "frequency", axis="point"),
     "jumps": Table("jump", "frequency", axis="jump"),
     "missed_jumps": Table("missed", "frequency", axis="jump"),

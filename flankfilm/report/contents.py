@@ -21,7 +21,7 @@ from flankfilm.report import (
     run_parts,
     speed_parts,
 )
-from flankfilm.report.page import Fact, Headline, Part, said, write_page
+from flankfilm.report.page import Fact, Head, Headline, Part, said, write_page
 from flankfilm.report.text import counted, percent, seconds
 
 if TYPE_CHECKING:
@@ -46,6 +46,23 @@ HEADLINES: Mapping[str, Callable[[Any], list[Headline]]] = {
     "dynamic-map": speed_parts.map_headlines,
 }
 """Stages with numbers for the page's head, after those of the mesh cycle."""
+
+OF_CYCLE = (2, 2, 2)
+"""Ranks of the figures of a mesh cycle."""
+
+RANKS: Mapping[str, tuple[int, ...]] = {
+    "film": (1,),
+    "losses": (2,),
+    "root stress": (1,),
+    "sweep": (2, 2),
+    "drive sweep": (2, 2),
+    "diagram": (2,),
+    "dynamic-map": (2,),
+}
+"""Ranks on the page of the first figures of each stage; the others follow."""
+
+PRESSED = {"stiffness", "film", "root-stress"}
+"""Wants of a scene that the contact pressure matters to."""
 
 PARTS: Mapping[str, Callable[[Any, xr.Dataset], Part]] = {
     "torques": mesh_parts.over_torque,
@@ -89,11 +106,18 @@ def _headlines(results: Results) -> list[Headline]:
     shown = [] if cycle is None else mesh_parts.headlines(cycle, values["pair"].face_width)
     if _film_failed(results):  # a figure of dry teeth is none of lubricated ones
         shown = [replace(one, name=f"{one.name}, without the film") for one in shown]
+    shown = _ranked(shown, OF_CYCLE)
+    dry: MeshCycle | None = values.get("dry cycle")
+    if dry is not None and dry.contact is not None and PRESSED & set(results.scene.wants):
+        shown += _ranked(mesh_parts.pressure_headlines(dry.contact, values.get("closed forms")), (1,))
     if (bears := _over_face(results)) is not None:
-        shown += face_parts.headlines(bears)
+        shown += _ranked(face_parts.headlines(bears), (1,))
     for name, numbers in HEADLINES.items():
         if (found := values.get(name)) is not None:
-            shown += numbers(found)
+            shown += _ranked(numbers(found), RANKS.get(name, ()))
+    operating = results.scene.operating
+    if "sweep" in values and operating is not None and operating.pinion_speed_rpm is not None:
+        shown += _ranked(motion_parts.operating_headlines(values["sweep"]), (2,))
     if "losses" in values:
         shown = [
             replace(one, name=f"{one.name}, isothermal") if one.name == film_parts.LEAST else one
@@ -101,6 +125,13 @@ def _headlines(results: Results) -> list[Headline]:
         ]
     pair = values.get("pair")
     return shown if shown or pair is None else pair_parts.headlines(pair)
+
+
+def _ranked(headlines: list[Headline], ranks: tuple[int, ...]) -> list[Headline]:
+    """Give the first figures of a stage their ranks on the page."""
+    return [replace(one, rank=rank) for one, rank in zip(headlines, ranks, strict=False)] + headlines[
+        len(ranks) :
+    ]
 
 
 def summary(results: Results) -> list[str]:
@@ -152,7 +183,15 @@ def write_report(results: Results, folder: Path) -> Path:
         *run_parts.decisions(results, misses(results)),
         run_parts.inputs(_asked(scene), results.dataset.attrs["versions_json"]),
     ]
-    return write_page(folder, scene.title or "flankfilm", _facts(results), headlines(results), parts)
+    drawing = None if results.values.get("pair") is None else pair_parts.drawing(results.dataset)
+    head = Head(
+        scene.title or "flankfilm",
+        _facts(results),
+        headlines(results),
+        run_parts.warnings(results, misses(results)),
+        drawing,
+    )
+    return write_page(folder, head, parts)
 
 
 def _asked(scene: Scene) -> dict[str, Any]:
@@ -175,10 +214,6 @@ def _facts(results: Results) -> list[Fact]:
             at = [f"{value:g} {unit}" for unit, value in asked.items() if value is not None]
             facts.append(Fact("pinion: " + ", ".join(at)))
     facts.append(Fact(f"tolerance {percent(scene.tolerance)}, {seconds(results.seconds)}", "costs"))
-    if count := len(misses(results)):
-        facts.append(Fact(f"{counted(count, 'figure')} beyond the tolerance, or in doubt", "decisions"))
-    if count := len({text for run in results.runs.values() for text in run.warnings}):
-        facts.append(Fact(counted(count, "warning"), "decisions"))
     return facts
 
 

@@ -65,7 +65,7 @@ def stiffness(
     shown = ["mesh_stiffness", "load_share", "transmission_error"]
     tables = [_cycles(cycles, face_width), _harmonics(cycles[0])]
     if single is not None:
-        shown.insert(0, "single_pairs")
+        shown.append("single_pairs")
         tables += [iso_table(single.iso), contact_table(single.contact, cycles[0].contact)]
     drawn = pictures(results, *shown, model=cycles[0].label)
     notes = (said(f"reference_{cycles[0].reference}"), *changes, said("closed_forms"))
@@ -203,6 +203,18 @@ def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
     shown.append((lag, f"{float(error.values):.3g}", "peak to peak", error.unit))
     names = ("mean_secant_stiffness", "mean_stiffness", "transmission_error_range")
     return [Headline(*one, uncertainty(cycle, name)) for one, name in zip(shown, names, strict=True)]
+
+
+def pressure_headlines(loaded: fem.MeshCycle, single: SinglePairs | None) -> list[Headline]:
+    """Greatest Hertz pressure of two flanks beside the nominal contact stresses of ISO 6336-2."""
+    pressure = read_figure(loaded, "hertz_pressure")
+    if not np.isfinite(pressure.values).any():
+        return []
+    note = "of the positions computed, without tip edges, error unknown"
+    if single is not None:
+        note += f"; ISO 6336-2 nominal {' and '.join(f'{1e-6 * one:.4g}' for one in single.contact.stresses)}"
+    greatest = number(float(np.nanmax(pressure.values)), 4)
+    return [Headline("maximum Hertz pressure", greatest, note, pressure.unit)]
 
 
 def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 LONGEST = 40
 """Stable ranges listed; the data files hold all."""
 
+COEXISTS = 1.1
+"""Ratio of forces from which the sweeps met another motion than the one from rest, or a resonance beside it."""
+
 NEGLIGIBLE = 0.01
 """Part of an error below which what it is made of is not named."""
 
@@ -104,7 +107,7 @@ def film_damping(stage: FilmDamping, _: xr.Dataset) -> Part:
 
 def sweep(stage: SpeedSweep, results: xr.Dataset) -> Part:
     """Draw the sweeps and portraits."""
-    drawn = pictures(results, "sweep", "resonance", *(["portraits"] if stage.portraits else []))
+    drawn = pictures(results, "resonance", "sweep", *(["portraits"] if stage.portraits else []))
     notes = []
     if stage.grazings.size:
         at = "omega = " + ", ".join(f"{g:.6g}" for g in stage.grazings)
@@ -212,6 +215,20 @@ def _greatest(stage: SpeedSweep) -> list[Headline]:
 def _finite(error: float | None) -> float | None:
     """Error where it is known."""
     return None if error is None or not np.isfinite(error) else float(error)
+
+
+def operating_headlines(stage: SpeedSweep) -> list[Headline]:
+    """Dynamic factor at the operating speed, and what the sweeps meet beside it where motions coexist."""
+    factor, at, rpm = stage.operating_force_factor, stage.operating_frequency, _speed(stage)
+    if rpm is None or not np.isfinite(factor):
+        return []
+    note = f"at {rpm * at:.0f} rpm, settled from rest"
+    name, beside = "dynamic factor at the operating speed", np.searchsorted(stage.frequency, at)
+    if 0 < beside < len(stage.frequency):
+        met = np.array([*stage.force_factor.values()])[:, beside - 1 : beside + 1]
+        if np.nanmax(met, initial=0.0) > COEXISTS * factor:
+            note += f"; sweeps meet up to {np.nanmax(met):.3g} beside that speed"
+    return [Headline(name, f"{factor:.4g}", note, "", Uncertainty(stage.sampling_error))]
 
 
 def _speed(stage: SpeedSweep) -> float | None:

@@ -21,7 +21,7 @@ from flankfilm.figures.studies import varied_numbers
 from flankfilm.optimisation.words import gained, tied
 from flankfilm.output.uncertainty import Uncertainty, met
 from flankfilm.report import face_parts
-from flankfilm.report.page import Fact, Headline, Part, Table, picture, pictures, said, write_page
+from flankfilm.report.page import Fact, Head, Headline, Part, Table, picture, pictures, said, write_page
 from flankfilm.report.run_parts import inputs
 from flankfilm.report.text import counted, number, off, percent, plus_minus, seconds
 from flankfilm.scene import Scene, parse_tolerance
@@ -72,13 +72,13 @@ def write_study_page(found: StudyResults, data: xr.Dataset, folder: Path) -> Pat
     facts = [Fact(f"{counted(rows, 'row')}, {plan.design}", "rows"), _tolerance(data), _work(data)]
     parts = [
         Part("study", "Outputs", figures=tuple(drawn)),
-        Part("rows", "Rows", tables=(table,)),
+        Part("rows", "Rows", tables=(table,), unfolded=True),
         _inputs(data),
     ]
     if notes:
         facts.append(Fact(f"{len(found.failures)} failed", "faults"))
-        parts.insert(1, Part("faults", "Rows that failed", notes=notes))
-    return write_page(folder, plan.title or "Study", facts, headlines, parts)
+        parts.insert(1, Part("faults", "Rows that failed", notes=notes, unfolded=True))
+    return write_page(folder, Head(plan.title or "Study", facts, headlines), parts)
 
 
 def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
@@ -108,12 +108,20 @@ def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
     note = said("two_tolerances", coarse=coarse, fine=fine)
     table = _rows(data, task, [(point.values, point.result) for point in chosen[:MOST_ROWS]])
     parts = [
-        Part("claims", "What was found", (_in_words(found.message),), notes=(*gained(found), tied(found))),
+        Part(
+            "claims",
+            "What was found",
+            (_in_words(found.message),),
+            notes=(*gained(found), tied(found)),
+            unfolded=True,
+        ),
         Part("points", "Points", figures=tuple(drawn)),
-        Part("best", "Optimum" if one else "Front", tables=(table,), notes=(note,)),
+        Part("best", "Optimum" if one else "Front", tables=(table,), notes=(note,), unfolded=True),
         _inputs(data),
     ]
-    return write_page(folder, task.asked.title or "Optimisation", facts, _best_cards(found, data), parts)
+    return write_page(
+        folder, Head(task.asked.title or "Optimisation", facts, _best_cards(found, data)), parts
+    )
 
 
 def _in_words(message: str) -> str:
@@ -190,12 +198,18 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
     over = found.over_face
     parts = [
         Part("curves", "Curves", figures=pictures(data, "verification")),
-        Part("differences", "Differences", tables=tables, notes=(found.message,) if found.message else ()),
+        Part(
+            "differences",
+            "Differences",
+            tables=tables,
+            notes=(found.message,) if found.message else (),
+            unfolded=True,
+        ),
         *([] if over is None else [face_parts.beside(over, data)]),
         Part("costs", "Cost", (shared,)),
         _inputs(data),
     ]
-    return write_page(folder, str(data.attrs["title"]) or "Closed forms", facts, headlines, parts)
+    return write_page(folder, Head(str(data.attrs["title"]) or "Closed forms", facts, headlines), parts)
 
 
 def _differences(found: Verification, reference: str) -> Table:

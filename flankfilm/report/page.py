@@ -14,7 +14,7 @@ from flankfilm import figures
 from flankfilm.figures.style import to_svg
 from flankfilm.output.files import write_text
 from flankfilm.output.uncertainty import Uncertainty
-from flankfilm.report.text import off, percent
+from flankfilm.report.text import counted, off, percent
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,6 +34,9 @@ class Drawing:
     caption: str
     function: str = ""
 
+
+CARDS, SHOWN = 8, 6
+"""Figures and warnings on the first screen; more unfold."""
 
 FEW, MANY = 3, 7
 """Columns of a table that is no wider than it needs to be, and more than those of one in the page's own type."""
@@ -92,7 +95,21 @@ def _side(column: Sequence[str]) -> str:
 
 @dataclass(frozen=True)
 class Part:
-    """One section of the report."""
+    """One section of the report: its text and first figure are seen at once, the rest unfolds.
+
+    Attributes
+    ----------
+    anchor, title : str
+    paragraphs, notes : tuple of str
+    figures : tuple of Drawing
+    tables : tuple of Table
+    code : str
+        Shown in the type of a file.
+    seen : int
+        Figures that are seen at once.
+    unfolded : bool
+        Whether all of it is seen at once.
+    """
 
     anchor: str
     title: str
@@ -101,6 +118,21 @@ class Part:
     tables: tuple[Table, ...] = ()
     notes: tuple[str, ...] = ()
     code: str = ""
+    seen: int = 1
+    unfolded: bool = False
+
+    @property
+    def folded(self) -> str:
+        """Contents of what unfolds, in words; empty where there is nothing."""
+        if self.unfolded:
+            return ""
+        counts = (
+            counted(len(self.figures[self.seen :]), "more picture" if self.seen else "picture"),
+            counted(len(self.tables), "table"),
+            counted(len(self.notes), "note"),
+            "the scene" if self.code else "0",
+        )
+        return ", ".join(one for one in counts if not one.startswith("0"))
 
 
 @dataclass(frozen=True)
@@ -119,6 +151,8 @@ class Headline:
         Of the value; empty for pure numbers.
     uncertainty : Uncertainty or None
         What `against` puts before the note; None where nothing is to be estimated.
+    rank : int
+        Order on the page: 1 for limits of the teeth and the oil, 2 for what the pair does, 3 for the rest.
     """
 
     name: str
@@ -126,6 +160,7 @@ class Headline:
     note: str = ""
     unit: str = ""
     uncertainty: Uncertainty | None = None
+    rank: int = 3
 
     def against(self, tolerance: float) -> Headline:
         """Put the uncertainty before the note, marked where it does not meet the tolerance."""
@@ -181,7 +216,41 @@ def _text(name: str) -> str:
     return resources.files("flankfilm.report").joinpath(name).read_text(encoding="utf-8")
 
 
-def render(title: str, facts: Sequence[Fact], headlines: Sequence[Headline], parts: Sequence[Part]) -> str:
+@dataclass(frozen=True)
+class Head:
+    """First screen of a page.
+
+    Attributes
+    ----------
+    title : str
+    facts : sequence of Fact
+    headlines : sequence of Headline
+    warnings : sequence of str
+    drawing : Drawing, optional
+    """
+
+    title: str
+    facts: Sequence[Fact]
+    headlines: Sequence[Headline]
+    warnings: Sequence[str] = ()
+    drawing: Drawing | None = None
+
+    @property
+    def cards(self) -> list[Headline]:
+        """Figures to act on, those of the lowest ranks first."""
+        return self._ranked[:CARDS]
+
+    @property
+    def more(self) -> list[Headline]:
+        """Figures that unfold."""
+        return self._ranked[CARDS:]
+
+    @property
+    def _ranked(self) -> list[Headline]:
+        return sorted(self.headlines, key=lambda one: one.rank)
+
+
+def render(head: Head, parts: Sequence[Part]) -> str:
     """Return the page's HTML."""
     import jinja2
 
@@ -193,13 +262,11 @@ def render(title: str, facts: Sequence[Fact], headlines: Sequence[Headline], par
     )
     house.filters["unbroken"] = _unbroken
     page = house.from_string(_text("report.html.j2"))
-    return str(page.render(title=title, facts=facts, headlines=headlines, sections=parts))
+    return str(page.render(head=head, shown=SHOWN, sections=parts))
 
 
-def write_page(
-    folder: Path, title: str, facts: Sequence[Fact], headlines: Sequence[Headline], parts: Sequence[Part]
-) -> Path:
+def write_page(folder: Path, head: Head, parts: Sequence[Part]) -> Path:
     """Write ``report.html`` into a folder and return its path."""
     path = folder / "report.html"
-    write_text(path, render(title, facts, headlines, parts))
+    write_text(path, render(head, parts))
     return path

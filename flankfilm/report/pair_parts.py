@@ -11,7 +11,7 @@ import numpy as np
 from base.results import quantities
 from flankfilm.figures.reading import read, read_figure, travel
 from flankfilm.output.geometry import Row, geometry_rows
-from flankfilm.report.page import Headline, Part, Table, pictures
+from flankfilm.report.page import Drawing, Headline, Part, Table, pictures
 from flankfilm.report.text import number
 
 if TYPE_CHECKING:
@@ -40,20 +40,25 @@ def headlines(pair: GearPair) -> list[Headline]:
 
 
 def geometry(pair: GearPair, results: xr.Dataset) -> Part:
-    """Geometry with drawing and tables."""
+    """Geometry with tables; the pair in mesh is drawn in the page's head."""
     rows = _rows(results)
     undercut = ("yes" if tooth.undercut else "no" for tooth in pair.teeth_profiles)
     cells = [(read(results, row.name).label, *_cells(row)) for row in rows]
     path = ("path of contact A to E [mm]", *_aligned("mm", [float(travel(results, "path_point_rho1")[-1])]))
     common = (*(row for row in cells if len(row) == 2), path)
     both = (*(row for row in cells if len(row) == 3), ("undercut", *undercut))
-    drawn = pictures(results, "gears_in_mesh", "kinematics")
+    drawn = pictures(results, "kinematics")
     tables = Table(("pair", ""), common), Table(("", "pinion", "wheel"), both)
     note = (
         "Thicknesses, span and size over pins are of teeth thinned as they are; spans and pins touch near d + 2 x m, "
         "on the involute below any tip relief."
     )
-    return Part("geometry", "Geometry", figures=drawn, tables=tables, notes=(note,))
+    return Part("geometry", "Geometry", figures=drawn, tables=tables, notes=(note,), seen=0)
+
+
+def drawing(results: xr.Dataset) -> Drawing:
+    """Drawing of the pair in mesh, for the page's head."""
+    return pictures(results, "gears_in_mesh")[0]
 
 
 def printed(results: xr.Dataset) -> list[str]:

@@ -99,7 +99,7 @@ def failures(results: Results) -> list[Part]:
             "not computed because of it": lambda one: needing[one.title],
         },
     )
-    return [Part("failures", "Not computed", (said("failures"),), tables=(table,))]
+    return [Part("failures", "Not computed", (said("failures"),), tables=(table,), unfolded=True)]
 
 
 def doubts(results: Results) -> list[str]:
@@ -107,6 +107,15 @@ def doubts(results: Results) -> list[str]:
     values = results.values
     doubted = [name for name in results.runs if getattr(values.get(name), "converged", True) is False]
     return [f"{results.runs[name].title}: {values[name].message}" for name in doubted]
+
+
+def warnings(results: Results, misses: Sequence[str] = ()) -> list[str]:
+    """Figures beyond the tolerance or in doubt, and what the stages warned of, each text once."""
+    heard: dict[str, list[str]] = {}
+    for run in results.runs.values():
+        for text in run.warnings:
+            heard.setdefault(text, []).append(run.title)
+    return list(misses) + [f"{', '.join(titles)}: {text}" for text, titles in heard.items()]
 
 
 def _known(text: Callable[[float], str], value: float | None) -> str:
@@ -117,13 +126,8 @@ def _known(text: Callable[[float], str], value: float | None) -> str:
 def decisions(results: Results, misses: Sequence[str] = ()) -> list[Part]:
     """What was decided, how the tolerance was split, what missed it, and what was warned of; no section without any."""
     plan, decided = results.plan, results.decisions
-    heard: dict[str, list[str]] = {}
-    for run in results.runs.values():
-        for text in run.warnings:
-            heard.setdefault(text, []).append(run.title)
-    warned = [f"{', '.join(titles)}: {text}" for text, titles in heard.items()]
     planned = [] if plan is None else [plan.line]
-    lines = (*misses, *(d.line for d in decided), *planned, *warned)
+    lines = (*warnings(results, misses), *(d.line for d in decided), *planned)
     if not lines:
         return []
     tables = ([_decided(decided)] if decided else []) + ([_shares(plan)] if plan and len(plan.shares) else [])

@@ -117,7 +117,7 @@ LOSS_OUTPUTS: tuple[Named, ...] = (
     _error("efficiency_error", "estimated relative error of the mesh's efficiency", attrgetter("loss_error")),
     _error(
         "temperature_rise_error",
-        "larger estimated relative error of the largest rises of oil and flanks",
+        "larger estimated relative error of the maximum rises of oil and flanks",
         lambda found: max(found.path.greatest_oil_rise_error, found.path.greatest_flank_rise_error.max()),
     ),
     _error(

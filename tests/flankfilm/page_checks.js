@@ -1,5 +1,6 @@
 // What a reader would stumble over in a page: run in the page, gives lists that should be empty.
 (async () => {
+  for (const folded of document.querySelectorAll("details")) folded.open = true;
   const name = (e) => `${e.tagName} ${(e.textContent || "").trim().slice(0, 40)}`;
   const channel = (v) => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
   const parse = (colour) => { const c = colour.match(/[\d.]+/g).map(Number); return c.length < 4 ? [...c, 1] : c; };

@@ -15,11 +15,13 @@ import ehl
 import flankfilm as ff
 from base import InputError, has_picture, plot
 from base.views import GROUP
+from flankfilm.figures.film import film_along_path
+from flankfilm.report.contents import _asked
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene
 from flankfilm.views import MODULES, PICTURES, VIEWS, register
 from gears import Gear, GearPair, closed_form, dimensions
-from tests.flankfilm.scenes import ishikawa
+from tests.flankfilm.scenes import CLOSED_FORMS_WITH_FILM, ishikawa
 
 register()
 
@@ -169,3 +171,25 @@ assert len(plt.get_fignums()) == 1
 def test_pyplot_saves_the_picture_and_not_a_blank_one(tmp_path):
     """The figure was not pyplot's, whose `savefig` wrote an empty one."""
     subprocess.run([sys.executable, "-c", SAVED], check=True, cwd=tmp_path)
+
+
+def test_films_are_not_flattened_by_those_of_hardly_loaded_ends():
+    """At the ends of relieved flanks films are ten times as thick, and the axis was as high."""
+    found = run_scene(parse_scene(CLOSED_FORMS_WITH_FILM.replace("TITLE", "film")), None, use_cache=False)
+    data = found.dataset.copy(deep=True)
+    film = data["film_central_thickness"]
+    plain = film_along_path(data).axes[0]
+    assert plain.get_ylim()[1] > 1e6 * float(film.max())
+    assert not any("hardly loaded" in text.get_text() for text in plain.texts)
+    film[[0, -1]] *= 12.0
+    spiked = film_along_path(data).axes[0]
+    assert spiked.get_ylim()[1] < 3.0e6 * float(film.median())
+    assert any("hardly loaded" in text.get_text() for text in spiked.texts)
+
+
+def test_inputs_say_nothing_of_a_film_that_the_scene_does_not_name():
+    """They said that it had none, and it was solved."""
+    text = CLOSED_FORMS_WITH_FILM.replace("TITLE", "film")
+    assert _asked(parse_scene(text))["film"]["model"] == "dowson"
+    unnamed = text.partition("[film]")[0]
+    assert "film" not in _asked(parse_scene(unnamed))

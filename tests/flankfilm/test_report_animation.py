@@ -43,6 +43,26 @@ model = "none"
 """
 
 
+def test_colours_reach_the_greatest_stress_in_the_fillets(run):
+    """They ended far below: at the stress that nearly all of the pictured area stays below."""
+    fillets = max(
+        float(np.max(np.asarray(grid["von_mises_Pa"])[np.linalg.norm(grid.points[:, :2], axis=1) < below]))
+        for grid, below in _pinions(run)
+    )
+    assert animation._view(run, Frame()).greatest >= fillets > 0.0
+
+
+def _pinions(run: Path):
+    """Pinions of all positions, with the radius below which fillets are half as high."""
+    import pyvista as pv
+    import xarray as xr
+
+    with xr.open_dataset(run / "results.nc", engine="h5netcdf") as results:
+        below = 0.5 * float(results["pair_form_radii"][0] + results["pair_root_radii"][0])
+    for file in sorted((run / "vtk").glob("pinion_*.vtu")):
+        yield pv.read(file), below
+
+
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run's folder with three positions for ParaView."""

@@ -171,8 +171,8 @@ def gather(
 ) -> FloatArray:
     """Maps over strides of so many cells in contact, (strides, 2 m + 2, 2 m + 2 stride), transposed like `maps`.
 
-    From the start of a stride: its end, y at the end of each of its cells, then bounds of how far y departs from
-    its chord in each, to be multiplied by moduli.
+    As functions of the start of a stride: its end, then y at the end of each of its cells, then bounds of how far y
+    departs from its chord in each, to be multiplied by moduli.
     """
     m, n, count = load.shape[1], series.shape[2], len(series) // stride
     size, columns = 2 * m, 2 * m + 2
