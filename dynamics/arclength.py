@@ -155,8 +155,12 @@ class _Walker(Tracer):
             return None
         self.refused = "special points lie close together"
         half = self._half(new)
-        if patient and not self._met(half) and self._hides(last, new, tangent):
-            return None
+        if patient and not self._met(half):
+            length = math.dist(new.u, last.u)
+            if self._hides(last, new, tangent) or self.problem.grazes(
+                last, self.tangent, new, tangent, length
+            ):
+                return None
         return self._between(last, new, tangent, half, patient)
 
     def _hides(self, last: MapPoint, new: MapPoint, tangent: Array) -> bool:

@@ -230,6 +230,13 @@ class BranchProblem(ABC):
     def trends(self, point: Any, tangent: Array) -> tuple[float, float]:
         """Slopes of `fold` and `flip` along the branch of one parameter."""
 
+    def grazes(self, last: Any, along: Array, new: Any, tangent: Array, length: float) -> bool:
+        """Whether an extremum may touch a flank twice between neighbours, whose tangents are known.
+
+        Where the slopes of extrema are not known that is not seen.
+        """
+        return False
+
     def march(
         self, last: Any, heading: Heading, steps: Steps, places: list[list[float]], sizes: Sizes, wanted: int
     ) -> Any:  # fmt: skip

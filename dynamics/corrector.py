@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from base import Array, Integers
-from dynamics.branch_problem import BranchProblem, MapPoint
+from dynamics.branch_problem import BranchProblem, MapPoint, match_extrema
 from dynamics.flow import DEGREE, tabulated
 from dynamics.oscillator import MAX_CELLS, GearOscillator, cells_per_period
 from dynamics.protocol import EPS
+from dynamics.step_rules import touches_twice
 
 ROOM = 64  # extrema expected at most; more are asked for if there are more
 LIMIT = 12  # of Newton iterations
@@ -103,6 +104,31 @@ class OrbitProblem(BranchProblem):
         """Slopes of `fold` and `flip` along the branch of one parameter, exact."""
         shrinking, turning = float(point.determinant_slope @ tangent), float(point.trace_slope @ tangent)
         return shrinking - turning, shrinking + turning
+
+    def grazes(self, last: Point, along: Array, new: Point, tangent: Array, length: float) -> bool:
+        """As of `BranchProblem.grazes`, for one parameter, by exact slopes."""
+        levels = last.levels.tolist(), new.levels.tolist()
+        if len(levels[0]) == 2 and min(levels[0][0], levels[1][0]) == 0.0:
+            return False
+        rates = self.rates(last.extrema_slope, along), self.rates(new.extrema_slope, tangent)
+        heights = [[row[1] for row in point.extrema.tolist()] for point in (last, new)]
+        plays = self.widening * float(along[-1]), self.widening * float(tangent[-1])
+        return any(
+            touches_twice(
+                heights[0][i], rates[0][i], heights[1][j], rates[1][j], levels, plays, self.scale, length
+            )
+            for i, j in match_extrema(last, new)
+        )
+
+    def rates(self, slopes: Array, tangent: Array) -> list[float]:
+        """Slopes of extrema along the branch of one parameter, over the scale."""
+        found: list[float] = (slopes @ tangent).tolist()
+        return found
+
+    @cached_property
+    def widening(self) -> float:
+        """Change of half the backlash over the range of the one parameter, over the scale."""
+        return float(self.ways[0, 6]) / self.scale
 
     def states(self, point: MapPoint) -> Array:
         """X and V over the scale after each period."""

@@ -27,6 +27,7 @@ from dynamics.step_rules import (
     STRAIGHT,
     SWAY,
     hides,
+    touches_twice,
 )
 
 BLOCK = 64  # steps after which it is said how far a branch is
@@ -142,6 +143,7 @@ class _Course:
         self.half, self.step = heading.half.tolist(), heading.step
         self.trace, self.determinant, self.play = last.trace, last.determinant, float(last.levels[0])
         self.trends = problem.trends(last, heading.tangent)
+        self.rates = problem.rates(last.extrema_slope, heading.tangent)
         self.counts, self.extrema = list(last.counts), last.extrema.tolist()
         self.passed: list[tuple[float, float, float, float, float, int, int, int]] = []
         self.found: Any = None
@@ -213,17 +215,36 @@ class _Course:
             return SHORTEN
         if fold * folded < 0.0 or flip * flipped < 0.0 or (det - 1.0) * (determinant - 1.0) < 0.0:
             return LEAVE
-        extrema, counts = room.turns[: room.turned, :3].tolist(), room.counts.tolist()
+        rows, counts, (t0, t1, t2) = room.turns[: room.turned].tolist(), room.counts.tolist(), tangent
+        extrema = [row[:3] for row in rows]
+        rates = [t0 * row[5] + t1 * row[6] + t2 * row[7] for row in rows]
         if not self.two or (self.play > 0.0 and play > 0.0):
             if not alike(self.extrema, extrema, self.play, play, self.two):
                 return LEAVE
-            if counts != self.counts:
+            if counts != self.counts or self._grazes(extrema, rates, play, tangent[2], length):
                 return SHORTEN
         for place in self.places:
             if (place[0] - x) ** 2 + (place[1] - v) ** 2 + (place[2] - p) ** 2 <= FAR * square:
                 return LEAVE
-        self.found = u, tangent, trace, trends, determinant, play, counts, extrema, half, length
+        self.found = u, tangent, trace, trends, determinant, play, counts, extrema, rates, half, length
         return TAKE
+
+    def _grazes(self, extrema: Rows, rates: list[float], play: float, ahead: float, length: float) -> bool:
+        """Whether an extremum may touch a flank twice on the way to the point that is tried."""
+        problem = self.problem
+        old, scale = self.play, problem.scale
+        begin, end = problem.widening * self.tangent[2], problem.widening * ahead
+        least, more = SWAY * length * scale, abs(begin) + abs(end)
+        for (_, x, _), rise, (_, later, _), climb in zip(
+            self.extrema, self.rates, extrema, rates, strict=True
+        ):
+            reach = least * (abs(rise) + abs(climb) + more)
+            if abs(abs(x) - old) < reach or abs(abs(later) - play) < reach:
+                signs = (1.0, -1.0) if self.two else (1.0,)
+                levels = [sign * old for sign in signs], [sign * play for sign in signs]
+                if touches_twice(x, rise, later, climb, levels, (begin, end), scale, length):
+                    return True
+        return False
 
     def _half_way(self, packed: Array) -> list[float]:
         """From the state that is tried to that half the period later, by the tables that it was found with."""
@@ -235,12 +256,12 @@ class _Course:
 
     def accept(self, most: float) -> None:
         """Take the step that was tried, choose the next."""
-        u, tangent, trace, trends, determinant, play, counts, extrema, half, length = self.found
+        u, tangent, trace, trends, determinant, play, counts, extrema, rates, half, length = self.found
         bent = 0.5 / length if length > STRAIGHT else 0.0
         self.bend = [bent * (n - t) for n, t in zip(tangent, self.tangent, strict=True)]
         self.u, self.tangent, self.half = u, tangent, half
         self.trace, self.trends, self.determinant, self.play = trace, trends, determinant, play
-        self.counts, self.extrema = counts, extrema
+        self.counts, self.extrema, self.rates = counts, extrema, rates
         self.known, self.tried = self.tried, self.known
         spent = self.known.iterations
         self.passed.append((*u, trace, determinant, *counts, spent))

@@ -18,6 +18,38 @@ SWAY = (1.0 + HIDDEN) * 4.0 / 27.0  # a cubic leaves the chord of its values by 
 FAR = 1.02  # squared steps from a place: too far to pass it
 
 
+def touches_twice(
+    x: float, rise: float, later: float, climb: float, levels: tuple[list[float], list[float]],
+    widening: tuple[float, float], scale: float, length: float,
+) -> bool:  # fmt: skip
+    """Whether an extremum may touch a flank twice between neighbours, as of `hides`.
+
+    Parameters
+    ----------
+    x, later : float
+        The extremum at the one and at the other.
+    rise, climb : float
+        Its slopes there, over the scale.
+    levels : (list of float, list of float)
+        Where the flanks lie at the one and at the other, the upper one first.
+    widening : (float, float)
+        Slopes of the upper one, over the scale; the lower one moves the other way.
+    scale : float
+        Of the states.
+    length : float
+        From the one to the other.
+    """
+    side = 1.0
+    for level, after in zip(*levels, strict=True):
+        one, other = (x - level) / scale, (later - after) / scale
+        begin, end = rise - side * widening[0], climb - side * widening[1]
+        near = min(abs(one), abs(other)) <= SWAY * length * (abs(begin) + abs(end))
+        if near and one * other > 0.0 and hides(one, begin, other, end, length):
+            return True
+        side = -1.0
+    return False
+
+
 def hides(before: float, rise: float, after: float, climb: float, length: float) -> bool:
     """Whether a function changes its sign more often between neighbours than its values there show, or nearly so.
 

@@ -23,6 +23,7 @@ from fem.loaded_flanks import FlanksInPlace, LoadedFlanks, hub_lever, loaded_fla
 from fem.local_law import Film
 from fem.setting import Setting
 from gears import LoadShare
+from gears.errors import LoadSharingError
 
 if TYPE_CHECKING:
     from fem.bodies import Compliance
@@ -79,6 +80,8 @@ class OppositeShare:
         Whether loads were to vary along the face.
     reached : (torques,) array
         By how much D closes gaps on this side [m].
+    lost : tuple of int
+        Numbers of the torques for which no load sharing was found.
     """
 
     where: ContactCandidates
@@ -91,6 +94,7 @@ class OppositeShare:
     rest: Array
     cells: bool
     reached: Array
+    lost: tuple[int, ...] = ()
 
     @property
     def bears(self) -> bool:
@@ -115,6 +119,8 @@ class OppositeShare:
     def refusal(self, number: int) -> str:
         """Why the solution for a torque is not to be believed, empty if it is."""
         where, turned = self.where, self.forces[number]
+        if number in self.lost:
+            return "no load sharing with back flanks was found; give more backlash, or reduce the torque"
         if self.cells and (np.any(turned > 0.0) or np.any(self.open[number] < -NOTHING)):
             return (
                 "flanks on both sides bear, which know no cells of the face; give more backlash, raise the torque, "
@@ -250,6 +256,15 @@ def both_sides(given: Setting, bodies: Compliance, flanks: LoadedFlanks, other: 
     )
 
 
+def _lost(both: BothSides, force: Array) -> bool:
+    """Whether no load sharing is found under the force of one torque (pitches, positions) [N]."""
+    try:
+        both.share(force[None])
+    except LoadSharingError:
+        return True
+    return False
+
+
 def share_with_opposite(
     given: Setting,
     bodies: Compliance,
@@ -299,7 +314,17 @@ def share_with_opposite(
         clear.all() or (alone is not None and given.face is not None)
     ):  # loads of cells have no both sides
         asked = np.where(apart, float(np.min(force, where=~apart, initial=np.inf)), force)
-        joint = both.share(asked[:, None, None] + 0.0 * pressed)
+        try:
+            joint = both.share(asked[:, None, None] + 0.0 * pressed)
+        except LoadSharingError:
+            lost = tuple(n for n in np.flatnonzero(~apart).tolist() if _lost(both, asked[n] + 0.0 * pressed))
+            if alone is None or not lost:
+                raise
+            without = apart | np.isin(np.arange(len(force)), lost)
+            kept, opposite, left = share_with_opposite(
+                given, bodies, force, film, flanks, alone, without, reach, tables
+            )
+            return kept, replace(opposite, lost=lost), left
         loads = np.where(clear[..., None], loads, joint.forces)
         slopes = np.where(clear[..., None], slopes, joint.pair_stiffness)
         moved, tangent = joint.transmission_error, joint.stiffness

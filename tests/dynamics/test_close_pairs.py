@@ -108,3 +108,24 @@ def test_saddle_nodes_on_either_side_of_a_grazing_are_located():
     found = continue_branch(orbit, "frequency", (0.7, 1.6))
     kinds = [p.kind for p in found.points if 0.7604 < p.parameter < 0.7606]
     assert kinds == ["saddle-node", "grazing", "saddle-node"]
+
+
+@pytest.mark.parametrize("one_sided", [False, True])
+@pytest.mark.parametrize("excess", [1e-5, 3e-3])
+def test_a_pair_of_grazings_at_the_top_of_a_resonance_is_located(one_sided: bool, excess: float):
+    """A linear motion, whose amplitude is known: it just takes the flanks apart beside its resonance, for no longer
+    than a part of a step."""
+    damping, error = 0.1, 0.05
+    peak = error / (2.0 * damping * np.sqrt(1.0 - damping**2))
+    force = peak * (1.0 - excess)
+    osc = GearOscillator(
+        FourierStiffness(1.0, (), ()), damping, force, error, 0.5, half_backlash=0.3, one_sided=one_sided
+    )
+    orbit = find_orbit(osc, osc.rest_state(), transient=300)
+    found = continue_branch(orbit, "frequency", (0.5, 1.6), max_step=0.05).special("grazing")
+    # amplitude^2 = force^2 in w = frequency^2: (error/force)^2 w^2 = (1 - w)^2 + 4 damping^2 w
+    ratio = (error / force) ** 2
+    middle = (1.0 - 2.0 * damping**2) / (1.0 - ratio)
+    apart = np.sqrt(middle**2 - 1.0 / (1.0 - ratio))
+    expected = np.sqrt([middle - apart, middle + apart])
+    assert [p.parameter for p in found] == pytest.approx(expected.tolist(), abs=1e-9)

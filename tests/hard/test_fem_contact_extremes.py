@@ -87,11 +87,11 @@ def test_too_much_load_is_refused_with_the_reason(pair, bodies, torque):
     for name in ("transmission_error", "forces", "load_share", "stiffness", "secant_stiffness"):
         assert np.all(np.isnan(getattr(cycle, name)))
     held = fem.mesh_cycle(pair, torque, 8, bodies, beyond_path=False)
-    assert (
-        held.converged
-    )  # a linear law has no end; that this is far beyond any steel is the user's knowledge
-    overlaps = "back flanks overlap by up to" in held.message
-    assert overlaps or "stand clear" in held.message or "both sides of the teeth bear" in held.message
+    if held.converged:  # a linear law has no end; that this is far beyond any steel is the user's knowledge
+        assert "stand clear" in held.message or "both sides of the teeth bear" in held.message
+    else:
+        assert torque == 1e9
+        assert "no load sharing with back flanks was found" in held.message
 
 
 def test_contact_ratio_hardly_above_one():
