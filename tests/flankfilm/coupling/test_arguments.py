@@ -13,7 +13,7 @@ from gears import Gear, GearPair
 
 PAIR = GearPair(Gear(24), Gear(31), 2e-3, 20e-3)
 OIL = Lubricant(0.075, 19.6e-9, 860.0, temperature=353.15, eyring_stress=5e6)
-NONSENSE = ("180", None, b"1", object, [1.0, "a"], [[1.0], [2.0, 3.0]], 1j, {})
+NONSENSE = ("180", None, b"1", pytest.param(object(), id="object"), [1.0, "a"], [[1.0], [2.0, 3.0]], 1j, {})
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def test_of_a_mesh_cycle(bodies, name, value):
 
 
 @pytest.mark.parametrize("name", ["compliance", "film", "deviations", "alignment", "cells", "shafts"])
-@pytest.mark.parametrize("value", ["180", object, 1j])
+@pytest.mark.parametrize("value", ["180", pytest.param(object(), id="object"), 1j])
 def test_of_a_mesh_cycle_that_may_be_left_out(bodies, name, value):
     given = {"positions": 4, "compliance": bodies, name: value}
     named(lambda: fem.mesh_cycle(PAIR, 100.0, **given), name)
