@@ -209,7 +209,7 @@ class MeshCycle(PairFigures, MeshFigures):
         less = turns(self.pair, self.supports, self.reference, self.bore_inertia)
         less = less - turns(self.pair, self.supports, reference, bore_inertia)
         moments, slopes = self._moments()
-        shift = np.sign(self.force) * (less @ moments)
+        shift = (less @ moments) * (1.0 if self.flank == "front" else -1.0)
         slope = 1.0 - less @ slopes  # dD'/dD
         secant = self.secant_stiffness / slope
         if self.force:

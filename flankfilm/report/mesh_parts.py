@@ -30,6 +30,9 @@ if TYPE_CHECKING:
     )
     from gears.closed_form import Iso6336ContactStress, Iso6336RootStress
 
+EXPLAINED = {"body": "reference_body", "bore": "reference_bore", "teeth": "reference_teeth"}
+"""Texts that explain what deflections are measured against."""
+
 LISTED = 6
 """Harmonics in the table of a mesh cycle."""
 
@@ -68,7 +71,7 @@ def stiffness(
         shown.append("single_pairs")
         tables += [iso_table(single.iso), contact_table(single.contact, cycles[0].contact)]
     drawn = pictures(results, *shown, model=cycles[0].label)
-    notes = (said(f"reference_{cycles[0].reference}"), *changes, said("closed_forms"))
+    notes = (said(EXPLAINED[cycles[0].reference]), *changes, said("closed_forms"))
     return Part("stiffness", "Mesh stiffness", figures=drawn, tables=tuple(tables), notes=notes)
 
 
@@ -94,8 +97,7 @@ def _cycles(cycles: Sequence[MeshCycle], face_width: float) -> Table:
     return Table.of(
         cycles,
         {
-            "model": lambda cycle: cycle.label,
-            "deflection": lambda cycle: RELATIVE[cycle.reference],
+            "model": lambda cycle: f"{cycle.label}, {RELATIVE[cycle.reference]}",
             **shown("mean_secant_stiffness", face_width),
             "secant from, to": ends,
             **shown("mean_stiffness", face_width),
@@ -131,7 +133,7 @@ def references(found: StiffnessReferences, face_width: float) -> Part:
     heads = ("deflection measured against", f"secant [{secant.unit}]", f"tangent [{tangent.unit}]", "error")
     tables = (
         Table(heads, tuple(means)),
-        Table(("mean deflection, dry", "µm", "of that against the bodies"), tuple(parts)),
+        Table(("mean deflection, without film", "µm", "of that against the bodies"), tuple(parts)),
     )
     title = "What the deflection is measured against"
     return Part("references", title, tables=tables, notes=(said("references"),))

@@ -43,7 +43,7 @@ def relieved():
 
 
 def test_numbers_of_the_article_pair(article_pair, article_bodies):
-    cycle = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
+    cycle = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies, reference="bore")
     assert cycle.transmission_error_range == pytest.approx(7.577e-6, abs=0.002e-6)
     np.testing.assert_allclose(
         cycle.stiffness_harmonics[:2], [0.026361, 0.006530], atol=5e-6
@@ -66,6 +66,8 @@ def test_numbers_of_the_article_pair(article_pair, article_bodies):
     ],
 )
 def test_figures_are_those_of_very_many_positions(article_pair, article_bodies, torque, options):
+    # limits of the deflection against the bores: of a smaller one the same error is a larger part
+    options = {**options, "reference": "bore"}
     few = fem.mesh_cycle(article_pair, torque, 4, article_bodies, **options)
     many = fem.mesh_cycle(article_pair, torque, MANY, article_bodies, **options)
     brute, arcs = figures(many), few.arcs.arcs

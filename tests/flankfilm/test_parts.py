@@ -91,7 +91,7 @@ def test_the_command_says_so_and_ends_with_4(without_film, tmp_path, capsys):
     said = capsys.readouterr()
     assert f"not computed: oil film in series with the teeth: {WHY}" in said.err
     assert "because of it: mesh stiffness of the motion, Fourier stiffness" in said.err
-    assert "mean mesh stiffness (secant), without the film" in said.out
+    assert "mean mesh stiffness (secant, relative to the root circles), without the film" in said.out
 
 
 def test_a_run_from_python_warns(without_film):
