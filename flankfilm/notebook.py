@@ -35,7 +35,7 @@ MOST_FIGURES = 16
 def record_html(result: object) -> str | None:
     """Single numbers of a record with their errors, whether it converged, what it cost, and its picture."""
     rows = list(_figures(result))[:MOST_FIGURES]
-    drawn = drawn_of(result)
+    drawn = picture(result)
     if not rows and not drawn:
         return None
     head = f"<p><b>{escape(type(result).__name__)}</b></p>"

@@ -263,15 +263,15 @@ def _in_fillets(results: xr.Dataset, folder: Path) -> float:
     # the lower half of the fillets, away from contacts at the form circle
     half_way = 0.5 * (results["pair_form_radii"].values + results["pair_root_radii"].values)
     below = dict(zip(centres, half_way.tolist(), strict=True))
-    reach, greatest = float(results["field_reach"]), 0.0
+    reach, largest = float(results["field_reach"]), 0.0
     for files in steps(folder).values():
         for gear, centre in centres.items():
             grid = pv.read(files[gear])
             place = np.asarray(grid.points)[:, :2]
             at = np.linalg.norm(place - centre, axis=1) < below[gear]
             at &= np.linalg.norm(place - pitch_point, axis=1) < reach
-            greatest = max(greatest, float(np.max(np.asarray(grid[STRESS])[at], initial=0.0)))
-    return greatest
+            largest = max(largest, float(np.max(np.asarray(grid[STRESS])[at], initial=0.0)))
+    return largest
 
 
 def _round(value: float) -> float:

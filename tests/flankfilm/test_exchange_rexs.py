@@ -366,3 +366,20 @@ class TestHostileFiles:
         text = OLD[:at] + put + OLD[at + cut :]
         with suppress(InputError):  # and nothing else
             scene_text(draft_of(parse_model(text.encode("utf-8", "replace"), "damaged"), "damaged"))
+
+
+def test_messages_about_files_of_thousands_of_stages_are_short():
+    """They listed every stage, in megabytes."""
+    relations = "".join(
+        f'<relation id="{k}" type="stage"><ref id="{k}" role="stage"/></relation>' for k in range(1, 5001)
+    )
+    components = "".join(
+        f'<component id="{k}" type="cylindrical_stage" name="{"stage " * 20}"/>' for k in range(1, 5001)
+    )
+    text = f'<model version="1.1"><relations>{relations}</relations><components>{components}</components></model>'
+    model = parse_model(text.encode(), "large.rexs")
+    for stage in (None, "none"):
+        with pytest.raises(InputError) as caught:
+            draft_of(model, "large.rexs", stage)
+        assert "4988 more" in str(caught.value)
+        assert len(str(caught.value)) < 2000

@@ -148,7 +148,8 @@ def test_too_few_points_are_no_convergence_and_are_not_exceeded(tmp_path, most):
     task = read_task(task_file(tmp_path, f'minimise = ["specific_sliding"]\nevaluations = {most}'))
     found = optimise(task, tmp_path / "out", Execution(workers=1))
     assert not found.converged
-    assert f"give more than {most}" in found.message
+    assert f"give more than {most} evaluations, such as {2 * most}" in found.message
+    assert found.computed <= found.points == len(pd.read_csv(tmp_path / "out" / "rows.csv"))
     assert len(pd.read_csv(tmp_path / "out" / "rows.csv")) <= most
 
 

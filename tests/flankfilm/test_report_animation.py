@@ -43,7 +43,7 @@ model = "none"
 """
 
 
-def test_colours_reach_the_greatest_stress_in_the_fillets(run):
+def test_colours_reach_the_maximum_stress_in_the_fillets(run):
     """They ended far below: at the stress that nearly all of the pictured area stays below."""
     fillets = max(
         float(np.max(np.asarray(grid["von_mises_Pa"])[np.linalg.norm(grid.points[:, :2], axis=1) < below]))
