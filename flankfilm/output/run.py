@@ -24,7 +24,7 @@ from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.flanks import measured_flanks
 from flankfilm.output.geometry import geometry_columns
 from flankfilm.output.passages import fillet_stress, passage
-from flankfilm.output.tables import columns
+from flankfilm.output.tables import columns, uncertainties
 from flankfilm.output.variables import (
     figure_of,
     joined,
@@ -232,6 +232,9 @@ def results_tables(data: xr.Dataset) -> dict[str, dict[str, Any]]:
         for file, table in TABLES.items()
         if joined(table.prefix, table.about) in data.variables
     }
+    errors: dict[str, Any] = uncertainties(data)
+    if errors["variable"].size:
+        found["uncertainties"] = errors
     return {"geometry": geometry_columns(data), **found} if "dimensions_span" in data else found
 
 

@@ -62,6 +62,24 @@ def columns(
     return found
 
 
+def uncertainties(data: xr.Dataset) -> dict[str, NDArray[np.object_]]:
+    """Columns of ``csv/uncertainties.csv``: single figures that have an error, with what `results.nc` says of it."""
+    names = [name for name in map(str, data.variables) if not data[name].dims and "error" in data[name].attrs]
+    about = [data[name].attrs for name in names]
+    columns = {
+        "variable": names,
+        "figure": [one["long_name"] for one in about],
+        "value": [float(_shown(data, name, data[name].values)) for name in names],
+        "unit": [read_in(data, name) for name in names],
+        "numerical_error": [one["error"] for one in about],
+        "model_error": [one.get("model_error", "") for one in about],
+        "total_uncertainty": [one["error"] + one.get("model_error", 0.0) for one in about],
+        "tolerance_met": [one.get("tolerance_met", "") for one in about],
+    }
+    # of objects: cells stay empty where a model error is not estimated
+    return {name: np.array(cells, dtype=np.object_) for name, cells in columns.items()}
+
+
 def spelt(name: str, unit: str) -> str:
     """Name of a column: the figure's with its unit at the end, once.
 

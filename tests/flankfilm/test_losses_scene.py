@@ -200,6 +200,11 @@ def test_files_pictures_and_page_of_losses(few):
     tables = results_tables(data)
     assert tables["losses_along_path"]["friction_coefficient"].shape == lost.path.rho1.shape
     assert tables["losses_by_eyring_stress"]["eyring_stress_MPa"].tolist() == [5.0, 10.0]
+    errors = tables["uncertainties"]
+    row = errors["variable"].tolist().index("losses_mesh_loss")
+    assert errors["numerical_error"][row] == lost.error
+    assert errors["total_uncertainty"][row] == lost.error + lost.model_error
+    assert errors["tolerance_met"][row] == int(lost.error <= scene.tolerance)
     low, high = data["losses_band_friction_coefficient"].values
     assert np.all(low < high)
     for draw in (figures.losses_along_path, figures.temperatures_along_path, figures.temperature_field):

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from base import quantity, record
+from ehl import regimes
 from flankfilm.coupling.extreme_errors import of_greatest, of_least
 from flankfilm.output.uncertainty import Uncertainty, met, uncertainty
 from flankfilm.output.variables import of_record, with_tolerance
+from flankfilm.report.film_parts import regime_said
 from flankfilm.report.page import Headline
 from flankfilm.report.text import off
+from flankfilm.stages.catalogue import FILM
+from flankfilm.stages.losses import LOSSES
+from flankfilm.studies.outputs import OUTPUTS
 
 
 @record
@@ -78,3 +85,15 @@ def test_the_greatest_value_errs_as_those_near_it():
     assert of_least(np.array([0.45, 0.46, 3.0]), np.array([0.01, 0.002, 0.3])) == pytest.approx(0.01)
     assert of_greatest(np.array([1.0, 0.99]), np.array([0.0, 0.05])) == pytest.approx(0.0395)
     assert of_greatest(np.zeros(3), errors) == 0.0
+
+
+def test_regimes_have_names_at_the_head_and_numbers_in_studies():
+    said = {ratio: regime_said(ratio).split(" lubrication")[0] for ratio in (0.99, 1.0, 2.99, 3.0)}
+    assert said == {0.99: "boundary", 1.0: "mixed", 2.99: "mixed", 3.0: "full film"}
+    rough = SimpleNamespace(film=SimpleNamespace(least_film_ratio=0.4))
+    smooth = SimpleNamespace(film=SimpleNamespace(least_film_ratio=None))
+    assert OUTPUTS["regime"].value({FILM: rough}) == 1.0
+    assert np.isnan(OUTPUTS["regime"].value({FILM: smooth}))
+    hot = SimpleNamespace(path=SimpleNamespace(least_film_ratio=3.1), boundary=None)
+    assert OUTPUTS["regime_with_heat"].value({LOSSES: hot}) == 3.0
+    assert "doi:10.1007/s40544-019-0267-5" in (regimes.__doc__ or "")

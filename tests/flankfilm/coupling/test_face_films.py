@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -65,8 +66,29 @@ def cycles(bodies) -> Cycles:
 
 
 @pytest.fixture(scope="module")
-def solved(cycles) -> LubricatedCycle:
-    return cycles(FilmModel())
+def heard(cycles) -> tuple[LubricatedCycle, list[str]]:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = cycles(FilmModel())
+    return found, [str(one.message) for one in caught]
+
+
+@pytest.fixture(scope="module")
+def solved(heard) -> LubricatedCycle:
+    return heard[0]
+
+
+def test_pressures_that_are_warned_of_are_those_of_contacts(heard):
+    """The table reaches beyond the loads that cells have, and so do the pressures of its films."""
+    found, said = heard
+    greatest = found.film.greatest_pressure
+    assert [one.split()[2] for one in said if "Hertz pressure" in one] == [f"{1e-9 * greatest:.2f}"]
+    assert greatest == pytest.approx(np.nanmax(found.dry.contact.hertz_pressure), rel=0.05)
+    path = PAIR.path_at(found.over_face.table.rho1)
+    heaviest = ehl.LineContact(
+        found.over_face.table.load[-1], 1.0, path.radius.min(), PAIR.reduced_modulus, OIL
+    )
+    assert heaviest.peak_pressure > 1.05 * greatest
 
 
 def _film(rho1: float, load: float, supply: ehl.Meniscus | None = None) -> ehl.Film:
