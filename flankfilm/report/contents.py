@@ -117,7 +117,7 @@ def _headlines(results: Results) -> list[Headline]:
             shown += _ranked(numbers(found), RANKS.get(name, ()))
     operating = results.scene.operating
     if "sweep" in values and operating is not None and operating.pinion_speed_rpm is not None:
-        shown += _ranked(motion_parts.operating_headlines(values["sweep"]), (2,))
+        shown += _ranked(motion_parts.operating_headlines(values["sweep"]), (1,))
     if "losses" in values:
         shown = [
             replace(one, name=f"{one.name}, isothermal") if one.name == film_parts.LEAST else one

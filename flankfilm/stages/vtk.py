@@ -4,14 +4,37 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from flankfilm.progress import Progress, silent
 from flankfilm.stages.catalogue import COMPLIANCE, PAIR, loaded_contact
 from flankfilm.stages.engine import Engine
 
 STEPS = 20
 """Positions of the time series: enough for a smooth film of one base pitch."""
+
+
+def even_rows(positions: int, steps: int = STEPS) -> range:
+    """Rows of a cycle that lie equally far apart, also from the last to the first of the next base pitch.
+
+    Parameters
+    ----------
+    positions : int
+        Rows of the cycle, midpoints of equal intervals of one base pitch.
+    steps : int
+        Rows to choose, about: as many as divide `positions`. Where no such number lies between half and twice the
+        steps, rows are equally far apart but for the last and the first.
+
+    Examples
+    --------
+    >>> even_rows(120), len(even_rows(50)), even_rows(9)
+    (range(3, 120, 6), 25, range(0, 9))
+    """
+    if positions <= steps:
+        return range(positions)
+    counts = [n for n in range((steps + 1) // 2, 2 * steps + 1) if positions % n == 0]
+    if not counts:
+        return range(0, positions, round(positions / steps))
+    stride = positions // min(counts, key=lambda n: abs(n - steps))
+    return range(stride // 2, positions, stride)
 
 
 def write_fields(folder: Path, run: Engine, progress: Progress = silent) -> list[Path]:
@@ -23,8 +46,7 @@ def write_fields(folder: Path, run: Engine, progress: Progress = silent) -> list
     from fem.vtk import write_vtk_series
 
     cycle = loaded_contact(run)
-    n = len(cycle.position)
-    rows = sorted({int(i) for i in np.linspace(0, n - 1, min(n, STEPS)).round()})
+    rows = even_rows(len(cycle.position))
     series = write_vtk_series(
         folder,
         run[PAIR],

@@ -101,7 +101,11 @@ def test_the_film_at_the_pitch_point_is_the_known_one(results):
 def test_time_series_names_files_that_exist(folder):
     index = folder / "first" / "mesh_cycle.pvd"
     entries = ElementTree.parse(index).getroot().findall(".//DataSet")
-    assert len({entry.get("timestep") for entry in entries}) == 20
+    times = np.unique([float(str(entry.get("timestep"))) for entry in entries])
+    assert len(times) == 20
+    gaps = np.diff([*times, times[0] + 1.0])  # the next base pitch follows as evenly
+    np.testing.assert_allclose(gaps, 0.05, atol=1e-8)
+    assert [entry.get("name") for entry in entries[:3]] == ["pinion", "wheel", "contacts"]
     assert all((index.parent / str(entry.get("file"))).is_file() for entry in entries)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import inspect
 import itertools
 import re
@@ -360,3 +361,30 @@ def test_print_is_dark_on_light_and_fits_paper(made, browser):
     ink = browser.run("getComputedStyle(document.body).color")
     assert max(map(int, re.findall(r"\d+", ink)[:3])) < 80
     assert browser.run("getComputedStyle(document.querySelector('nav')).display") == "none"
+
+
+def test_the_dynamic_factor_at_the_operating_speed_is_seen_at_once(made):
+    seen, _, folded = made.pages["run"].read_text(encoding="utf-8").partition('<details class="more">')
+    assert "more figures" in folded  # there are more than are seen
+    assert "dynamic factor at the operating speed" in seen
+
+
+UNCUT = """[...document.querySelectorAll("figure")].filter(one =>
+  getComputedStyle(one).breakInside !== "avoid" || one.getBoundingClientRect().height > 267 / 25.4 * 96).length"""
+"""Pictures of the page as it is printed that a page of A4 would cut."""
+
+UNFOLDED = """document.querySelector("details") && [...document.querySelectorAll("details")].every(one => !one.open
+  && getComputedStyle(one, "::details-content").contentVisibility === "visible")"""
+
+
+def test_pages_print_on_a4_with_whole_pictures_and_what_is_folded(made, browser):
+    for name, page in made.pages.items():
+        browser.open(page, 688, dark=False, media="print")  # 182 mm
+        assert browser.run("document.documentElement.scrollWidth") <= 688, f"{name}: a table is cut"
+        assert browser.run(UNCUT) == 0, name
+        assert browser.run(UNFOLDED), name
+        paper = base64.b64decode(browser.call("Page.printToPDF", preferCSSPageSize=True)["data"])
+        sizes = re.findall(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", paper)
+        assert sizes, name
+        for width, height in sizes:
+            assert (float(width), float(height)) == pytest.approx((210 / 25.4 * 72, 297 / 25.4 * 72), abs=1.0)
