@@ -19,7 +19,7 @@ Parted: TypeAlias = Tables | DriveFlow
 """Flows that follow parts of a period."""
 # four radians at most of every time scale: a stretch multiplies errors by less than 1e4
 CELLS_PER_STRETCH = 8
-MOST = 250  # stretches: the equations are solved as a dense matrix
+MOST = 250  # stretches
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,14 +117,31 @@ def stretches(table: Parted, nodes: Array, firsts: Integers) -> tuple[Array, Arr
 
 
 def newton_step(factors: Array, gap: Array) -> Array:
-    """Correction of all nodes: d[i + 1] - factor[i] d[i] = gap[i], cyclic."""
+    """Correction of all nodes: d[i + 1] - factor[i] d[i] = gap[i], cyclic.
+
+    Two blocks a row: elimination in the order of the nodes fills the last column alone, so that the cost grows with
+    their number, not with its cube.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If the equations are singular.
+    """
+    from scipy.sparse import bsr_array
+    from scipy.sparse.linalg import splu
+
     m, size = gap.shape
-    matrix = np.zeros((m, size, m, size))
-    for i in range(m):
-        matrix[i, :, i] -= factors[i]
-        matrix[i, :, (i + 1) % m] += np.eye(size)
-    square = matrix.reshape(m * size, m * size)
-    return np.asarray(np.linalg.solve(square, gap.ravel()).reshape(m, size))
+    if m == 1:
+        return np.linalg.solve(np.eye(size) - factors[0], gap[0])[None]
+    blocks = np.stack([-factors, np.broadcast_to(np.eye(size), factors.shape)], axis=1)
+    columns = np.column_stack([np.arange(m), (np.arange(m) + 1) % m])
+    shape = (m * size, m * size)
+    matrix = bsr_array((blocks.reshape(-1, size, size), columns.ravel(), 2 * np.arange(m + 1)), shape=shape)
+    try:
+        solved = splu(matrix.tocsc(), permc_spec="NATURAL").solve(gap.ravel())
+    except RuntimeError as fault:  # as scipy calls a singular matrix
+        raise np.linalg.LinAlgError(str(fault)) from fault
+    return np.asarray(solved.reshape(m, size))
 
 
 def _newton(table: Parted, nodes: Array, firsts: Integers, limit: int, floor: float) -> Chain | None:
