@@ -22,13 +22,20 @@ CURVES = ("transmission_error", "stiffness", "secant_stiffness", "pair_stiffness
 def cycle(request, article_pair, article_bodies):
     beyond_path, friction = request.param
     return fem.mesh_cycle(
-        article_pair, TORQUE, compliance=article_bodies, beyond_path=beyond_path, friction=friction
+        article_pair,
+        TORQUE,
+        compliance=article_bodies,
+        beyond_path=beyond_path,
+        friction=friction,
+        reference="bore",
     )
 
 
 @pytest.fixture(scope="module")
 def on_path(article_pair, article_bodies):
-    return fem.mesh_cycle(article_pair, TORQUE, compliance=article_bodies, beyond_path=False)
+    return fem.mesh_cycle(
+        article_pair, TORQUE, compliance=article_bodies, beyond_path=False, reference="bore"
+    )
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.1])

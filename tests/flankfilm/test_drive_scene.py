@@ -39,6 +39,7 @@ MOVING = (
     )
     + """
 [dynamics]
+fourier_order = 1
 error_amplitude_um = 4
 run_up = { speed_rpm = [7000, 7100], periods = 128 }
 sweep = { speed_rpm = [7000, 7400], points = 2 }
