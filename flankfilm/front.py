@@ -107,7 +107,7 @@ def verify(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = T
     ... )
     >>> found = verify(scene)
     >>> round(found.difference("Ishikawa", "held to the path"), 2)
-    0.22
+    0.09
     """
     from flankfilm.verification.run import verify_scene
     from flankfilm.verification.tables import write_verification

@@ -267,7 +267,7 @@ class _Run:
             seconds += watch.seconds
             try:
                 before, cycle = cycle, self.teeth.cycle(positions, law)
-            except gears.LoadSharingError as fault:
+            except (gears.LoadSharingError, SolverError) as fault:  # without films there was one
                 raise SolverError(f"no load share with these films was found: {SOFTER}") from fault
             mismatch = float(np.max(np.abs(cycle.load_share - before.load_share)))
         assert path is not None

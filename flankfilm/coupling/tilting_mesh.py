@@ -25,6 +25,17 @@ def tilting_mesh(cycle: MeshCycle | None) -> dict[str, Any]:
     -------
     dict
         ``tilt_stiffness``, ``load_centre`` and ``mesh_matrix``, or empty.
+
+    Examples
+    --------
+    >>> from gears import Bearing, Gear, GearPair, Shaft, ShaftSegment
+    >>> from flankfilm.coupling import Flanks, mesh_cycle
+    >>> pair = GearPair(Gear(24), Gear(31), 2e-3, 0.02)
+    >>> shaft = Shaft((ShaftSegment(0.2, 0.03),), (Bearing(0.0, 3e8), Bearing(0.2, 3e8)), 0.06, 0.2)
+    >>> flanks = Flanks(False, cells=8, face_model="walls", shafts=(shaft, shaft))
+    >>> tilting = tilting_mesh(mesh_cycle(pair, 80.0, tolerance=0.02, flanks=flanks))
+    >>> tilting["tilt_stiffness"] > 0.0, abs(tilting["load_centre"]) < 0.5 * pair.face_width
+    (True, True)
     """
     matrix = None if cycle is None or cycle.face is None else cycle.face.mesh_matrix
     if matrix is None:

@@ -13,7 +13,7 @@ from dynamics import diagram
 from flankfilm.check import check_scene
 from flankfilm.coupling.warned import distinct
 from flankfilm.figures.reading import words
-from flankfilm.report.page import Part, Table, render
+from flankfilm.report.page import Head, Part, Table, render
 from flankfilm.report.pair_parts import printed
 from flankfilm.report.text import percent, plus_minus
 from flankfilm.scene import parse_scene
@@ -64,7 +64,7 @@ def test_tiny_errors_are_not_counted_out():
 
 def test_a_line_breaks_neither_units_nor_errors():
     table = Table(("force [N m]", "of it"), (("1.5 ± 0.2 %", "7 %"), ("2.5 ± < 0.0001 %", "8 %")), "k ± 3 %")
-    page = render("", (), (), [Part("a", "A", tables=(table,))])
+    page = render(Head("", (), ()), [Part("a", "A", tables=(table,))])
     for whole in ("force [N_m]", "1.5 ±_0.2_%", "2.5 ±_&lt;_0.0001_%", ">7_%<", "k ±_3_%"):
         assert whole.replace("_", "\u00a0") in page, whole
 

@@ -362,6 +362,8 @@ WORDED = [
      lambda n: {"dynamics.damping_ratio": 0.05}),
     ({"alignment": {}, "stiffness.plane": "stress"}, "stiffness.plane", r'Take stiffness.plane = "(strain)"',
      lambda n: {"stiffness.plane": n}),
+    ({"stiffness.reference": "bore", "dynamics.stiffness_reference": "teeth"}, "dynamics.stiffness_reference",
+     r"(Leave it out)", lambda n: {"dynamics.stiffness_reference": None}),
     ({"lubricant.viscosity_index": 95.0}, "lubricant", r"(not both ways at once)",
      lambda n: {"lubricant.viscosity_index": None}),
 ]  # fmt: skip
