@@ -144,7 +144,12 @@ def test_heat_is_weighed_by_the_tolerance():
 def test_heat_that_is_named_or_cannot_count_is_not_weighed():
     for text, solved, taken, why in (
         (QUICK + 'heat = "on"\n', True, "on", 'asks for film.heat = "on"'),
-        (changed(('model = "auto"', 'model = "ehl"')), True, "off", 'isothermal; the scene asks for film.model = "ehl"'),
+        (
+            changed(('model = "auto"', 'model = "ehl"')),
+            True,
+            "off",
+            'isothermal; the scene asks for film.model = "ehl"',
+        ),
         (QUICK, False, "off", "by formula"),
         (changed(('"film", "losses"', '"film"'), ("temperature_C = 80", "")), True, "off", "is not given"),
         (changed(("[film]", '[film]\nsupply = "oil-layer"\noil_layer_um = 0.2')), True, "on", "above the"),
