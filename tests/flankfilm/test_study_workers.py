@@ -11,6 +11,7 @@ from contextlib import contextmanager
 
 import pytest
 
+from flankfilm.children import answering_signals
 from flankfilm.studies.executors import Pool
 from flankfilm.studies.row import Row, RowResult
 from flankfilm.studies.workers import AHEAD, Workers
@@ -92,18 +93,20 @@ def test_a_signal_while_rows_are_waited_for_leaves_no_lock_behind(monkeypatch):
     @contextmanager
     def executor(kind, workers):
         pools.append(Busy())
+        signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
         signal.setitimer(signal.ITIMER_REAL, 0.001 + 1e-5 * len(pools))
         yield Pool(pools[-1], lambda: 2)
 
     monkeypatch.setattr("flankfilm.studies.workers.executor", executor)
 
     def compute() -> None:
-        with Workers("processes", 2) as workers:
+        # as a command does: an interrupt that a destructor swallows is asked for again
+        with answering_signals(), Workers("processes", 2) as workers:
             for _ in workers.computed(rows):
                 pass
-            time.sleep(1.0)
+            time.sleep(4.0)
 
-    before = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+    before = signal.getsignal(signal.SIGALRM)
     rows = [Row(index, {}, ("contact_ratio",)) for index in range(2_000)]
     try:
         for _ in range(300):

@@ -105,7 +105,7 @@ def test_shafts_a_hundred_times_softer(bodies, name):
 
 @pytest.mark.parametrize("softer", [1e-4, 1e3, 1e6])
 def test_stiffness_of_any_shaft(bodies, softer):
-    """Cancellation of the shafts' compliance costs no digits that count; at 1e9 it leaves fewer than a sharing needs."""
+    """Cancellation of the shafts' compliance costs no digits that count; at 1e9 fewer are left than a sharing needs."""
     shaft = _softer(MOUNTED["between its bearings"], softer)
     force = 1e-3 / max(softer, 1.0)
     found, even = (_cycle(bodies, one, force) for one in ((shaft, shaft), None))

@@ -68,7 +68,14 @@ def test_stiffness_and_transmission_error(part, figure, aligned, misaligned):
     bodies, unit = compliance(PAIR, 0.002), 1e6 if figure.startswith("trans") else 1e-9 / PAIR.face_width
     for slope, there in ((0.0, aligned), (20e-6, misaligned)):
         found = mesh_cycle(
-            PAIR, part * FULL, 40, bodies, beyond_path=False, alignment=Alignment(slope), face_model="walls"
+            PAIR,
+            part * FULL,
+            40,
+            bodies,
+            beyond_path=False,
+            alignment=Alignment(slope),
+            face_model="walls",
+            reference="bore",
         )
         assert unit * getattr(found, figure) == pytest.approx(there, rel=0.02)
 
