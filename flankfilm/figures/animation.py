@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import math
 import subprocess
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Faults, InputError, SolverError, shorten
+from base import Array, Booleans, Faults, InputError, SolverError, shorten
 from base.files import replacing
 from flankfilm.children import module, python
 from flankfilm.figures.gear import stress_of_nearly_all
@@ -255,21 +256,30 @@ def _scale_of_colours(results: xr.Dataset, folder: Path, field: str, *, over_fac
 
 def _in_fillets(results: xr.Dataset, folder: Path) -> float:
     """Maximum von Mises stress below the flanks of the pictured teeth, over all positions [Pa]."""
-    import pyvista as pv
-
     names = results["path_point"].values.tolist()
     pitch_point = results["path_point_place"].values[names.index("C")]
     centres = {"pinion": np.zeros(2), "wheel": results["outline_centre"].values[1]}
     # the lower half of the fillets, away from contacts at the form circle
     half_way = 0.5 * (results["pair_form_radii"].values + results["pair_root_radii"].values)
     below = dict(zip(centres, half_way.tolist(), strict=True))
-    reach, largest = float(results["field_reach"]), 0.0
+    reach = float(results["field_reach"])
+
+    def pictured(gear: str, place: Array) -> Booleans:
+        near = np.linalg.norm(place - pitch_point, axis=1) < reach
+        return np.asarray(near & (np.linalg.norm(place - centres[gear], axis=1) < below[gear]))
+
+    return _stress_where(pictured, folder)
+
+
+def _stress_where(wanted: Callable[[str, Array], Booleans], folder: Path) -> float:
+    """Maximum von Mises stress at the places (n, 2) of either gear that are wanted, over all positions [Pa]."""
+    import pyvista as pv
+
+    largest = 0.0
     for files in steps(folder).values():
-        for gear, centre in centres.items():
+        for gear in ("pinion", "wheel"):
             grid = pv.read(files[gear])
-            place = np.asarray(grid.points)[:, :2]
-            at = np.linalg.norm(place - centre, axis=1) < below[gear]
-            at &= np.linalg.norm(place - pitch_point, axis=1) < reach
+            at = wanted(gear, np.asarray(grid.points)[:, :2])
             largest = max(largest, float(np.max(np.asarray(grid[STRESS])[at], initial=0.0)))
     return largest
 

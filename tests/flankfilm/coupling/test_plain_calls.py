@@ -34,6 +34,7 @@ model = "MODEL"
 [film]
 model = "FILM"
 [dynamics]
+fourier_order = 1
 error_amplitude_um = 10
 sweep = { speed_rpm = [15000, 16000], points = 3 }
 diagram = { speed_rpm = [15000, 16000], max_period = 1, searches = 2 }
