@@ -130,12 +130,12 @@ THICK = "diameter_mm = 30 }]\nbearings = [{ position_mm = 70"
 
 @pytest.mark.slow
 def test_the_example_of_a_drive_with_cells_is_no_stiffer_than_without():
-    """29.56 N/(mm um) beside 19.41 where force and deflection were not conjugate."""
+    """29.56 N/(mm um) beside 19.41, both relative to the bores, where force and deflection were not conjugate."""
     text = (EXAMPLES / "drive.toml").read_text()
     cells = '[alignment]\ncells = 16\nface_model = "walls"\n\n[operating]'
     found = _engine(text.replace("[operating]", cells))[DRY_CYCLE]
     straight = _engine(text)[DRY_CYCLE]
-    assert straight.mean_secant_stiffness / 40e6 == pytest.approx(19.41, rel=0.01)
+    assert straight.mean_secant_stiffness / 40e6 == pytest.approx(21.77, rel=0.01)
     _is_no_stiffer(found, straight)
     assert found.mean_stiffness > 0.6 * straight.mean_stiffness
 

@@ -105,13 +105,12 @@ def test_the_command_writes_tables_curves_and_a_figure(tmp_path):
     import pandas as pd
 
     done = flankfilm("verify", EXAMPLES / "article.toml", "--out", tmp_path / "out")
-    assert "against finite elements, without hub wind-up and coupling" in done.stdout
+    assert "against finite elements without hub wind-up and coupling" in done.stdout
     table = pd.read_csv(tmp_path / "out" / "verify.csv")
     ishikawa = table[(table.model == "Ishikawa") & (table.figure == "one pair, at C")].set_index("reference")
-    # Ishikawa knows no hub wind-up; without it finite elements are stiffer, with it softer than the formula
+    # Ishikawa has no hub wind-up; the bodies' inertia leaves a tenth of it in the deflection relative to them
     whole, stripped = ishikawa.difference_percent[["held to the path", "without hub wind-up"]]
-    assert whole > 8
-    assert 0 < stripped < 2
+    assert 0 < stripped < whole < 3
     assert (table.reference_error_percent > 0).all()
     off = 100 * (table.value / table.reference_value - 1)
     assert np.allclose(off, table.difference_percent)
