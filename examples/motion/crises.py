@@ -30,12 +30,15 @@ class Crisis:
         A value at which the saddle is looked for.
     bounds : tuple of float
         On one side of the crisis each.
+    points : int
+        Of the stretch of the saddle's unstable manifold.
     """
 
     section: str
     saddle: str
     at: float
     bounds: tuple[float, float]
+    points: int = 500
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ class End:
 
 
 CRISES = (
-    Crisis("6.1", "U3-3-1", 0.905, (0.9025, 0.91)),
+    Crisis("6.1", "U3-3-1", 0.905, (0.9025, 0.91), 1000),
     Crisis("6.1", "U3-3-1", 1.13, (1.116, 1.13)),
     Crisis("6.3", "U1-1-0", 0.778, (0.770, 0.785)),
 )
@@ -73,6 +76,9 @@ ENDS = (
     End("6.2", "3-1-1", 1.2870, (1.28154, 1.28147), 3000),
     End("6.2", "4-3-0", 1.5890, (1.587074, 1.58705)),
 )
+SHARP = 1e-7
+"""Relative error up to which a crisis has a place: by what twice the points of the manifold would change."""
+
 PERIODS = 2_000_000
 """Periods after which chaos without an escape counts as lasting."""
 
@@ -107,14 +113,14 @@ def located(place: Crisis) -> dynamics.Crisis:
     # by the index alone: the first of that label is the one beside the chaos
     orbits = dynamics.find_orbits(scan.at(place.at), (period_of(place.saddle),), batches=0).orbits
     saddle = next(orbit for orbit in orbits if orbit.label == place.saddle)
-    return dynamics.boundary_crisis(saddle, scan.parameter, place.bounds, points=500, periods=90)
+    return dynamics.boundary_crisis(saddle, scan.parameter, place.bounds, points=place.points, periods=90)
 
 
 def row(section: str, crisis: dynamics.Crisis) -> str:
     """One line of the table."""
     return (
         f"| {section} | {crisis.parameter:.9f} | {crisis.saddle.label} | {crisis.before} | {crisis.after} |"
-        if crisis.converged
+        if crisis.converged or crisis.error < SHARP
         else f"| {section} | {crisis.message} | | | |"
     )
 
