@@ -77,7 +77,7 @@ ENDS = (
     End("6.2", "4-3-0", 1.5890, (1.587074, 1.58705)),
 )
 SHARP = 1e-7
-"""Relative error up to which a crisis has a place: by what twice the points of the manifold would change."""
+"""Relative error up to which a crisis has a place; it is the change with twice the points of the manifold."""
 
 PERIODS = 2_000_000
 """Periods after which chaos without an escape counts as lasting."""
