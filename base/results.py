@@ -28,6 +28,9 @@ EXACT = "exact: it follows from what is given"
 ITSELF = "it is an error, or the measure of one, itself"
 """Why a figure has no error: it says what others err by."""
 
+WORST = 0.2
+"""Relative error from which a solver has not converged; below it figures are kept, with their error."""
+
 
 @runtime_checkable
 class Result(Protocol):

@@ -120,7 +120,7 @@ def newton_step(factors: Array, gap: Array) -> Array:
     """Correction of all nodes: d[i + 1] - factor[i] d[i] = gap[i], cyclic.
 
     Two blocks a row: elimination in the order of the nodes fills the last column alone, so that the cost grows with
-    their number, not with its cube.
+    their number, not with its cube. nan where a stretch has lost the motion.
 
     Raises
     ------
@@ -131,6 +131,8 @@ def newton_step(factors: Array, gap: Array) -> Array:
     from scipy.sparse.linalg import splu
 
     m, size = gap.shape
+    if not np.all(np.isfinite(factors)):
+        return np.full(gap.shape, np.nan)
     if m == 1:
         return np.linalg.solve(np.eye(size) - factors[0], gap[0])[None]
     blocks = np.stack([-factors, np.broadcast_to(np.eye(size), factors.shape)], axis=1)

@@ -18,9 +18,6 @@ from ehl.run import DRY, Run
 from ehl.supply import OilLayer, Supply
 
 GRID_FACTOR = 0.4  # error of N nodes over its difference from (N+1)/2: 1/3 at second order, with a margin
-WORST = 0.2
-"""Relative error from which a film has no figures; below it they stand, with their error, whatever was asked."""
-
 _SEPARATION_LOSS = 20.0  # times the film's own error by the finite inlet
 
 

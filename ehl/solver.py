@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from base import Cost
+from base.results import WORST
 from ehl.contact import LineContact
 from ehl.film import Film
 from ehl.levels import Level, State
 from ehl.options import Options, warn_of_range
-from ehl.outcome import WORST, Found, above, film_error, remedy, spike_error
+from ehl.outcome import Found, above, film_error, remedy, spike_error
 from ehl.plan import Plan
 from ehl.regressions import moes_central
 from ehl.run import Run

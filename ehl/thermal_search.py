@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from base import Array, Cost
+from base.results import WORST
 from ehl.bodies import Solid
 from ehl.contact import LineContact
 from ehl.discrete import Groups
@@ -17,7 +18,7 @@ from ehl.levels import Level, State, figures, transfer
 from ehl.meniscus import MeniscusSearch
 from ehl.newton import newton
 from ehl.options import Options
-from ehl.outcome import GRID_FACTOR, WORST, film_error
+from ehl.outcome import GRID_FACTOR, film_error
 from ehl.plan import Plan
 from ehl.solver import REACH, solve_checked
 from ehl.supply import OilLayer, Supply

@@ -19,11 +19,11 @@ from base import (
     record,
     unclocked,
 )
-from base.results import ITSELF
+from base.results import ITSELF, WORST
 from ehl.contact import LineContact
 from ehl.course import Course, JumpError, Shot
 from ehl.film import Film, unsolved
-from ehl.outcome import GRID_FACTOR, WORST
+from ehl.outcome import GRID_FACTOR
 from ehl.over_time import OverTime, at_time, checked, jump_fault
 from ehl.solver import solve
 from ehl.stepping import Laying

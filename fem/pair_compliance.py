@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Cost, Faults, Limit, Stopwatch
+from base.results import WORST
 from fem.bodies import Compliance
 from fem.checked import check_pair
 from fem.elasticity import PlaneElasticity, check_plane
@@ -153,7 +154,7 @@ def compliance(
         min(ceil(pair.contact_ratio) + 1, *(len(one.flexible.cross_series) for one in (first, second))),
         error,
         Cost(0.0),
-        True,
+        error < WORST or refinements is not None,
         message,
         supports=held,
         fit_error=fit_error,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Cost, Faults, Limit, RangeWarning, Stopwatch, described, part, quantity, record
-from base.results import ITSELF
+from base.results import ITSELF, WORST
 from fem.elasticity import PlaneElasticity, check_plane
 from fem.fillet_influence import FilletInfluence, fillet_influence
 from fem.gear_shape import GearShape, shapes
@@ -199,7 +199,8 @@ def fillets(
         parts=sum(gears.costs, Cost(0.0)).parts,
         counts={"annulus_unknowns": sum(solved.annulus_unknowns for solved, _ in results)},
     )
-    return Fillets(pair, plane, pinion, wheel, 0.5 * finest, errors, (first, second), cost, True, message)
+    settled = error < WORST or fillet_edge is not None
+    return Fillets(pair, plane, pinion, wheel, 0.5 * finest, errors, (first, second), cost, settled, message)
 
 
 def _warn_of_held_rims(pair: GearPair) -> None:

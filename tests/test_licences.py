@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from importlib.metadata import distributions
 
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
@@ -35,3 +36,19 @@ def test_no_other_library_stands_there():
 def test_the_strictest_is_told_first():
     text = " ".join(PAGE[:12])
     assert "**gmsh is under the GNU General Public License" in text
+
+
+def test_what_is_needed_with_extras_is_pinned_with_them():
+    """pip resolves ``name[extra]`` apart from ``name``: with a bare pin each newer release ended the set-up."""
+    extras = {canonicalize_name(pin.name): pin.extras for pin in PINS}
+    asked = [
+        Requirement(text)
+        for one in distributions()
+        if canonicalize_name(one.name) in extras
+        for text in one.requires or ()
+    ]
+    needed = [
+        one for one in asked if one.extras and (one.marker is None or one.marker.evaluate({"extra": ""}))
+    ]
+    assert [str(one) for one in needed if not one.extras <= extras[canonicalize_name(one.name)]] == []
+    assert needed

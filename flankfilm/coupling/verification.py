@@ -275,7 +275,7 @@ def _reference_curves(
         )  # without parts a compliance measures its own way
         teeth = replace(measured, compliance=parts, flanks=flanks, reference=reference)
         found = _curves(label, teeth, compliance.error)
-        # without coupling each pair has a turn of its own, with the hubs' wind-up or without
+        # without coupling each pair has a separate rotation, with the hubs' wind-up or without
         own = "teeth" if "hub_windup" in left_out else "bore"
         yield replace(found, left_out=left_out, deflection_reference=found.deflection_reference or own)
 

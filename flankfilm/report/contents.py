@@ -175,22 +175,16 @@ def _film_failed(results: Results) -> bool:
 
 def write_report(results: Results, folder: Path) -> Path:
     """Write ``report.html`` into a folder and return its path."""
-    scene = results.scene
+    scene, warned = results.scene, run_parts.warnings(results, misses(results))
     parts = [
         *run_parts.failures(results),
         *_result_parts(results),
         run_parts.costs(results),
-        *run_parts.decisions(results, misses(results)),
+        *run_parts.decisions(results, warned),
         run_parts.inputs(_asked(scene), results.dataset.attrs["versions_json"]),
     ]
     drawing = None if results.values.get("pair") is None else pair_parts.drawing(results.dataset)
-    head = Head(
-        scene.title or "flankfilm",
-        _facts(results),
-        headlines(results),
-        run_parts.warnings(results, misses(results)),
-        drawing,
-    )
+    head = Head(scene.title or "flankfilm", _facts(results), headlines(results), warned, drawing)
     return write_page(folder, head, parts)
 
 

@@ -126,13 +126,13 @@ class Part:
         """Contents of what unfolds, in words; empty where there is nothing."""
         if self.unfolded:
             return ""
-        counts = (
-            counted(len(self.figures[self.seen :]), "more picture" if self.seen else "picture"),
-            counted(len(self.tables), "table"),
-            counted(len(self.notes), "note"),
-            "the scene" if self.code else "0",
-        )
-        return ", ".join(one for one in counts if not one.startswith("0"))
+        held = {
+            "more picture" if self.seen else "picture": len(self.figures[self.seen :]),
+            "table": len(self.tables),
+            "note": len(self.notes),
+        }
+        texts = [counted(count, noun) for noun, count in held.items() if count]
+        return ", ".join([*texts, "the scene"] if self.code else texts)
 
 
 @dataclass(frozen=True)
