@@ -22,6 +22,11 @@ TRACKER = "multiprocessing.resource_tracker"
 """In the command of what ends by itself, last of all, once the process that it belongs to has."""
 
 
+def unwatched() -> dict[str, str]:
+    """Environment of a process whose branches are not recorded: coverage survives no interrupt and no full disk."""
+    return {name: value for name, value in os.environ.items() if not name.startswith("COVERAGE")}
+
+
 def new_mark() -> str:
     """Mark that nobody else has."""
     return uuid.uuid4().hex

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import signal
-import threading
-import time
+import subprocess
+import sys
 from collections import deque
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 
-from flankfilm.children import answering_signals
 from flankfilm.studies.executors import Pool
 from flankfilm.studies.row import Row, RowResult
 from flankfilm.studies.workers import AHEAD, Workers
+from tests.processes import unwatched
 
 
 class Cluster(Executor):
@@ -63,58 +64,16 @@ def test_a_cluster_larger_than_this_machine_is_kept_busy_and_one_that_grows_too(
     assert cluster.most == AHEAD * 20
 
 
-class Busy(Executor):
-    """A thread that ends rows, which it cannot where the lock of one of them is held for ever."""
-
-    def __init__(self) -> None:
-        self.waiting: list[tuple[Future[RowResult], Row]] = []
-        self.ended = False
-        self.thread = threading.Thread(target=self.work, daemon=True)
-        self.thread.start()
-
-    def submit(self, fn, /, *args, **kwargs):
-        future: Future[RowResult] = Future()
-        self.waiting.append((future, args[0]))
-        return future
-
-    def work(self) -> None:
-        while not self.ended or self.waiting:
-            if self.waiting:
-                time.sleep(2e-5)
-                future, row = self.waiting.pop(0)
-                future.set_result(RowResult(row.index, (0.0,), 0.0))
-
-
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="the system has no timer that sends a signal")
-def test_a_signal_while_rows_are_waited_for_leaves_no_lock_behind(monkeypatch):
+def test_a_signal_while_rows_are_waited_for_leaves_no_lock_behind():
     """Inside concurrent.futures.wait it does: the pool could then not be ended, nor the study."""
-    pools: list[Busy] = []
-
-    @contextmanager
-    def executor(kind, workers):
-        pools.append(Busy())
-        signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
-        signal.setitimer(signal.ITIMER_REAL, 0.001 + 1e-5 * len(pools))
-        yield Pool(pools[-1], lambda: 2)
-
-    monkeypatch.setattr("flankfilm.studies.workers.executor", executor)
-
-    def compute() -> None:
-        # as a command does: an interrupt that a destructor swallows is asked for again
-        with answering_signals(), Workers("processes", 2) as workers:
-            for _ in workers.computed(rows):
-                pass
-            time.sleep(4.0)
-
-    before = signal.getsignal(signal.SIGALRM)
-    rows = [Row(index, {}, ("contact_ratio",)) for index in range(2_000)]
-    try:
-        for _ in range(300):
-            with pytest.raises(KeyboardInterrupt):
-                compute()
-            pools[-1].ended = True
-            pools[-1].thread.join(2.0)
-            assert not pools[-1].thread.is_alive()
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
+    script = Path(__file__).with_name("interrupted_rows.py")
+    done = subprocess.run(
+        [sys.executable, str(script)],
+        capture_output=True,
+        text=True,
+        env=unwatched(),
+        timeout=120,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (0, "300 interrupts\n"), done.stderr

@@ -14,6 +14,7 @@ import xarray as xr
 from flankfilm.front import run
 from flankfilm.scene import parse_scene
 from tests.flankfilm.scenes import ishikawa
+from tests.processes import unwatched
 
 pytest.importorskip("resource", reason="no limits of files")
 
@@ -35,10 +36,6 @@ main()
 """
 
 
-UNWATCHED = {name: value for name, value in os.environ.items() if not name.startswith("COVERAGE")}
-"""Without the record of branches, which could not be written either."""
-
-
 def limited(size: int, *arguments: object) -> subprocess.CompletedProcess[str]:
     """A command no file of which may grow beyond some bytes."""
     return subprocess.run(
@@ -47,7 +44,7 @@ def limited(size: int, *arguments: object) -> subprocess.CompletedProcess[str]:
         text=True,
         check=False,
         timeout=250,
-        env=UNWATCHED,
+        env=unwatched(),
     )
 
 
@@ -124,7 +121,7 @@ def test_grids_for_paraview_say_that_they_did_not_fit(tmp_path):
     )
     path = tmp_path / "grid.vtu"
     done = subprocess.run(
-        [sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True, env=UNWATCHED
+        [sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True, env=unwatched()
     )
     assert done.stdout.split() == [str(errno.ENOSPC), str(path)]
     assert done.stderr == ""
