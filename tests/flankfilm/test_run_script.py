@@ -559,7 +559,7 @@ def pins() -> dict[str, list[str]]:
 
 def test_every_version_is_exact_and_has_hashes() -> None:
     for pin, hashes in pins().items():
-        assert re.fullmatch(r"[A-Za-z0-9._-]+==[^ ]+( ; .+)?", pin)
+        assert re.fullmatch(r"[A-Za-z0-9._-]+(\[[a-z,]+\])?==[^ ]+( ; .+)?", pin)
         assert hashes, pin
         assert all(re.fullmatch("--hash=sha256:[0-9a-f]{64}", one) for one in hashes)
     assert "://" not in (ROOT / "requirements.txt").read_text()  # which index is the user's to say
