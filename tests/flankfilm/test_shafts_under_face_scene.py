@@ -112,7 +112,7 @@ def test_the_drive_train_has_the_tilt_of_the_mesh_on_its_shafts(overhung):
     without = _engine(plain)[DRIVE]
     assert without.tilt_stiffness == without.load_centre == 0.0
     assert 0.0 < drive.tilt_change < 0.5 * without.tilt_change
-    assert "if it bore evenly" in drive_parts.drive(without, data).notes[0]
+    assert "for a load that is even over the face" in drive_parts.drive(without, data).notes[0]
 
 
 @pytest.mark.slow
