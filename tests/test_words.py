@@ -40,6 +40,13 @@ REFUSED_ON_PAGES = {  # things that are not alive
     r"\bknows?\b(?! how)": "includes, describes, depends on",
     r"\bfeels?\b": "is affected by",
     r"\basks? for\b": "needs, requires",
+    r"\bbears?\b": "carries load, is in contact",
+    r"\bhands? (it |them )?over\b": "transfers",
+    r"\bstands? for\b": "replaces, corresponds to",
+    r"\bgoes on\b": "continues",
+    r"\bsays? so\b": "reports it",
+    r"\bthrow-away\b": "independent",
+    r"\bhardly any\b": "very small",
 }
 WORDS = {re.compile(pattern, re.IGNORECASE): instead for pattern, instead in REFUSED.items()}
 WORDS_OF_PAGES = WORDS | {re.compile(pattern): instead for pattern, instead in REFUSED_ON_PAGES.items()}
