@@ -151,7 +151,7 @@ def basins(
         labels[some] = mine
         if progress is not None:
             progress(int(some[-1]) + 1, len(labels))
-    last = labels == UNSETTLED  # of the first starts: there were fewer attractors to come to
+    last = labels == UNSETTLED  # of the first starts: there were fewer known attractors
     if np.any(last) and any(orbit is not None for orbit in found.orbits):
         mine, there = labels[last], starts[last]
         found.settle(there, (PATIENCE + 1) * wait, mine, UNSETTLED)

@@ -21,7 +21,7 @@ from dynamics.states import Region, within
 
 FIRST = 1e-6  # of the size of the orbit: where a manifold starts, on the eigenvector
 ROUNDS = 2000  # of a manifold at most
-SPLIT = 1e-12  # least gap of the start's parameter that is still halved
+SPLIT = 1e-12  # minimum gap of the start's parameter that is still halved
 
 
 @record

@@ -263,7 +263,7 @@ class Roughness:
         0.0005
         """
         radius = deviation / USUAL_SLENDERNESS if tip_radius is None else tip_radius
-        known = deviation > 0.0 and radius > 0.0  # else the constructor tells
+        known = deviation > 0.0 and radius > 0.0  # else the constructor refuses it
         usual = USUAL_NUMBER / (radius * deviation) if known else 1.0
         if law is None:
             law = "zhu-hu" if density is None and tip_radius is None else "greenwood-tripp"

@@ -156,7 +156,7 @@ def _contents(level: Level, squeeze: Squeeze) -> Array | None:
     grid, groups = level.grid, level.groups
     end = int(np.flatnonzero(found.P > 0.0)[-1])
     if not (found.P[int(np.argmax(found.P)) : end] > 0.0).all():
-        return None  # the film breaks behind its greatest pressure
+        return None  # the film breaks behind its maximum pressure
     full = Content.under(grid, groups, found.P, found.H).oil
     flux = fluxes(grid, groups, found.P, found.H, grid.quick)[0] + squeeze.swept(found.P, found.H)[0]
     scale = groups.gap * squeeze.speed

@@ -23,7 +23,7 @@ from ehl.thermal_search import Compared, Search
 _TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")
 _HOTTEST = 1000.0  # [K]
 _DECOMPOSING = 620.0  # [K]
-_STRONGEST = 0.06  # mean shear stress over the greatest pressure
+_STRONGEST = 0.06  # mean shear stress over the maximum pressure
 _CLIMB = (3e7, 5e7, 1e8, 2e8, 5e8)  # Eyring stresses on the way to an oil that yields without thinning [Pa]
 _YIELDING = "give eyring_stress (5e6 to 1e7 Pa) or limiting_shear_ratio"
 _TOLERANCE = Limit.above(0.0, 0.2, remedy="0.01 is 1 %")

@@ -25,7 +25,7 @@ from ehl.supply import OilLayer, Supply
 
 _DONE = 0.05  # last step of the pressure over the tolerance; steps shrink by three and more each
 _MOST_STEPS = 60
-_LEAST = 0.6  # the least film under a spike falls with the cells' size, not with its square: as much more of its change
+_LEAST = 0.6  # the minimum under a spike falls with the cells' size, not with its square: as much more of its change
 _INLET_SHARE = (
     0.04  # of the film by which the central film changes where heat ahead is left out, times that gap
 )

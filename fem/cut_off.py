@@ -171,7 +171,9 @@ def cut_off(
         force, approach = rounded_law(*tips, rounding, removed, turned)
         least = np.nanmin(np.where(force > 0.0, force, np.nan), axis=1)
         law = partial(_along, force, approach - lacking[:, None])
-    if removed is not None:  # whose gap may be least a little inside the corner, where few strips would pull
+    if (
+        removed is not None
+    ):  # whose gap may have its minimum a little inside the corner, where few strips would pull
         least = np.maximum(least, (0.4 * tips[1].distance[FIRST] / of_one) ** 2)
     comes = np.clip((JOIN * distance / of_one) ** 2, least, LAST * force[:, -1])
     flank, own = bodies.hertz(rho1, curvature, kappa), (gear.own(rho) - gear.hub_windup) / (width * kappa**2)
@@ -184,7 +186,9 @@ def cut_off(
     away = whole - (flank.constant + own + further)[:, None] + per_log * (start + above)
     slope = steepness - whole + per_log
     logs = np.concatenate([below, above], axis=1)
-    if removed is not None:  # the gap and the law by strips differ by nanometres, which few forces would tell
+    if (
+        removed is not None
+    ):  # the gap and the law by strips differ by nanometres, which few forces would resolve
         most = STEEPEST * np.abs(away[:, 0])
         slope[:, 0] = np.clip(slope[:, 0], -most, most)
     quotient, slope = _completed(logs, away, slope, 3 * slid * np.exp(start + logs))

@@ -240,7 +240,7 @@ def _joined(parts: list[_Part], law: PlaneElasticity) -> GearField:
     starts = np.cumsum([0, *(len(part.points) for part in parts[:-1])])
     cells = np.concatenate([part.cells + start for part, start in zip(parts, starts, strict=True)])
     plane, indicative = all_of("stress"), all_of("indicative").astype(np.int64)
-    # stress that is only indicative is drawn no greater than the greatest elsewhere, which sets the range of colours
+    # stress that is only indicative is drawn no greater than the maximum elsewhere, which sets the range of colours
     size = _von_mises(plane, law)
     plane = (
         plane * np.minimum(1.0, size[cells[indicative == 0]].max() / np.maximum(size, 1e-300))[:, None, None]

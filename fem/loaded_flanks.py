@@ -98,7 +98,7 @@ def loaded_flanks(
     matrix /= kappa[..., :, None] * kappa[..., None, :]
     on_path = where.touchable & ~where.edge
     middle = 0.5 * float(given.pair.points.A + given.pair.points.E)
-    # contacts that move have a law of their own near the corner
+    # contacts that move have a separate law near the corner
     near = (
         () if given.moving_contact else cut_offs(given, bodies, where, greatest_force(bodies, where, force))
     )

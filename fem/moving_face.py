@@ -70,7 +70,9 @@ def moved_over_face(
         rise = stays.rise[some]
         still = moving_cells(given, bodies, flanks, kappa, pairs, rise, float(strip))
         cells = still
-        if shafts is not None:  # corners are met by what the flanks close, which shafts leave open
+        if (
+            shafts is not None
+        ):  # corners touch at the approach of the flanks, to which shafts do not contribute
             bent = shafts.bent(stays.forces[some], flanks.kappa).sum(axis=-2)[..., None, :] / kappa[..., None]
             still = replace(still, along=still.along + bent.reshape(*bent.shape[:-2], -1))
             cells = replace(still, coupling=still.coupling.plus(shafts.both, kappa))

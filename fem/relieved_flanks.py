@@ -109,7 +109,7 @@ def touch(given: Setting, place: Array, removed: tuple[Removed, Removed]) -> Tou
     curvature = np.clip(1 + radius * bent.sum(axis=0), *CURVATURES)
     touched = rho(sigma)
     gap, where = gap_at(pair.base_radii, line, place, touched[1])
-    # the normals of the involutes there are turned against each other, each by what its flank lacks
+    # the normals of the involutes there are turned against each other, each by the slope of its relief
     leaning = np.stack([slope[0], -slope[1]])
     turned = opening_at(pair.base_radii, line, place, where, touched[1])
     both = leaning[1] - leaning[0]

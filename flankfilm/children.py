@@ -179,7 +179,7 @@ def _end_when_closed(told: Connection) -> None:
         return
     import fcntl
 
-    # opened anew: of a file that processes share only one is told
+    # opened anew: only one of the processes that share a file is notified
     own = os.open(f"/proc/self/fd/{told.fileno()}", os.O_RDONLY | os.O_NONBLOCK)
     fcntl.fcntl(own, fcntl.F_SETOWN, os.getpid())
     fcntl.fcntl(own, fcntl.F_SETFL, os.O_NONBLOCK | os.O_ASYNC)

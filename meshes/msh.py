@@ -64,7 +64,7 @@ def write_msh(path: Path, mesh: GearMesh) -> Path:
             model.addPhysicalGroup(dimension, tags, name=name)
         gmsh.option.setNumber("Mesh.Binary", 1)
         gmsh.write(str(beside))
-        with beside.open("rb") as file:  # gmsh does not tell that a disk is full
+        with beside.open("rb") as file:  # gmsh does not report a full disk
             file.seek(-min(len(END), beside.stat().st_size), os.SEEK_END)
             if file.read() != END:
                 raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))

@@ -21,7 +21,7 @@ from dynamics.oscillator import GearOscillator
 REFINED = 5  # best trials that are refined
 CLEAR = 1e-9  # trials expected by chance below which nothing else is looked at
 COMPLETED = 2  # best of these that all events are looked for with
-PLAYS = 3  # events that touch the back flank tried as the exact one, for the play
+PLAYS = 3  # events that touch the back flank tried as the exact one, for the backlash
 ROUNDS = 4  # of matching and fitting
 
 

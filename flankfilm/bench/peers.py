@@ -89,7 +89,7 @@ def _run(python: Path, work: PeerWork, repeat: int, longest: float) -> dict[str,
     printed = output_of(command, longest, input=json.dumps({**work.given, "repeat": repeat}))
     if isinstance(printed, str):
         return printed
-    # programs print lines of their own
+    # programs print other lines too
     for line in reversed(printed):
         try:
             reply = json.loads(line)

@@ -20,7 +20,7 @@ Solved: TypeAlias = "ehl.Film | ehl.MixedFilm | ehl.FormulaFilm"
 Supply: TypeAlias = "ehl.Meniscus | ehl.OilLayer | None"
 
 LEAST_SHARE = 1e-3
-_LEAST_PLANES = 0.5  # sigma: least distance of mean planes from which a power law of the load goes on
+_LEAST_PLANES = 0.5  # sigma: minimum distance of mean planes from which a power law of the load goes on
 """Pairs with less than this part of the force get no film: they hardly touch, and what their film
 separates them by moves the load share by less than their own part."""
 

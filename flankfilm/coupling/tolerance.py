@@ -67,7 +67,7 @@ def split(tolerance: float, laws: Sequence[CostLaw]) -> dict[str, float] | None:
         return None
     if tolerance >= (coarsest := math.fsum(law.coarsest for law in laws)):
         return {law.name: law.coarsest * tolerance / coarsest for law in laws}
-    # the least slope at which every stage would still be at its coarsest, and one at which all are at their finest
+    # the minimum slope at which every stage would still be at its coarsest, and one at which all are at their finest
     low = min(_slope(law, law.coarsest) for law in laws)
     high = max(_slope(law, max(law.finest, 1e-9 * tolerance)) for law in laws)
     low, high = math.log(low), math.log(high)

@@ -107,7 +107,7 @@ def mark_path(points: Mapping[str, float], *panels: Axes) -> None:
     for at, name in sorted((at, name) for name, at in points.items()):
         for axes in panels:
             axes.axvline(at, color=MARK, linewidth=0.8)
-        # names of points that lie close together stand by turns above each other
+        # names of points that lie close together stand alternately at two heights
         raised = not raised and at - before < narrow
         panels[0].annotate(
             name, (at, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 12 if raised else 2),

@@ -232,7 +232,7 @@ def to_svg(drawn: Figure, prefix: str) -> str:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     text = io.StringIO()
-    # no paper of their own: the page's shows through, with the shades that hint at more
+    # no background: the page's shows through, with the shades that hint at more
     drawn.patch.set_visible(False)
     for axes in drawn.axes:
         axes.patch.set_visible(False)

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from flankfilm.scene import Scene
 
 ALONG_FLANKS = ("diameter", "face_place")
-"""What measured flanks are drawn over."""
+"""Abscissas of the drawings of measured flanks."""
 
 HEADLINES: Mapping[str, Callable[[Any], list[Headline]]] = {
     "film": film_parts.headlines,
@@ -62,7 +62,7 @@ RANKS: Mapping[str, tuple[int, ...]] = {
 """Ranks on the page of the first figures of each stage; the others follow."""
 
 PRESSED = {"stiffness", "film", "root-stress"}
-"""Wants of a scene that the contact pressure matters to."""
+"""Wants of a scene for which the contact pressure is shown."""
 
 PARTS: Mapping[str, Callable[[Any, xr.Dataset], Part]] = {
     "torques": mesh_parts.over_torque,
@@ -81,13 +81,13 @@ PARTS: Mapping[str, Callable[[Any, xr.Dataset], Part]] = {
     "run-up": speed_parts.run_up,
     "dynamic-map": speed_parts.dynamic_map,
 }
-"""Stages with a section of their own, after geometry, stiffness and film."""
+"""Stages with separate sections, after geometry, stiffness and film."""
 
 GEOMETRY = {"geometry", "report"}
 """Wants of a scene whose geometry is printed whole."""
 
 SHOWN = 5
-"""Files of somebody else that are named."""
+"""Maximum number of foreign files that are named."""
 
 
 def headlines(results: Results) -> list[Headline]:
@@ -96,7 +96,7 @@ def headlines(results: Results) -> list[Headline]:
 
 
 def misses(results: Results) -> list[str]:
-    """Say which of these have errors above the scene's tolerance, and what solvers have to report."""
+    """Headlines whose error is above the tolerance of the scene, and messages of solvers."""
     above = [one.miss(results.scene.tolerance) for one in _headlines(results)]
     return [*filter(None, above), *run_parts.doubts(results)]
 
@@ -104,7 +104,7 @@ def misses(results: Results) -> list[str]:
 def _headlines(results: Results) -> list[Headline]:
     values, cycle = results.values, final_cycle(results)
     shown = [] if cycle is None else mesh_parts.headlines(cycle, values["pair"].face_width)
-    if _film_failed(results):  # a figure of dry teeth is none of lubricated ones
+    if _film_failed(results):  # figures of dry teeth must not pass for lubricated ones
         shown = [replace(one, name=f"{one.name}, without the film") for one in shown]
     shown = _ranked(shown, OF_CYCLE)
     dry: MeshCycle | None = values.get("dry cycle")
@@ -189,13 +189,13 @@ def write_report(results: Results, folder: Path) -> Path:
 
 
 def _asked(scene: Scene) -> dict[str, Any]:
-    """Plain values of a scene; a section [film] that it does not have says nothing of the film that was solved."""
+    """Plain values of a scene; the defaults of [film] are left out if the scene has no such section."""
     unsaid = set() if "film" in scene.model_fields_set else {"film"}
     return scene.model_dump(exclude_none=True, exclude=unsaid)
 
 
 def _facts(results: Results) -> list[Fact]:
-    """What was computed, how well, and at what cost, in a line."""
+    """What was computed, at what tolerance and cost, in one line."""
     scene, facts = results.scene, []
     if count := len(results.failures):
         facts.append(Fact(f"{counted(count, 'part')} not computed", "failures"))
@@ -237,7 +237,7 @@ def _result_parts(results: Results) -> list[Part]:
 
 
 def _film_notes(results: Results, film: LubricatedCycle | None) -> list[str]:
-    """Why there is a film or none, and what it changes."""
+    """The reason for the film or its absence, and the changes of stiffness by the film."""
     if _film_failed(results):
         return [said("film_failed")]
     notes = [] if results.plan is None else [f"Film: {results.plan.film.reason}."]

@@ -1,4 +1,4 @@
-"""Sections of the report about drive trains: modes, and what bearings, shafts and couplings carry over the speed."""
+"""Sections of the report about drive trains: modes, and loads of bearings, shafts and couplings over the speed."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ RPM = 1.0 / factor("rpm")
 
 
 def drive(stage: PairDrive, results: xr.Dataset) -> Part:
-    """Modes of the train: frequency, the pinion's speed at which the mesh meets it, and what moves most."""
+    """Modes of the train: frequency, pinion speed of resonance with the mesh, and coordinate of largest motion."""
     rows = tuple(
         (
             str(row),
@@ -50,9 +50,9 @@ def drive(stage: PairDrive, results: xr.Dataset) -> Part:
         "mode",
         "frequency [Hz]",
         "error",
-        "met by the mesh at [rpm]",
+        "mesh resonance at [rpm]",
         "elastic energy in the mesh [%]",
-        "moves most",
+        "largest motion",
         "retained",
     )
     notes = [
@@ -69,7 +69,7 @@ def drive(stage: PairDrive, results: xr.Dataset) -> Part:
 
 
 def _tilt(stage: PairDrive) -> str:
-    """How the mesh of the train resists tilt, and what is left out of that."""
+    """Resistance of the mesh of the train to tilt, and the parts of it that are left out."""
     change = percent(stage.tilt_change)
     if not stage.tilt_stiffness:
         return said("drive_gives_way", change=change)
@@ -85,15 +85,15 @@ def valid(stage: PairDrive | DriveSweep) -> list[str]:
 
 
 def drive_sweep(stage: DriveSweep, results: xr.Dataset) -> Part:
-    """Draw what every part carries over the speed, and list the greatest of each and where it is met."""
+    """Draw the load of every part over the speed; list the maximum of each and its speed."""
     heads = (
         "part",
         "mean",
-        "greatest",
+        "maximum",
         "error",
         "at [rpm]",
         "with damping of shafts at the ends of its band",
-        "root mean square about the mean, greatest",
+        "root mean square about the mean, maximum",
         "unit",
     )
     rows = (*_rows(stage, "bearing", "bearing_force", "N"), *_rows(stage, "shaft", "shaft_torque", "N m"))
@@ -111,7 +111,7 @@ def drive_sweep(stage: DriveSweep, results: xr.Dataset) -> Part:
 
 
 def _truncated(stage: DriveSweep) -> list[str]:
-    """What the series leaves out of forces and torques; nothing for a given series."""
+    """Effect of the omitted harmonics on forces and torques; nothing for a given series."""
     if stage.force_change is None or stage.checked is None:
         return []
     changes = np.concatenate(list(stage.force_change.values()))
@@ -132,7 +132,7 @@ def _truncated(stage: DriveSweep) -> list[str]:
 
 
 def _rows(stage: DriveSweep, part: str, figure: str, unit: str) -> Iterator[tuple[str, ...]]:
-    """Mean, greatest and swing of every bearing, or of every shaft and coupling, of both sweeps."""
+    """Mean, maximum and variation of every bearing, or of every shaft and coupling, of both sweeps."""
     for column, name in enumerate(getattr(stage, f"{part}s")):
         mean, swing = (_both(stage, f"{figure}{kind}", column) for kind in ("_mean", "_swing"))
         peak, error, speed = (
@@ -160,7 +160,7 @@ def carried_table(
     values: Callable[[str], Array],
     where: Callable[[Sequence[int]], tuple[str, ...]],
 ) -> tuple[Table, ...]:
-    """Table of the greatest and the swing of every part, and where they are met; none for a pair on rigid shafts.
+    """Table of the maximum and the variation of every part, and their place; none for a pair on rigid shafts.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def carried_table(
             rows.append(
                 (name, number(float(np.nanmax(most))), *where(at), number(float(np.nanmax(swing))), unit)
             )
-    heads = ("part", "greatest", *places, "root mean square about the mean, greatest", "unit")
+    heads = ("part", "maximum", *places, "root mean square about the mean, maximum", "unit")
     return (Table(heads, tuple(rows)),) if rows else ()
 
 
@@ -192,11 +192,11 @@ def _both(stage: DriveSweep, figure: str, column: int) -> Array:
 
 
 def headlines(stage: DriveSweep) -> list[Headline]:
-    """Greatest force of a bearing and greatest torque of a shaft, each with where it is met."""
+    """Maximum force of a bearing and maximum torque of a shaft, each with its speed."""
     found = []
     for what, part, figure, unit in (
-        ("greatest force of a bearing", "bearing", "bearing_force", "N"),
-        ("greatest torque of a shaft", "shaft", "shaft_torque", "N m"),
+        ("maximum force of a bearing", "bearing", "bearing_force", "N"),
+        ("maximum torque of a shaft", "shaft", "shaft_torque", "N m"),
     ):
         names, values = getattr(stage, f"{part}s"), getattr(stage, f"{figure}_peak")
         if not names or not np.isfinite(values).any():

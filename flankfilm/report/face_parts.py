@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import fem
     from flankfilm.coupling import FaceLoadModels
 
-GREATEST = "greatest face-load factor"
+GREATEST = "maximum face-load factor"
 
 
 def face(found: fem.FaceLoads, models: FaceLoadModels | None, results: xr.Dataset) -> Part:
@@ -53,7 +53,7 @@ def headlines(found: fem.FaceLoads) -> list[Headline]:
 
 
 def _made_of(found: fem.FaceLoads) -> str:
-    """What makes the load vary."""
+    """Causes of the variation of the load."""
     setting, parts = found.setting, []
     for name, lead in zip(("pinion", "wheel"), setting.leads, strict=True):
         for what, value in (
@@ -76,12 +76,12 @@ def _made_of(found: fem.FaceLoads) -> str:
         parts.append(
             f"bending and twist of the shaft of {' and '.join(f'the {name}' for name in bent)} under the load"
         )
-    made = "; ".join(parts) or "straight leads and parallel axes: what varies is by the ends alone"
+    made = "; ".join(parts) or "straight leads and parallel axes, so that only the ends cause variation"
     return said("face_made_of", made=made, cells=setting.cells, model=LABELS[setting.model])
 
 
 def _bears(found: fem.FaceLoads) -> Table:
-    """Greatest values over path and face, and the contact pattern."""
+    """Maximum values over path and face, and the contact pattern."""
     return Table(("over path and face", "value"), tuple(_rows(found)))
 
 
@@ -95,13 +95,13 @@ def _rows(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
     at = f"{number(1e3 * float(found.face_position[cell]), 3)} mm"
     yield "its place on the face, from the middle", at
     pressure = read_figure(found, "hertz_pressure")
-    yield f"greatest {pressure.meaning}", f"{number(float(np.nanmax(pressure.values)))} {pressure.unit}"
-    yield "contact pattern: part of the face that is touched", percent(found.contact_pattern, 3)
+    yield f"maximum {pressure.meaning}", f"{number(float(np.nanmax(pressure.values)))} {pressure.unit}"
+    yield "contact pattern: part of the face in contact", percent(found.contact_pattern, 3)
     yield from _of_shafts(found)
 
 
 def _of_shafts(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
-    """How far shafts give way and tilt, and their parts of the transmission error; nothing of rigid ones."""
+    """Deflection and tilt of shafts, and their parts of the transmission error; nothing for rigid shafts."""
     if found.shaft_deflection is None or found.shaft_error is None or found.tilt_error is None:
         return
     errors = plus_minus(found.shaft_error), plus_minus(found.tilt_error)
@@ -112,7 +112,7 @@ def _of_shafts(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
         ):
             if np.any(values):
                 size = number(1e6 * float(values[np.argmax(np.abs(values))]))
-                yield f"greatest {what} by the shaft of the {name}", f"{size} µm {off}"
+                yield f"maximum {what} by the shaft of the {name}", f"{size} µm {off}"
     parts = found.shaft_transmission_error, found.tilt_transmission_error
     for name, part, off in zip(("shafts", "shafts' tilt"), parts, errors, strict=True):
         if part is not None:
@@ -121,7 +121,7 @@ def _of_shafts(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
 
 
 def models_table(models: FaceLoadModels) -> Table:
-    """Factors by every model, and how far its line load is from the first one's."""
+    """Factors by every model, and the difference of its line load from that of the first model."""
     columns = zip(
         models.model,
         models.face_load_factor,
@@ -145,23 +145,23 @@ def models_table(models: FaceLoadModels) -> Table:
     )
     heads = (
         "model",
-        "greatest face-load factor",
+        "maximum face-load factor",
         "at the pitch point",
         "differs from the first",
-        "greatest line load [N/mm]",
+        "maximum line load [N/mm]",
         "line load differs from the first, root mean square",
     )
-    return Table(heads, rows, "Behind ± stands the numerical error, not that of the model.")
+    return Table(heads, rows, "± is the numerical error only; the error of the model is not included.")
 
 
 def _failing(models: FaceLoadModels) -> Iterator[str]:
-    """Where slices and ISO 6336-1 fail, in numbers."""
+    """Differences of slices and ISO 6336-1 from the first model, in numbers."""
     off = dict(zip(models.model, models.factor_difference, strict=True))
     first, (slices, iso) = models.model[0], (LABELS["slices"], models.model[-1])
     if first != slices:
         yield said("face_slices", off=_signed(off[slices]), first=first)
     if models.iso_fault:
-        yield f"ISO 6336-1 has no answer: {models.iso_fault}"
+        yield f"ISO 6336-1 gives no result: {models.iso_fault}"
     else:
         slope = number(1e6 * abs(models.misalignment), 3)
         yield said(

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from flankfilm.coupling import FilmAlongPath, LubricatedCycle
 
 
-LEAST = "least film on the path"
+LEAST = "minimum film on the path"
 """Name of the headline."""
 
 HELD = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}
@@ -65,10 +65,10 @@ def _pictured(cycle: LubricatedCycle) -> Iterator[str]:
 
 
 def _captions(stage: FilmAlongPath) -> dict[str, str]:
-    """What the captions say of this film and of no other."""
+    """Parts of the captions that depend on this film."""
     steps = len(parts_of(stage.load)) > 1
     shares = {
-        "How far the contact is starved": stage.starvation,
+        "Starved over flooded film": stage.starvation,
         "the film ratio": stage.film_ratio,
         "the asperities' share of the load": stage.asperity_share,
     }
@@ -77,7 +77,7 @@ def _captions(stage: FilmAlongPath) -> dict[str, str]:
     narrow = any(spike is None or not np.isfinite(spike.error) for spike in sought)
     listed = " and ".join([", ".join(shown[:-1]), *shown[-1:]] if shown[1:] else shown)
     return {
-        "steps": "; both step where a pair comes or goes" if steps else "",
+        "steps": "; both jump where a pair enters or leaves the mesh" if steps else "",
         "shares": listed[:1].upper() + listed[1:],
         "rough": said("rough_pressure") if stage.film_ratio is not None else "",
         "spikes": said("narrow_spikes") if narrow else said("resolved_spikes"),
@@ -85,7 +85,7 @@ def _captions(stage: FilmAlongPath) -> dict[str, str]:
 
 
 def _over_face(cycle: LubricatedCycle) -> Iterator[str]:
-    """What films over the face are made of, and what they leave out."""
+    """Composition of films over the face, and the effects that they leave out."""
     found = cycle.over_face
     if found is not None:
         yield said(
@@ -100,31 +100,31 @@ def _over_face(cycle: LubricatedCycle) -> Iterator[str]:
 
 
 def _definitions(stage: FilmAlongPath, face: float) -> Table:
-    """Film stiffness by every definition: at C with what it costs, and its range along the path; `face` in N/m."""
+    """Film stiffness by every definition: at C with the loss of the pair, and over the path; `face` in N/m."""
     ends = {name: (number(k.min() / face), number(k.max() / face)) for name, k in stage.stiffness.items()}
     caption = f"Stiffness in {unit_text(PER_FACE)}."
     if not stage.at_pitch:
-        heads = ("film stiffness by", "least", "largest")
+        heads = ("film stiffness by", "minimum", "maximum")
         return Table(heads, tuple((name, *both) for name, both in ends.items()), caption)
     return Table.of(
         stage.at_pitch,
         {
             "film stiffness by": lambda row: row.definition.replace("-", " "),
-            "what it is": lambda row: row.meaning,
+            "meaning": lambda row: row.meaning,
             "at C": lambda row: number(row.stiffness / face),
             "error": lambda row: percent(row.error),
             "loss of the pair's stiffness at C": lambda row: (
                 percent(row.loss) if np.isfinite(row.loss) else "-"
             ),
-            "least": lambda row: ends.get(row.definition, "--")[0],
-            "largest": lambda row: ends.get(row.definition, "--")[1],
+            "minimum": lambda row: ends.get(row.definition, "--")[0],
+            "maximum": lambda row: ends.get(row.definition, "--")[1],
         },
-        caption + (" Formulas are of flooded contacts." if stage.supply != "flooded" else ""),
+        caption + (" Formulas are for flooded contacts." if stage.supply != "flooded" else ""),
     )
 
 
 def _otherwise(lubricated: LubricatedCycle, face: float) -> Table:
-    """The mesh without film, flooded, and starved with either held; `face` in N/m."""
+    """The mesh without film, flooded, and starved with meniscus or layer held constant; `face` in N/m."""
     dry = lubricated.dry
     rows = tuple(
         (
@@ -143,7 +143,7 @@ def _otherwise(lubricated: LubricatedCycle, face: float) -> Table:
     )
     means = ("mean secant", "change", "mean tangent", "change", "first harmonic of the tangent over its mean")
     error = percent(max((one.mean_error or 0.0 for one in (dry, lubricated)), default=None))
-    caption = f"Stiffness in {unit_text(PER_FACE)}; the means are numerically right to {error}."
+    caption = f"Stiffness in {unit_text(PER_FACE)}; the numerical error of the means is {error}."
     return Table(("mesh stiffness with", *means), rows, caption)
 
 
@@ -172,12 +172,12 @@ def _regimes(low: float, high: float) -> str:
 
 
 def _ends(curve: Array) -> tuple[float, float]:
-    """Least and largest value."""
+    """Minimum and maximum."""
     return float(curve.min()), float(curve.max())
 
 
 def _off(cycle: LubricatedCycle) -> Uncertainty:
-    """Error of what the film changes the mean secant stiffness by: of both cycles, which share their meshes."""
+    """Error of the change of the mean secant stiffness by the film: of both cycles, which share their meshes."""
     known = [one.mean_error for one in (cycle, cycle.dry)]
     errors = [error for error in known if error is not None]
     if cycle.film.error is None or len(errors) < len(known):
@@ -186,7 +186,7 @@ def _off(cycle: LubricatedCycle) -> Uncertainty:
 
 
 def regime_said(ratio: float) -> str:
-    """Regime at the least film ratio of a film."""
+    """Regime at the minimum film ratio of a film."""
     return f"{regime(ratio)} lubrication (below 1 boundary, below 3 mixed)"
 
 
@@ -198,17 +198,17 @@ def headlines(cycle: LubricatedCycle) -> list[Headline]:
     changed = f"{float(change.values):+.2f}"
     shown = [
         Headline(LEAST, f"{float(least.values):.3g}", note, least.unit, off),
-        Headline("mean secant stiffness, change by the film", changed, note, change.unit, _off(cycle)),
+        Headline("change of the mean secant stiffness by the film", changed, note, change.unit, _off(cycle)),
     ]
     if stage.starvation is not None:
         supply = f"supply: {stage.supply}"
         error = Uncertainty(None if stage.error is None else math.sqrt(2.0) * stage.error)
         least_part = f"{stage.starvation.min():.3g}"
-        name = "starved over flooded film, the least"
+        name = "starved over flooded film, minimum"
         shown.append(Headline(name, least_part, supply, uncertainty=error))
     ratio = stage.least_film_ratio
     if ratio is not None and stage.asperity_share is not None:
         share = f"{regime_said(ratio)}; asperities carry up to {percent(stage.asperity_share.max())}"
         error = uncertainty(stage, "least_film_ratio")
-        shown.append(Headline("least film ratio Lambda", f"{ratio:.3g}", share, uncertainty=error))
+        shown.append(Headline("minimum film ratio Lambda", f"{ratio:.3g}", share, uncertainty=error))
     return shown

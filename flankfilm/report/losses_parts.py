@@ -72,14 +72,14 @@ def headlines(found: MeshLosses) -> list[Headline]:
             uncertainty=uncertainty(found, "mean_friction"),
         ),
         Headline(
-            "greatest temperature of the flanks",
+            "maximum temperature of the flanks",
             f"{hottest:.1f}",
             _bulk(found),
             "°C",
             in_kelvin(found, "greatest_contact_temperature"),
         ),
         Headline(
-            "least film with heat",
+            "minimum film with heat",
             f"{float(least.values):.3g}",
             unit=least.unit,
             uncertainty=uncertainty(found.path, "least_film"),
@@ -88,7 +88,9 @@ def headlines(found: MeshLosses) -> list[Headline]:
     if (ratio := found.path.least_film_ratio) is not None:
         off = uncertainty(found.path, "least_film_ratio")
         shown.append(
-            Headline("least film ratio Lambda with heat", f"{ratio:.3g}", regime_said(ratio), uncertainty=off)
+            Headline(
+                "minimum film ratio Lambda with heat", f"{ratio:.3g}", regime_said(ratio), uncertainty=off
+            )
         )
     return shown
 
@@ -115,7 +117,7 @@ def _lost(found: MeshLosses) -> str:
 
 
 def _by_stress(found: MeshLosses, scene: Scene) -> str:
-    """What Eyring's stress leaves open."""
+    """Losses over the range of the Eyring stress."""
     stress = shearing_oil(scene).eyring_stress
     assert stress is not None
     low, high = np.sort(found.band.mesh_loss)
@@ -127,7 +129,7 @@ def _by_stress(found: MeshLosses, scene: Scene) -> str:
 
 
 def _rubbing(found: MeshLosses, scene: Scene) -> Iterator[str]:
-    """What the asperities' friction leaves open, and the regime; nothing of smooth flanks."""
+    """Losses over the range of the boundary friction, and the regime; nothing for smooth flanks."""
     band, ratio = found.boundary, found.path.least_film_ratio
     if band is None or ratio is None or scene.roughness is None:
         return
@@ -154,7 +156,7 @@ def _warm(found: MeshLosses, scene: Scene) -> str:
         source = "as [heat] gives them" if given else "as warm as the oil"
     else:
         first, second = (number(one, 3) for one in found.heat)
-        source = f"where they give off the losses, {first} and {second} W"
+        source = f"at which they give off the losses, {first} and {second} W"
     return said("losses_warm", bulk=_bulk(found), source=source, rise=_rise(found))
 
 
@@ -195,7 +197,7 @@ def _band(found: MeshLosses) -> Table:
         "mean friction [-]",
         "sliding [W]",
         "rolling [W]",
-        "whole [W]",
+        "total [W]",
         "efficiency [%]",
         "numerical error of the losses",
     )
@@ -203,11 +205,11 @@ def _band(found: MeshLosses) -> Table:
 
 
 def _boundary(found: MeshLosses) -> list[Table]:
-    """Means at the ends of the band of the asperities' friction; none of smooth flanks."""
+    """Means at the ends of the band of the boundary friction; none for smooth flanks."""
     band = found.boundary
     if band is None:
         return []
-    heads = ("boundary friction [-]", "mean friction [-]", "sliding [W]", "whole [W]", "efficiency [%]")
+    heads = ("boundary friction [-]", "mean friction [-]", "sliding [W]", "total [W]", "efficiency [%]")
     columns = (
         [f"{one:g}" for one in band.boundary_friction],
         [f"{one:.4f}" for one in band.mean_friction],
@@ -215,29 +217,29 @@ def _boundary(found: MeshLosses) -> list[Table]:
         list(map(number, band.mesh_loss)),
         [f"{100 * one:.3f}" for one in band.efficiency],
     )
-    caption = "Means over the path; films, load share and temperatures stay."
+    caption = "Means over the path; films, load share and temperatures are unchanged."
     return [Table(heads, tuple(zip(*columns, strict=True)), caption)]
 
 
 def _greatest(found: MeshLosses) -> Table:
-    """Greatest values along the path, and the loss factor."""
+    """Maximum values along the path, and the loss factor."""
     return Table(("along the path", "value"), tuple(_rows(found)))
 
 
 def _rows(found: MeshLosses) -> Iterator[tuple[str, str]]:
     path = found.path
-    yield "greatest oil temperature above the flanks' bulk", f"{path.oil_temperature_rise.max():.1f} K"
+    yield "maximum oil temperature above the flanks' bulk", f"{path.oil_temperature_rise.max():.1f} K"
     for gear, rise in zip(("pinion", "wheel"), path.surface_temperature_rise, strict=True):
-        yield f"greatest rise of the {gear}'s flank", f"{rise.max():.1f} K"
+        yield f"maximum rise of the {gear}'s flank", f"{rise.max():.1f} K"
     yield (
-        "greatest flash temperature after Blok, at the same friction",
+        "maximum flash temperature after Blok, with the same friction",
         f"{path.flash_temperature.max():.1f} K",
     )
     slides = 1e-9 * found.path.greatest_pressure_times_sliding
-    yield "greatest Hertz pressure times sliding speed", f"{slides:.3g} GPa m/s"
+    yield "maximum Hertz pressure times sliding speed", f"{slides:.3g} GPa m/s"
     if path.film_ratio is not None:
-        yield "least film ratio Lambda with heat", f"{path.film_ratio.min():.3g}"
+        yield "minimum film ratio Lambda with heat", f"{path.film_ratio.min():.3g}"
     yield "tooth loss factor H_V of the forces", f"{found.loss_factor:.4f}"
     if found.ohlendorf_loss_factor is not None:
-        yield "H_V after Ohlendorf, pairs sharing evenly", f"{found.ohlendorf_loss_factor:.4f}"
-    yield "energy that does not close, at most", percent(float(np.max(np.abs(path.closure))))
+        yield "H_V after Ohlendorf, equal load of both pairs", f"{found.ohlendorf_loss_factor:.4f}"
+    yield "residual of the energy balance, maximum", percent(float(np.max(np.abs(path.closure))))

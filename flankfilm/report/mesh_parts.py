@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from gears.closed_form import Iso6336ContactStress, Iso6336RootStress
 
 EXPLAINED = {"body": "reference_body", "bore": "reference_bore", "teeth": "reference_teeth"}
-"""Texts that explain what deflections are measured against."""
+"""Texts that explain the reference of deflections."""
 
 LISTED = 6
 """Harmonics in the table of a mesh cycle."""
@@ -58,9 +58,9 @@ def stiffness(
     ----------
     single : SinglePairs or None
     cycles : sequence of MeshCycle
-        Of all models, the one that counts first.
+        Of all models; the first one gives the figures of the report.
     changes : sequence of str
-        Notes about what was chosen and what the film changes.
+        Notes about decisions and about the changes by the film.
     face_width : float
         [m]
     results : xarray.Dataset
@@ -102,14 +102,14 @@ def _cycles(cycles: Sequence[MeshCycle], face_width: float) -> Table:
             "secant from, to": ends,
             **shown("mean_stiffness", face_width),
             **shown("transmission_error_range"),
-            "error by the contacts' model": lambda cycle: percent(cycle.model_error),
+            "error of the contact model": lambda cycle: percent(cycle.model_error),
         },
-        "Behind ± stands the numerical error, where it is known.",
+        "± is the numerical error, where it is known.",
     )
 
 
 def references(found: StiffnessReferences, face_width: float) -> Part:
-    """Mean stiffness by what the deflection is measured against, beside ISO 6336-1, and parts of the deflection."""
+    """Mean stiffness for each reference of the deflection, beside ISO 6336-1, and parts of the deflection."""
     tangent, secant, iso = (
         read_figure(found, name, face_width)
         for name in ("mean_stiffness", "mean_secant_stiffness", "iso_mesh_stiffness")
@@ -126,21 +126,21 @@ def references(found: StiffnessReferences, face_width: float) -> Part:
     parts = [
         (PARTS[name], number(1e6 * part, 4), percent(part / whole)) for name, part in found.deflection.items()
     ]
-    parts.insert(-1, ("all, against the bodies", number(1e6 * whole, 4), percent(1.0)))
+    parts.insert(-1, ("total, relative to the bodies", number(1e6 * whole, 4), percent(1.0)))
     parts.append(
-        ("all, against the bores", number(1e6 * (whole + of_hubs), 4), percent(1.0 + of_hubs / whole))
+        ("total, relative to the bores", number(1e6 * (whole + of_hubs), 4), percent(1.0 + of_hubs / whole))
     )
-    heads = ("deflection measured against", f"secant [{secant.unit}]", f"tangent [{tangent.unit}]", "error")
+    heads = ("deflection relative to", f"secant [{secant.unit}]", f"tangent [{tangent.unit}]", "error")
     tables = (
         Table(heads, tuple(means)),
-        Table(("mean deflection, without film", "µm", "of that against the bodies"), tuple(parts)),
+        Table(("mean deflection, without film", "µm", "of that relative to the bodies"), tuple(parts)),
     )
-    title = "What the deflection is measured against"
+    title = "Reference of the deflection"
     return Part("references", title, tables=tables, notes=(said("references"),))
 
 
 def _harmonics(cycle: MeshCycle) -> Table:
-    """First harmonics of the cycle that counts, with their errors in the unit of each."""
+    """First harmonics of the cycle of the report, with their errors in the unit of each."""
     names = ("secant_stiffness_harmonics", "stiffness_harmonics", "transmission_error_harmonics")
     heads, columns = ["harmonic"], [[str(order) for order in range(1, LISTED + 1)]]
     for name in names:
@@ -163,7 +163,7 @@ def iso_table(iso: Any) -> Table:
 
 
 def contact_table(contact: Iso6336ContactStress, loaded: fem.MeshCycle | None) -> Table:
-    """Nominal contact stress of both gears by ISO 6336-2, and the greatest Hertz pressure by finite elements."""
+    """Nominal contact stress of both gears by ISO 6336-2, and the maximum Hertz pressure by finite elements."""
     common = ("Z_H", "Z_E", "Z_eps")
     rows: list[tuple[str, ...]] = []
     for name in common:
@@ -179,8 +179,8 @@ def contact_table(contact: Iso6336ContactStress, loaded: fem.MeshCycle | None) -
         return Table(heads, tuple(rows))
     pressure = read_figure(loaded, "hertz_pressure")
     greatest = number(float(np.nanmax(pressure.values)), 4)
-    rows.append((pressure.named("finite elements, greatest Hertz pressure"), greatest, greatest))
-    caption = "Contact stress; that by finite elements is of the positions computed, without tip edges, error unknown."
+    rows.append((pressure.named("finite elements, maximum Hertz pressure"), greatest, greatest))
+    caption = "Contact stress. Finite elements: at the positions computed, without tip edges, error unknown."
     return Table(heads, tuple(rows), caption)
 
 
@@ -208,11 +208,11 @@ def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
 
 
 def pressure_headlines(loaded: fem.MeshCycle, single: SinglePairs | None) -> list[Headline]:
-    """Greatest Hertz pressure of two flanks beside the nominal contact stresses of ISO 6336-2."""
+    """Maximum Hertz pressure of two flanks beside the nominal contact stresses of ISO 6336-2."""
     pressure = read_figure(loaded, "hertz_pressure")
     if not np.isfinite(pressure.values).any():
         return []
-    note = "of the positions computed, without tip edges, error unknown"
+    note = "at the positions computed, without tip edges, error unknown"
     if single is not None:
         note += f"; ISO 6336-2 nominal {' and '.join(f'{1e-6 * one:.4g}' for one in single.contact.stresses)}"
     greatest = number(float(np.nanmax(pressure.values)), 4)
@@ -222,7 +222,7 @@ def pressure_headlines(loaded: fem.MeshCycle, single: SinglePairs | None) -> lis
 def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
     """Stress at the roots by finite elements, beside ISO 6336-3."""
     peaks = [
-        (f"{name}, greatest {kind}", getattr(gear, f"greatest_{kind}"), gear.errors[f"greatest_{kind}_Pa"])
+        (f"{name}, maximum {kind}", getattr(gear, f"greatest_{kind}"), gear.errors[f"greatest_{kind}_Pa"])
         for name, gear in (("pinion", stage.stress.pinion), ("wheel", stage.stress.wheel))
         for kind in ("tension", "compression")
     ]
@@ -240,7 +240,7 @@ def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
     tables = [Table.of(peaks, columns)]
     if over_face:
         tables.append(_over_face(stage))
-    note = f"ISO 6336-3 has no answer: {stage.iso_fault}"
+    note = f"ISO 6336-3 gives no result: {stage.iso_fault}"
     if stage.iso is not None:
         tables.append(_iso(stage.iso))
         both = "at D for the pinion and at B for the wheel"
@@ -256,9 +256,9 @@ def _over_face(stage: RootStresses) -> Table:
     for name, gear in (("pinion", stage.stress.pinion), ("wheel", stage.stress.wheel)):
         if gear.face is not None:
             factor = f"{number(gear.face.face_factor)} {plus_minus(gear.face.tension_error)}"
-            rows.append((f"{name}: greatest tension over its mean over the face", factor))
+            rows.append((f"{name}: maximum tension over its mean along the face", factor))
             even = f"{number(gear.face.over_even)} {plus_minus(gear.face.tension_error)}"
-            rows.append((f"{name}: greatest tension over that of the same forces spread evenly", even))
+            rows.append((f"{name}: maximum tension over that of the same forces spread evenly", even))
     if stage.iso_face is not None:
         iso = stage.iso_face
         rows.append(("ISO 6336-1, method C: K_Hbeta of the load", number(iso.K_Hbeta)))
@@ -267,13 +267,13 @@ def _over_face(stage: RootStresses) -> Table:
 
 
 def root_headlines(stage: RootStresses) -> list[Headline]:
-    """Greatest stresses of both gears."""
+    """Maximum stresses of both gears."""
     largest = [read_figure(stage.stress, f"{gear}_tension_Pa") for gear in ("pinion", "wheel")]
     values = " and ".join(f"{float(one.values):.4g}" for one in largest)
     note = ""
     if stage.iso is not None:
         note = f"ISO 6336-3 nominal {' and '.join(f'{1e-6 * one:.4g}' for one in stage.iso.stresses)}"
-    name = "greatest root stress, pinion and wheel"
+    name = "maximum root stress, pinion and wheel"
     return [Headline(name, values, note, largest[0].unit, Uncertainty(stage.error))]
 
 
@@ -318,7 +318,7 @@ def revolution(cycle: fem.MeshCycle, results: xr.Dataset) -> Part:
     }
     rows = tuple((label, number(float(np.ptp(curve.values)))) for label, curve in curves.items())
     caption = (
-        f"Numerical error of the mesh: {percent(cycle.error)}; extremes are those of the positions drawn."
+        f"Numerical error of the mesh: {percent(cycle.error)}; extremes are taken at the positions drawn."
     )
     table = Table(("transmission error", curves["under load"].named("peak to peak")), rows, caption)
     return Part("revolution", "Revolution", figures=drawn, tables=(table,), notes=(cycle.message,))

@@ -25,13 +25,13 @@ if TYPE_CHECKING:
     from flankfilm.coupling.jump_errors import Jump
 
 LONGEST = 40
-"""Stable ranges listed; the data files hold all."""
+"""Maximum number of stable ranges listed; the data files hold all."""
 
 COEXISTS = 1.1
-"""Ratio of forces from which the sweeps met another motion than the one from rest, or a resonance beside it."""
+"""Ratio of forces above which the sweeps have another motion than the one from rest, or a resonance near it."""
 
 NEGLIGIBLE = 0.01
-"""Part of an error below which what it is made of is not named."""
+"""Part of an error below which its source is not named."""
 
 
 def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
@@ -59,19 +59,19 @@ def fourier(stage: MeshSeries, results: xr.Dataset) -> Part:
     unit = "" if mean.unit == "-" else f" {mean.unit}"
     known = "as given" if stage.cycle is None else plus_minus(stage.cycle.mean_error)
     text = f"Mean {number(float(mean.values), 6)}{unit} ({known})."
-    heads = ("harmonic", amplitude.named("amplitude"), "over the mean", "error of that", "phase [deg]")
+    heads = ("harmonic", amplitude.named("amplitude"), "over the mean", "error of the ratio", "phase [deg]")
     table = Table(heads, rows)
     return Part("fourier", "Fourier stiffness", (text,), drawn, (table,), tuple(notes))
 
 
 def fourier_headlines(stage: MeshSeries) -> list[Headline]:
-    """First harmonic and what the series leaves out."""
+    """First harmonic, and the remainder of the series."""
     kappa = stage.amplitude[0] / stage.mean if stage.order else 0.0
     if stage.remainder is None:
         return [Headline("stiffness, first harmonic over the mean", f"{kappa:.4f}", "as given")]
     errors = stage.harmonic_error
     known = None if errors is None or not len(errors) else float(errors[0])
-    left = f"beyond {counted(stage.order, 'harmonic')} {percent(stage.remainder)} of the mean"
+    left = f"remainder after {counted(stage.order, 'harmonic')}: {percent(stage.remainder)} of the mean"
     if stage.left_out is not None and stage.left_out.motion is not None:
         left += f" and up to {percent(float(stage.left_out.motion[stage.order]))} of the motion"
     off = Uncertainty(known, size=1.0)
@@ -89,12 +89,16 @@ def scaling(stage: PairOscillator, _: xr.Dataset) -> Part:
 
 
 def film_damping(stage: FilmDamping, _: xr.Dataset) -> Part:
-    """Damping of the films, at which frequency, and what else damps."""
+    """Damping of the films, its frequency, and other damping."""
     rows = (
         ("damping ratio of the films", number(stage.damping_ratio), f"± {percent(stage.error)}"),
-        ("damping of the mesh by them [N s/m]", number(stage.damping), f"± {percent(stage.error)}"),
-        ("mean tangent stiffness, change by them [%]", number(100.0 * stage.stiffness_change), ""),
-        ("natural frequency, at which they answer [Hz]", number(stage.natural_frequency / (2.0 * np.pi)), ""),
+        ("damping of the mesh by the films [N s/m]", number(stage.damping), f"± {percent(stage.error)}"),
+        ("change of the mean tangent stiffness by the films [%]", number(100.0 * stage.stiffness_change), ""),
+        (
+            "natural frequency, at which the damping is taken [Hz]",
+            number(stage.natural_frequency / (2.0 * np.pi)),
+            "",
+        ),
     )
     notes = (said("film_damping"), f"{stage.message[:1].upper()}{stage.message[1:]}.")
     return Part(
@@ -120,7 +124,7 @@ def sweep(stage: SpeedSweep, results: xr.Dataset) -> Part:
 
 
 def _worst(stage: SpeedSweep, results: xr.Dataset) -> Table:
-    """Greatest force, vibration and time without contact of either sweep, each with where it was met."""
+    """Maximum force, vibration and time without contact of either sweep, each with its speed."""
     force, length, rpm = scale(results, "force"), scale(results, "length"), _speed(stage)
 
     def cells(values: Array, unit: float) -> tuple[str, str]:
@@ -140,17 +144,17 @@ def _worst(stage: SpeedSweep, results: xr.Dataset) -> Table:
         for direction in stage.force_factor
     )
     at = "at ω" if rpm is None else "at [rpm]"
-    named = force.named("greatest force" if force.unit == "N" else "greatest force over the mean")
+    named = force.named("maximum force" if force.unit == "N" else "maximum force over the mean")
     vibration = length.named("displacement, root mean square")
-    heads = ("sweep", named, at, vibration, at, "most time without contact [%]", at)
+    heads = ("sweep", named, at, vibration, at, "maximum time without contact [%]", at)
     error = percent(stage.sampling_error)
     return Table(
-        heads, rows, f"Of the speeds swept; force and displacement ± {error} by the samples of a period."
+        heads, rows, f"At the speeds swept; force and displacement ± {error} by the samples of a period."
     )
 
 
 def _swept(stage: SpeedSweep) -> list[str]:
-    """What the series leaves out of the sweep; nothing for a given series."""
+    """Effect of the omitted harmonics on the sweep; nothing for a given series."""
     if stage.longer_order is None or stage.force_change is None or stage.spread_change is None:
         return []
     force, spread = (np.concatenate(list(one.values())) for one in (stage.force_change, stage.spread_change))
@@ -179,37 +183,37 @@ def _largest(changes: Array) -> float | None:
 
 
 def sweep_headlines(stage: SpeedSweep) -> list[Headline]:
-    """Lowest speed at which contact is lost, and the greatest force of the sweeps."""
+    """Lowest speed at which contact is lost, and the maximum force of the sweeps."""
     rpm = _speed(stage)
     name, unit = "contact first lost at", "" if rpm is None else "rpm"
     if stage.least_grazing is None:
-        return [Headline(name, "none in range", "by the orbit that never leaves contact"), *_greatest(stage)]
+        return [Headline(name, "none in range", "for the orbit that never leaves contact"), *_greatest(stage)]
     budget = stage.grazing_budget
     exact = set(budget) == {"flow"}
     note = "exact to rounding for the stiffness as given" if exact else ""
     off = None if exact else Uncertainty(_finite(stage.least_grazing_error))
     if budget.get("truncation", 0.0) > NEGLIGIBLE * (stage.least_grazing_error or 0.0):
-        note = f"{percent(budget['truncation'])} of it by harmonics that the series leaves out"
+        note = f"{percent(budget['truncation'])} of it by harmonics that the series omits"
     value = number((rpm or 1.0) * stage.least_grazing, 5 if rpm else 6)
     return [Headline(name if rpm else f"{name} ω", value, note, unit, off), *_greatest(stage)]
 
 
 def _greatest(stage: SpeedSweep) -> list[Headline]:
-    """Greatest force of the sweeps over the mean one."""
+    """Maximum force of the sweeps over the mean one."""
     factors = np.array([*stage.force_factor.values()])
     if not np.isfinite(factors).any():
         return []
     at = float(stage.frequency[int(np.nanargmax(np.nanmax(factors, axis=0)))])
     rpm = _speed(stage)
     where = f"ω = {at:.4g}" if rpm is None else f"{rpm * at:.0f} rpm"
-    note, error = f"at {where} of the speeds swept", float(stage.sampling_error)
+    note, error = f"at {where}, of the speeds swept", float(stage.sampling_error)
     if stage.force_change is not None and stage.checked is not None:
         way = max(stage.force_factor, key=lambda one: np.nanmax(stage.force_factor[one], initial=-np.inf))
         left = stage.force_change[way][int(np.argmin(np.abs(stage.checked - at)))]
-        note += f"; {percent(float(left))} of the error by harmonics that the series leaves out"
+        note += f"; {percent(float(left))} of the error by harmonics that the series omits"
         error += float(left)
     off = Uncertainty(_finite(error))
-    return [Headline("greatest force over the mean force", f"{np.nanmax(factors):.3g}", note, "", off)]
+    return [Headline("maximum force over the mean force", f"{np.nanmax(factors):.3g}", note, "", off)]
 
 
 def _finite(error: float | None) -> float | None:
@@ -218,7 +222,7 @@ def _finite(error: float | None) -> float | None:
 
 
 def operating_headlines(stage: SpeedSweep) -> list[Headline]:
-    """Dynamic factor at the operating speed, and what the sweeps meet beside it where motions coexist."""
+    """Dynamic factor at the operating speed, and that of the sweeps near it where motions coexist."""
     factor, at, rpm = stage.operating_force_factor, stage.operating_frequency, _speed(stage)
     if rpm is None or not np.isfinite(factor):
         return []
@@ -227,7 +231,7 @@ def operating_headlines(stage: SpeedSweep) -> list[Headline]:
     if 0 < beside < len(stage.frequency):
         met = np.array([*stage.force_factor.values()])[:, beside - 1 : beside + 1]
         if np.nanmax(met, initial=0.0) > COEXISTS * factor:
-            note += f"; sweeps meet up to {np.nanmax(met):.3g} beside that speed"
+            note += f"; the sweeps reach {np.nanmax(met):.3g} near that speed"
     return [Headline(name, f"{factor:.4g}", note, "", Uncertainty(stage.sampling_error))]
 
 
@@ -242,24 +246,24 @@ def diagram_headlines(stage: SpeedDiagram) -> list[Headline]:
     """Jump speeds."""
     more = f"{stage.longer_order} harmonics have {len(stage.missed)} more" if stage.missed else ""
     if not stage.jumps:
-        return [Headline("jump speeds", "none in range", more or "of the branches that were found")]
+        return [Headline("jump speeds", "none in range", more or "on the branches that were found")]
     at = ", ".join(f"{_shown(stage, j.frequency, 5)} {'up' if j.rising else 'down'}" for j in stage.jumps[:6])
     rest = f" and {len(stage.jumps) - 6} more" if len(stage.jumps) > 6 else ""
     worst = max((j for j in stage.jumps if j.budget), key=lambda j: j.error, default=None)
     off, note = Uncertainty(_finite(worst.error)) if worst else None, ""
     if worst and not np.isfinite(worst.error):
         lost = sum(not np.isfinite(j.error) for j in stage.jumps)
-        note = f"error of {lost} unknown: {stage.longer_order} harmonics leave no such jump"
+        note = f"error of {lost} unknown: {stage.longer_order} harmonics have no such jump"
     elif worst and worst.budget["truncation"] > 0.5 * worst.error:
-        note = f"{percent(worst.budget['truncation'])} of it by harmonics that the series leaves out"
+        note = f"{percent(worst.budget['truncation'])} of it by harmonics that the series omits"
     note = "; ".join(filter(None, (note, more)))
     if len(stage.jumps) > 1 and off is not None:
-        note = "; ".join(filter(None, ("of the least certain jump", note)))
+        note = "; ".join(filter(None, ("of the jump with the largest error", note)))
     return [Headline("jump speeds", at + rest, note, "rpm" if stage.speed_of_one else "", off)]
 
 
 def diagram(stage: SpeedDiagram, results: xr.Dataset) -> Part:
-    """Draw the diagram and list ranges, jumps and what they depend on."""
+    """Draw the diagram; list ranges, jumps and their dependence on the stiffness."""
     unit = "rpm" if stage.speed_of_one else "-"
     ranges: dict[str, Callable[[Stretch], str]] = {
         "stable motion": lambda s: s.label,
@@ -277,7 +281,7 @@ def diagram(stage: SpeedDiagram, results: xr.Dataset) -> Part:
         f"by {stage.longer_order} harmonics": lambda j: _longer(stage, j),
     }
     variants: dict[str, Callable[[tuple[str, tuple[float, ...]]], str]] = {
-        "stiffness, mean over the scene's": lambda law: law[0],
+        "mean stiffness over that of the scene": lambda law: law[0],
         f"jumps of period 1 at [{unit}]": lambda law: (
             ", ".join(_shown(stage, f) for f in law[1]) or "none in range"
         ),
@@ -319,7 +323,7 @@ def _notes(stage: SpeedDiagram) -> list[str]:
 
 
 def _truncated(stage: SpeedDiagram) -> list[str]:
-    """What the series leaves out of the figures of motion; nothing for a given series."""
+    """Effect of the omitted harmonics on the figures of motion; nothing for a given series."""
     if stage.longer_order is None:
         return []
     notes = [said("jump_budget", order=stage.longer_order)] if stage.jumps else []

@@ -42,7 +42,7 @@ ERRORS = frozenset((*ERROR_OF.values(), *MODEL_ERROR_OF.values()))
 """Outputs that are relative errors of others."""
 
 MOST_ROWS = 100
-"""Rows that a page shows; the files hold all."""
+"""Maximum number of rows on a page; the files hold all."""
 
 
 def write_study_page(found: StudyResults, data: xr.Dataset, folder: Path) -> Path:
@@ -150,9 +150,9 @@ def _best_cards(found: Optimum, data: xr.Dataset) -> list[Headline]:
             note.append(f"limit: {_bounds(task, name)}")
         if (gain := gains.get(name)) is not None and len(found.best) == 1:
             start = f"{number(gain.start, 5)} {unit_of(data, name, '')}".strip()
-            note.append(f"{start} as the scene stands")
+            note.append(f"{start} for the scene as given")
         if len(found.best) > 1:
-            note.append("where the first objective is best")
+            note.append("at the best first objective")
         cards.append(Headline(words(data, name), number(value, 5), ", ".join(note), unit_of(data, name, "")))
     if len(found.best) > 1:
         return cards
@@ -160,7 +160,7 @@ def _best_cards(found: Optimum, data: xr.Dataset) -> list[Headline]:
     for key, value in zip(task.keys, first.values, strict=True):
         name, unit = key_words(key)
         low, high = ties.get(key, (value, value))
-        wide = f"designs that tie: {_cell(low)} to {_cell(high)}" if low != high else "at the optimum"
+        wide = f"tied designs: {_cell(low)} to {_cell(high)}" if low != high else "at the optimum"
         cards.append(Headline(name, _cell(value), wide, "" if unit == "-" else unit))
     return cards
 
@@ -221,7 +221,7 @@ def _differences(found: Verification, reference: str) -> Table:
 
 
 def compared_with(found: Verification, reference: str) -> str:
-    """Finite elements that models are compared with: what is left out, and what the deflection is measured against."""
+    """Finite elements that models are compared with: the parts left out, and the reference of the deflection."""
     whole = next(one for one in found.references if one.label == reference)
     return relative_to(
         reference if reference == "finite elements" else f"finite elements {reference}",
@@ -254,9 +254,9 @@ def _work(data: xr.Dataset) -> Fact:
 
 
 def _tolerance(data: xr.Dataset) -> Fact:
-    """What every row was computed to."""
+    """Tolerance of the rows."""
     if "tolerance" in data.coords:
-        return Fact("tolerances of the rows beside them", "rows")
+        return Fact("tolerance of each row in the table", "rows")
     return Fact(f"tolerance of each row {percent(_asked(data))}")
 
 
@@ -267,7 +267,7 @@ def _asked(data: xr.Dataset) -> float:
 
 
 def _range(data: xr.Dataset, name: str) -> Headline:
-    """Least and greatest value of an output."""
+    """Minimum and maximum value of an output."""
     values = data[name].values
     least, most = (float(end(values)) for end in (np.nanmin, np.nanmax))
     meaning = str(data[name].attrs["long_name"]).partition(";")[0]

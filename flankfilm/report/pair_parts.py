@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from gears import GearPair, WarmPair
 
 DECIMALS = {"mm": 4, "µm": 2, "um": 2}
-"""Of lengths: a tenth of a micrometre, and of what is a deviation a hundredth; other figures have five."""
+"""Lengths: to a tenth of a micrometre; deviations: to a hundredth; other figures have five decimals."""
 
 OF_BLANKS = ("pair_rim_thicknesses", "pair_web_thicknesses")
-"""Figures that say nothing of gears that are discs."""
+"""Figures that are left out for gears that are discs."""
 
 HEADLINES = ("contact_ratio", "working_centre_distance", "working_pressure_angle", "backlash")
 """Figures of the pair for the head of a page without any others."""
@@ -50,7 +50,7 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
     drawn = pictures(results, "kinematics")
     tables = Table(("pair", ""), common), Table(("", "pinion", "wheel"), both)
     note = (
-        "Thicknesses, span and size over pins are of teeth thinned as they are; spans and pins touch near d + 2 x m, "
+        "Thicknesses, span and size over pins include the thinning of the teeth; spans and pins touch near d + 2 x m, "
         "on the involute below any tip relief."
     )
     return Part("geometry", "Geometry", figures=drawn, tables=tables, notes=(note,), seen=0)
@@ -93,7 +93,7 @@ def heat(warm: WarmPair) -> Part:
     found = [read_figure(warm, name) for name in names]
     rows = tuple((figure.label, number(float(figure.values), 6)) for figure in found)
     note = (
-        "All other figures are of the gears grown to their temperatures. Unequal base pitches act as a gap that grows "
-        "along the path of contact, in the loaded contact by finite elements of coupled pairs."
+        "All other figures are of the gears expanded to their temperatures. Unequal base pitches act as a gap that "
+        "increases along the path of contact, in the loaded contact by finite elements of coupled pairs."
     )
-    return Part("heat", "Growth by heat", notes=(note,), tables=(Table(("pair", ""), rows),))
+    return Part("heat", "Thermal expansion", notes=(note,), tables=(Table(("pair", ""), rows),))

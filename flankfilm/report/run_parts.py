@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from flankfilm.results import Results
 
 LEAST_SECONDS = 0.005
-"""Time of a stage that is listed although it has no error of its own [s]."""
+"""Minimum time of a stage that is listed although it has no separate error [s]."""
 
 
 class Work(NamedTuple):
@@ -29,7 +29,7 @@ class Work(NamedTuple):
 
 
 def costs(results: Results) -> Part:
-    """Error against cost for each stage that ran, in the order of the house."""
+    """Error against cost for each stage that ran, in the order of computation."""
     listed = [(run, _work(name, results)) for name, run in results.runs.items()]
     listed = [(run, work) for run, work in listed if work != Work() or run.seconds >= LEAST_SECONDS]
     table = Table.of(
@@ -49,7 +49,7 @@ def costs(results: Results) -> Part:
 
 
 def _work(name: str, results: Results) -> Work:
-    """Which figure a stage's error belongs to, what was allowed, the error, and what was done for it."""
+    """Figure that a stage's error belongs to, error allowed, error, and work."""
     value: Any = results.values.get(name)
     plan, tolerance = results.plan, results.scene.tolerance
     if name == "bodies" and plan is not None:
@@ -62,7 +62,7 @@ def _work(name: str, results: Results) -> Work:
         return Work("mean stiffness, from arcs", plan.resolution.sampling, error / mean, samples)
     if name == "fillets":
         unknowns = counted(value.cost.unknowns, "unknown")
-        return Work("greatest root stress per load", tolerance, value.error, unknowns)
+        return Work("maximum root stress per load", tolerance, value.error, unknowns)
     if name == "film" and plan is not None and value.film.model == "ehl":
         film = value.film
         films, rounds = counted(film.rho1.size, "film"), counted(value.rounds, "round")
@@ -74,7 +74,7 @@ def _work(name: str, results: Results) -> Work:
         return Work("mean friction", tolerance, value.error, note)
     if name == "fourier" and value.fit is not None:
         allowed = None if plan is None else plan.series
-        return Work("what the series leaves out", allowed, value.remainder, f"order {value.order}")
+        return Work("remainder of the series", allowed, value.remainder, f"order {value.order}")
     if name == "sweep":
         return Work("settled motions", None, value.error, counted(value.cost.periods, "period"))
     if name == "diagram":
@@ -83,7 +83,7 @@ def _work(name: str, results: Results) -> Work:
 
 
 def failures(results: Results) -> list[Part]:
-    """What could not be computed, why, and what needs it; no section where all could."""
+    """Parts that were not computed, the reasons, and dependent parts; no section if all were computed."""
     own = [one for one in results.failures if not one.because]
     if not own:
         return []
@@ -103,14 +103,14 @@ def failures(results: Results) -> list[Part]:
 
 
 def doubts(results: Results) -> list[str]:
-    """What solvers say that do not believe their figures."""
+    """Messages of solvers that did not converge."""
     values = results.values
     doubted = [name for name in results.runs if getattr(values.get(name), "converged", True) is False]
     return [f"{results.runs[name].title}: {values[name].message}" for name in doubted]
 
 
 def warnings(results: Results, misses: Sequence[str] = ()) -> list[str]:
-    """Figures beyond the tolerance or in doubt, and what the stages warned of, each text once."""
+    """Figures beyond the tolerance or in doubt, and warnings of the stages, each text once."""
     heard: dict[str, list[str]] = {}
     for run in results.runs.values():
         for text in run.warnings:
@@ -124,7 +124,7 @@ def _known(text: Callable[[float], str], value: float | None) -> str:
 
 
 def decisions(results: Results, misses: Sequence[str] = ()) -> list[Part]:
-    """What was decided, how the tolerance was split, what missed it, and what was warned of; no section without any."""
+    """Decisions, division of the tolerance, figures that miss it, and warnings; no section without any."""
     plan, decided = results.plan, results.decisions
     planned = [] if plan is None else [plan.line]
     lines = (*warnings(results, misses), *(d.line for d in decided), *planned)
@@ -142,7 +142,7 @@ def _decided(decided: Sequence[Decision]) -> Table:
             "choice": lambda d: d.choice,
             "effect, at most": lambda d: _known(percent, d.effect),
             "allowed": lambda d: _known(percent, d.share),
-            "cost of all stages, foreseen": lambda d: _known(seconds, d.seconds),
+            "estimated cost of all stages": lambda d: _known(seconds, d.seconds),
         },
     )
 
@@ -153,7 +153,7 @@ def _shares(plan: Plan) -> Table:
         {
             "share of the tolerance": lambda share: share[0],
             "error allowed in the mean stiffness": lambda share: percent(share[1]),
-            "cost foreseen": lambda share: seconds(plan.costs[share[0]]),
+            "estimated cost": lambda share: seconds(plan.costs[share[0]]),
         },
     )
 

@@ -22,11 +22,11 @@ RPM = 30.0 / np.pi
 
 
 def run_up(stage: SpeedRunUp, results: xr.Dataset) -> Part:
-    """Draw run-up and coast-down with their orders, and list where the force is greatest and changes most."""
+    """Draw run-up and coast-down with their orders, and list the maximum force and its largest change."""
     force = scale(results, "force")
     heads = (
         "run",
-        force.named("greatest force"),
+        force.named("maximum force"),
         "at",
         "largest jump at",
         force.named("before it"),
@@ -49,7 +49,7 @@ def run_up(stage: SpeedRunUp, results: xr.Dataset) -> Part:
 
 
 def _carried_on_the_way(stage: SpeedRunUp) -> tuple[Table, ...]:
-    """What parts of a drive train carry at most in run-up and coast-down."""
+    """Maximum loads of the parts of a drive train in run-up and coast-down."""
     if stage.speed is None:
         return ()
     speed = np.concatenate([stage.speed[way] for way in ("up", "down")])
@@ -61,7 +61,7 @@ def _carried_on_the_way(stage: SpeedRunUp) -> tuple[Table, ...]:
 
 
 def _extremes(stage: SpeedRunUp, way: str, unit: float) -> tuple[str, ...]:
-    """Greatest force and where; the largest change of the root mean square between blocks, and where."""
+    """Maximum force and where; the largest change of the root mean square between blocks, and where."""
     factor, spread = stage.force_factor[way], stage.spread[way]
     at = stage.frequency[way] if stage.speed is None else RPM * stage.speed[way]
     rpm = "" if stage.speed is None else " rpm"
@@ -76,7 +76,7 @@ def _extremes(stage: SpeedRunUp, way: str, unit: float) -> tuple[str, ...]:
 
 
 def dynamic_map(stage: DynamicMap, results: xr.Dataset) -> Part:
-    """Draw the map, and list the greatest factor at each torque."""
+    """Draw the map, and list the maximum factor at each torque."""
     rows = []
     for torque, resonance, factors, iso, apart in zip(
         stage.torque, stage.resonance, stage.factor, stage.iso, stage.separated, strict=True
@@ -96,10 +96,10 @@ def dynamic_map(stage: DynamicMap, results: xr.Dataset) -> Part:
     heads = (
         "torque [N m]",
         "resonance [rpm]",
-        "greatest K_v [-]",
+        "maximum K_v [-]",
         "at [rpm]",
         "ISO 6336-1, B, there [-]",
-        "most time without contact [%]",
+        "maximum time without contact [%]",
     )
     notes = [said("dynamic_map", error=percent(stage.sampling_error))]
     if stage.truncation is not None:
@@ -124,9 +124,9 @@ def dynamic_map(stage: DynamicMap, results: xr.Dataset) -> Part:
 
 
 def map_headlines(stage: DynamicMap) -> list[Headline]:
-    """Greatest factor of the map."""
+    """Maximum factor of the map."""
     row, column = np.unravel_index(int(np.nanargmax(stage.factor)), stage.factor.shape)
     note = f"at {RPM * stage.speed[column]:.0f} rpm and {stage.torque[row]:g} N m"
     off = Uncertainty(float(stage.sampling_error))
-    name = "greatest dynamic factor K_v of the map"
+    name = "maximum dynamic factor K_v of the map"
     return [Headline(name, f"{stage.greatest:.3g}", note, uncertainty=off)]

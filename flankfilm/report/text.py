@@ -1,4 +1,4 @@
-"""Numbers as a person reads them."""
+"""Numbers as readable text."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from flankfilm.output.uncertainty import Uncertainty
 
 SMALLEST = 1e-6
-"""Relative value below which nobody wants to know how small it is."""
+"""Relative value below which only this bound is shown."""
 
 
 def number(value: float, digits: int = 4) -> str:
@@ -57,7 +57,7 @@ def percent(value: float | None, digits: int = 2) -> str:
 
 
 def plus_minus(value: float | None) -> str:
-    """Relative error behind a figure; that it is unknown, where it is.
+    """Relative error after a figure; "error unknown" for None.
 
     Examples
     --------
@@ -95,7 +95,7 @@ def off(found: Uncertainty, tolerance: float | None = None) -> str:
 
 
 MARK = "!"
-"""Before what does not meet the tolerance."""
+"""Mark before a figure that does not meet the tolerance."""
 
 
 def counted(count: int, noun: str, plural: str = "") -> str:

@@ -65,7 +65,7 @@ def _key_at(attributes: Sequence[str], section: Section | None) -> tuple[list[st
     whole, _, entry = attributes[0].removesuffix("]").partition("[")
     for name, field in type(section).model_fields.items():
         about, value = key_of(field), getattr(section, name)
-        if about.of == ".".join(attributes):  # of a part that has no section of its own as well
+        if about.of == ".".join(attributes):  # also of a part without a separate section
             return [name], about, value
         if entry and whole == name and isinstance(value, tuple) and isinstance(value[int(entry)], Section):
             names, about_inner, inner = _key_at(attributes[1:], value[int(entry)])

@@ -79,7 +79,7 @@ def BRANCHES(run: Engine) -> coupling.OrderedJumps:
 def FOURIER(run: Engine) -> coupling.MeshSeries:
     """Series of the mesh stiffness, or the given one; with a wanted diagram of the order that its jumps need."""
     if not by_jumps(run):
-        return _series(run)  # no stage of its own, which a run would list beside this one
+        return _series(run)  # no separate stage, which a run would list beside this one
     series, found = run[CURVE_SERIES], run[BRANCHES]
     if found.order == series.order or series.cycle is None:
         return series

@@ -112,7 +112,7 @@ def test_the_drive_train_has_the_tilt_of_the_mesh_on_its_shafts(overhung):
     without = _engine(plain)[DRIVE]
     assert without.tilt_stiffness == without.load_centre == 0.0
     assert 0.0 < drive.tilt_change < 0.5 * without.tilt_change
-    assert "if it bore evenly" in drive_parts.drive(without, data).notes[0]
+    assert "for a load that is even over the face" in drive_parts.drive(without, data).notes[0]
 
 
 @pytest.mark.slow
@@ -168,7 +168,7 @@ def test_what_shafts_do_is_in_results_tables_report_and_studies(overhung):
     )
     assert table["shaft_deflection_um_wheel"].shape == cycle.position.shape
     rows = dict(face_parts.face(face, None, data).tables[0].rows)
-    assert "µm ±" in rows["greatest deflection along the line of action by the shaft of the wheel"]
+    assert "µm ±" in rows["maximum deflection along the line of action by the shaft of the wheel"]
     assert rows["part of the transmission error by the shafts' tilt"].startswith("-")
     assert "shaft of the pinion and the wheel" in face_parts.face(face, None, data).paragraphs[0]
     expected = {
