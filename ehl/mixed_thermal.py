@@ -10,15 +10,14 @@ from base.results import EXACT
 from ehl.asperities import Roughness
 from ehl.bodies import STEEL, Solid
 from ehl.contact import LineContact
-from ehl.mixed import central_asperity_pressure, solve_mixed
+from ehl.load_share import NOTHING, KnownGap, excess, foreseen, share_of
+from ehl.mixed import solve_mixed
 from ehl.mixed_film import MixedFilm, RoughFilm
 from ehl.regimes import BOUNDARY, BOUNDARY_FRICTION
 from ehl.supply import Supply
 from ehl.thermal import ThermalFilm, solve_thermal
 from ehl.thermal_search import at_bulk
 
-_LEAST_SHARE = 1e-10
-_NOTHING = math.log(_LEAST_SHARE)  # odds of a share that counts as none
 _TRIES = 20
 _REACH = 1.5  # largest step of the odds
 
@@ -149,52 +148,43 @@ class _Search:
 
     def share(self, cold: MixedFilm) -> tuple[float, str]:
         """Share of the asperities, NaN where none is found, and why."""
-        share = cold.asperity_share
-        if share == 0.0:
-            share = min(self.carried(self.film) / self.contact.peak_pressure, 0.5)
-            if share < _LEAST_SHARE:
-                return 0.0, "converged"
-        odds, before = math.log(share / (1.0 - share)), None
-        slope = self.isothermal_slope(cold, share)
+        gap, grows = self.film.central_thickness, self.growth(cold)
+        if excess(self.contact, self.roughness, gap, NOTHING).value <= 0.0:
+            return 0.0, "converged"
+        known = KnownGap(gap, -math.inf, grows)
+        odds = foreseen(self.contact, self.roughness, known)
+        before, slope = None, self.slope(known.at(odds), grows, odds)
         for _ in range(_TRIES):
-            share = 1.0 / (1.0 + math.exp(-odds))
-            excess = self.excess(share)
+            share = share_of(odds)
+            more = self.excess(odds)
             if not self.film.converged:
                 return math.nan, self.film.message
             if before is not None and odds != before[0]:
-                slope = min((excess - before[1]) / (odds - before[0]), -0.05)
-            step = max(-_REACH, min(_REACH, -excess / slope))
+                slope = min((more - before[1]) / (odds - before[0]), -0.05)
+            step = max(-_REACH, min(_REACH, -more / slope))
             if abs(step) < self.tolerance:
                 return share, "converged"
-            if odds + step < _NOTHING:
+            if odds + step < NOTHING:
                 return 0.0, "converged"
-            before, odds = (odds, excess), odds + step
+            before, odds = (odds, more), odds + step
         return (
             math.nan,
             "no share of the load on which film and asperities agree was found: raise the tolerance",
         )
 
-    def isothermal_slope(self, cold: MixedFilm, share: float) -> float:
-        """Derivative of the excess by the odds, from the isothermal film's thickness by its load."""
-        pressure, slope = self.under(cold)
-        steep = slope / pressure if pressure > 0.0 else 0.0
-        eased = -share * cold.film.contact.load * cold.film.central_slope
-        return min(steep * eased - 1.0, -0.5)
+    def growth(self, cold: MixedFilm) -> float:
+        """Power of what is left to it with which the film grows: that of the isothermal film by its load."""
+        film = cold.film
+        return film.contact.load * film.central_slope / film.central_thickness
 
-    def carried(self, film: ThermalFilm) -> float:
-        """Asperities' pressure at a film's central thickness [Pa]."""
-        return self.under(film)[0]
+    def slope(self, gap: float, grows: float, odds: float) -> float:
+        """Derivative of the excess by the odds where the film grows with what is left."""
+        at = excess(self.contact, self.roughness, gap, odds)
+        return min(-at.by_gap * gap * grows * share_of(odds) + at.by_odds, -0.05)
 
-    def under(self, film: MixedFilm | ThermalFilm) -> tuple[float, float]:
-        """Asperities' pressure at a film's central thickness [Pa] and its derivative by that [Pa/m]."""
-        contact = self.contact
-        return self.roughness.under_film(
-            film.central_thickness, contact.reduced_modulus, contact.peak_pressure
-        )
-
-    def excess(self, share: float) -> float:
-        """Ln of the asperities' pressure over what their share asks for."""
-        left = 1.0 - share
+    def excess(self, odds: float) -> float:
+        """By how much the asperities carry more than their share asks for."""
+        left = share_of(-odds)
         eased = replace(
             self.contact, load=left * self.contact.load, reduced_modulus=left * self.contact.reduced_modulus
         )
@@ -204,5 +194,4 @@ class _Search:
         self.cost += replace(self.film.cost, counts={**self.film.cost.counts, "films": 1})
         if not self.film.converged:
             return math.nan
-        asked = central_asperity_pressure(self.contact, self.roughness, share)
-        return math.log(max(self.carried(self.film), 1e-300) / asked)
+        return excess(self.contact, self.roughness, self.film.central_thickness, odds).value

@@ -184,7 +184,7 @@ def rough() -> None:
 
     drawn = Roughness.from_drawing(mean=ROUGHNESS)
     flanks = {
-        "film ratio (Zhu, Hu)": drawn,
+        "film ratio (Zhou, Hoeprich)": drawn,
         "elastic asperities (Greenwood, Tripp)": replace(drawn, law="greenwood-tripp"),
         "smooth": None,
     }
