@@ -127,8 +127,8 @@ class Roughness:
       a film ratio, see :func:`ehl.film_ratio.share_by_ratio`; density and tip radius are not read.
 
     Elastic asperities with heights of normal distribution, so that a given gap has a given pressure: their share falls
-    as the load grows, where friction of gears is measured to rise. d may be negative: the mean gap under an oil film is
-    positive always, see `plane_distance`. Typical of ground steel: sigma 0.05 to 0.5 um,
+    as the load grows, where friction of gears is measured to rise; films with heat warn of it. d may be negative: the
+    mean gap under an oil film is positive always, see `plane_distance`. Typical of ground steel: sigma 0.05 to 0.5 um,
     n beta sigma 0.03 to 0.05, sigma/beta 1e-4 to 1e-2.
 
     Parameters
@@ -196,9 +196,9 @@ class Roughness:
 
         sigma_i = Ra_i sqrt(pi/2), of normal heights, Ra_i = Rz_i/6; sigma = sqrt(sigma_1^2 + sigma_2^2). Drawings know
         no asperities: unless these or a law are given the load is shared by the film ratio (``"zhou-hoeprich"``). Where
-        one of the asperities' numbers is not known, sigma/beta = 1e-3 and n beta sigma = 0.04. Found are 1e-4 to 1e-2 and 0.03
-        to 0.05, so that the pressure of the asperities is uncertain by a factor of five up and down; Rz/Ra is 4 to 10
-        in measurements.
+        one of the asperities' numbers is not known, sigma/beta = 1e-3 and n beta sigma = 0.04. Found are 1e-4 to 1e-2
+        and 0.03 to 0.05, so that the pressure of the asperities is uncertain by a factor of five up and down; Rz/Ra is
+        4 to 10 in measurements.
 
         Parameters
         ----------

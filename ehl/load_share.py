@@ -1,13 +1,16 @@
-"""Balance of the load between film and asperities: what asperities carry at a gap, and what their share asks of them."""
+"""Balance of the load between film and asperities: what asperities carry at a gap, and what their share asks for."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 from ehl.asperities import Roughness
 from ehl.contact import LineContact
 from ehl.film_ratio import share_by_ratio
+from ehl.regressions import moes_central
+from ehl.supply import OilLayer, Supply
 
 LEAST_SHARE = 1e-10
 NOTHING = math.log(LEAST_SHARE)
@@ -18,6 +21,7 @@ ALL = -math.log(1e-6)
 
 _VACUUM = 1e-300
 _ROUNDS = 80
+_LESS = 0.99  # part of what is left over which Moes' formula is differentiated
 _FORESEEN = 1e-9  # last step of odds that are foreseen
 _END = 1e-6  # odds as near to nothing or all are these
 
@@ -75,6 +79,19 @@ def _asked(contact: LineContact, roughness: Roughness, share: float) -> tuple[fl
     spread = 1.558 * asperities**0.0337 * (sigma / R) ** -0.442 * contact.W**0.4757
     lowered = spread**-1.70
     return share * contact.peak_pressure * (1.0 + lowered) ** (-1.0 / 1.70), lowered / (1.0 + lowered)
+
+
+def eased(contact: LineContact, left: float) -> LineContact:
+    """Return the contact of the part of load and modulus that asperities leave to the film."""
+    return replace(contact, load=left * contact.load, reduced_modulus=left * contact.reduced_modulus)
+
+
+def usual_growth(contact: LineContact, left: float, supply: Supply | None) -> float:
+    """Power of what is left to it with which a film grows, by Moes' formula; none behind a layer, which it follows."""
+    if isinstance(supply, OilLayer):
+        return 0.0
+    here, less = (moes_central(eased(contact, part * left)) for part in (1.0, _LESS))
+    return math.log(less / here) / math.log(_LESS)
 
 
 def excess(contact: LineContact, roughness: Roughness, gap: float, odds: float) -> Excess:

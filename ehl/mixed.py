@@ -19,7 +19,7 @@ from ehl.asperities import Roughness
 from ehl.contact import LineContact
 from ehl.film import Film
 from ehl.levels import State, figures
-from ehl.load_share import ALL, NOTHING, KnownGap, excess, foreseen, odds_of, share_of
+from ehl.load_share import ALL, NOTHING, KnownGap, eased, excess, foreseen, odds_of, share_of, usual_growth
 from ehl.mixed_film import MixedFilm
 from ehl.options import Options, warn_of_range
 from ehl.outcome import Found
@@ -32,7 +32,6 @@ _BALANCED = 1e-7  # relative difference of what asperities carry and are asked f
 _REACH = 3.0  # largest step of the odds
 _CLOSE = 1e-2  # between bounds as close as this the balance is straight in the odds
 _TRIES = 60
-_LESS = 0.99  # part of the load over which Moes' formula is differentiated
 _APART = 1e-3  # of ln of what is left, where two films show how it grows
 
 
@@ -129,14 +128,9 @@ class _Search:
         if isinstance(start, MixedFilm) and start.converged and start.asperity_share > 0.0:
             self.odds = self.likely_odds(start)
 
-    def eased(self, left: float) -> LineContact:
-        """Return the contact of the part of load and modulus that is left to the film."""
-        contact = self.contact
-        return replace(contact, load=left * contact.load, reduced_modulus=left * contact.reduced_modulus)
-
     def film_at(self, odds: float) -> Found:
         """Film that carries what the asperities leave, at odds ln[s/(1-s)] of their share."""
-        self.last = found = solve_checked(self.eased(share_of(-odds)), self.options, self.state)
+        self.last = found = solve_checked(eased(self.contact, share_of(-odds)), self.options, self.state)
         self.cost += found.run.cost() + Cost(0.0, counts={"films": 1})
         if not found.converged:
             raise _NoFilmError(found.film().message)
@@ -178,11 +172,12 @@ class _Search:
     def likely_odds(self, start: MixedFilm) -> float:
         """Odds that a neighbour makes likely: its film, changed as Moes' formula has it; behind a layer as it is."""
         share, near = start.asperity_share, start.film.contact
-        known = KnownGap(start.central_thickness, odds_of(share), 0.0)
-        if not isinstance(self.options.supply, OilLayer):
-            here, less = (moes_central(self.eased(part * (1.0 - share))) for part in (1.0, _LESS))
-            ratio = here / moes_central(near)
-            known = KnownGap(known.gap * ratio, known.odds, math.log(less / here) / math.log(_LESS))
+        left, supply = 1.0 - share, self.options.supply
+        ratio = 1.0
+        if not isinstance(supply, OilLayer):
+            ratio = moes_central(eased(self.contact, left)) / moes_central(near)
+        grows = usual_growth(self.contact, left, supply)
+        known = KnownGap(ratio * start.central_thickness, odds_of(share), grows)
         return foreseen(self.contact, self.roughness, known)
 
     def growth(self, found: Found) -> float:
