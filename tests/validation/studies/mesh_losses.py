@@ -202,7 +202,6 @@ def rough() -> None:
         axes.set(
             xlabel="torque of the pinion [N m]", ylabel="mean coefficient of friction [-]", ylim=(0.0, 0.07)
         )
-        axes.legend(fontsize="small")
     figure.savefig(IMAGES / "rough_friction.png", dpi=150)
 
 
