@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from base import Array, Faults, InputError, Limit, RangeWarning
+from ehl.film_ratio import share_by_ratio
 
-LAWS = ("greenwood-tripp", "greenwood-williamson", "zhu-hu")
+LAWS = ("greenwood-tripp", "greenwood-williamson", "zhou-hoeprich")
 LIMITS = {
     "deviation": Limit.above(0.0, 1e-3, "m", "sigma in m, 1e-7 is a tenth of a micrometre"),
     "density": Limit.above(0.0, 1e18, "1/m2", "1e10 to 1e12 are usual"),
@@ -39,8 +40,8 @@ PEAKS_OVER_MEAN = 6.0
 """Rz over Ra after ISO 6336-2; 4 to 10 are measured."""
 
 _FAR = 8.0  # standard deviations beyond which no asperity is met
-_FULL = 2.0  # film ratio above which Zhu and Hu's fit, which falls again, is not read
 _NO_GAP = 1e-250  # mean gap over sigma below which the distance of the planes stays
+_TOUCHING = 1.0 / math.sqrt(2.0 * math.pi)  # mean gap over sigma of mean planes that meet
 _ROUNDS = 60
 
 
@@ -54,22 +55,23 @@ def height_integral(n: float, x: ArrayLike) -> Array:
     n : float
         3/2 for one rough surface (Greenwood and Williamson), 5/2 for two (Greenwood and Tripp).
     x : array_like
-        Separation of the planes over the standard deviation of heights [-].
+        Separation of the planes over the standard deviation of heights [-], any sign.
     """
-    x = np.asarray(x, dtype=float)
-    return np.where(x < _FAR, _height_integral(n, np.minimum(x, _FAR)), 0.0)
+    return _height_integral(n, x)[0]
 
 
-def _height_integral(n: float, x: Array) -> Array:
-    """F_n(x) for planes at any distance."""
+def _height_integral(n: float, x: ArrayLike) -> tuple[Array, Array]:
+    """F_n(x) and its derivative -n F_{n-1}(x), 0 where no asperity is met."""
     from scipy.special import pbdv
 
-    scale = math.gamma(n + 1.0) / math.sqrt(2.0 * math.pi)
-    value: Array = scale * np.exp(-0.25 * x**2) * pbdv(-n - 1.0, x)[0]
-    return value
+    x = np.asarray(x, dtype=float)
+    near = np.minimum(x, _FAR)
+    cylinder, slope = pbdv(-n - 1.0, near)
+    scale = math.gamma(n + 1.0) / math.sqrt(2.0 * math.pi) * np.exp(-0.25 * near * near) * (x < _FAR)
+    return scale * cylinder, scale * (slope - 0.5 * near * cylinder)
 
 
-def plane_distance(gap: ArrayLike) -> tuple[Array, Array]:
+def plane_distance(gap: float) -> tuple[float, float]:
     """Distance t of the mean planes at a mean gap, both over sigma [-], and its derivative by the gap.
 
     ``gap = int_-t^inf (t + z) phi(z) dz = t Phi(t) + phi(t)``: the volume that normal heights leave between the mean
@@ -82,48 +84,33 @@ def plane_distance(gap: ArrayLike) -> tuple[Array, Array]:
 
     Examples
     --------
-    >>> [round(float(value), 3) for value in plane_distance(0.4)]
+    >>> [round(value, 3) for value in plane_distance(0.4)]
     [0.002, 1.997]
     """
-    from scipy.special import ndtr
-
-    gap = np.asarray(gap, dtype=float)
-    near = np.clip(gap, _NO_GAP, _FAR)
-    # ln of the gap is concave: Newton's method climbs to the root from below
-    t = -np.sqrt(-2.0 * np.log(np.minimum(near, 1.0)))
+    if gap >= _FAR:
+        return gap, 1.0
+    gap = max(gap, _NO_GAP)
+    # ln of the gap is concave: Newton's method climbs to the root from below, where 0 leaves phi(0)
+    t = gap - _TOUCHING if gap > _TOUCHING else -math.sqrt(-2.0 * math.log(gap))
     for _ in range(_ROUNDS):
-        open_to = _height_integral(1.0, -t)
-        step = np.log(near / open_to) * open_to / ndtr(t)
-        t = t + step
-        if np.all(np.abs(step) < 1e-12):
+        left, free = _open(t)
+        step = math.log(gap / left) * left / free
+        t += step
+        if abs(step) < 1e-12:
             break
-    far = gap >= _FAR
-    return np.where(far, gap, t), np.where(far, 1.0, 1.0 / ndtr(t))
+    return t, 1.0 / _open(t)[1]
 
 
-def film_share(ratio: float) -> tuple[float, float]:
-    """Share of the load that the film carries at a film ratio, and its derivative, after Zhu and Hu.
+def _open(t: float) -> tuple[float, float]:
+    """Mean gap of planes at a distance, over sigma, and the share of the area where there is one."""
+    density = math.exp(-0.5 * t * t) / math.sqrt(2.0 * math.pi)
+    if t >= 0.0:
+        free = 0.5 * math.erfc(-t / math.sqrt(2.0))
+        return t * free + density, free
+    from scipy.special import erfcx
 
-    ``f = 1.21 L^0.64 / (1 + 0.37 L^1.26)``, a fit to contacts of measured surfaces solved point by point; 1 from where
-    it reaches 1, near L = 2. L is the central mean gap over sigma.
-
-    References
-    ----------
-    D. Zhu and Y. Z. Hu, A computer program package for the prediction of EHL and mixed lubrication characteristics,
-    friction, subsurface stresses and flash temperatures based on measured 3-D surface roughness, Tribology
-    Transactions 44 (2001) 383-390, doi:10.1080/10402000108982471. The constants could not be confirmed: no print and
-    no quotation of it was at hand.
-
-    Examples
-    --------
-    >>> [round(film_share(ratio)[0], 3) for ratio in (0.01, 0.1, 0.5, 1.0, 2.0, 4.0)]
-    [0.063, 0.272, 0.673, 0.883, 1.0, 1.0]
-    """
-    above, below = 1.21 * ratio**0.64, 1.0 + 0.37 * ratio**1.26
-    share = above / below
-    if share >= 1.0 or ratio > _FULL:
-        return 1.0, 0.0
-    return share, share / ratio * (0.64 - 1.26 * (1.0 - 1.0 / below))
+    mills = math.sqrt(0.5 * math.pi) * float(erfcx(-t / math.sqrt(2.0)))  # area over density
+    return density * (1.0 + t * mills), density * mills
 
 
 @dataclass(frozen=True)
@@ -136,12 +123,12 @@ class Roughness:
       surfaces;
     - ``"greenwood-williamson"``: ``(2/3) n sqrt(beta) sigma^(3/2) E' F_3/2(x)``, one rough surface on a smooth one.
 
-    - ``"zhu-hu"``: by no asperities, but by the share of the load that films of rough surfaces were found to carry at
-      their film ratio, see `film_share`; density and tip radius are not read.
+    - ``"zhou-hoeprich"``: by no asperities, but by the share of the load that measured profiles were found to carry at
+      a film ratio, see :func:`ehl.film_ratio.share_by_ratio`; density and tip radius are not read.
 
     Elastic asperities with heights of normal distribution, so that a given gap has a given pressure: their share falls
-    as the load grows, where friction of gears is measured to rise. d may be negative: the mean gap under an oil film is
-    positive always, see `plane_distance`. Typical of ground steel: sigma 0.05 to 0.5 um,
+    as the load grows, where friction of gears is measured to rise; films with heat warn of it. d may be negative: the
+    mean gap under an oil film is positive always, see `plane_distance`. Typical of ground steel: sigma 0.05 to 0.5 um,
     n beta sigma 0.03 to 0.05, sigma/beta 1e-4 to 1e-2.
 
     Parameters
@@ -153,7 +140,7 @@ class Roughness:
     tip_radius : float
         beta, radius of the asperities' tips [m].
     law : str
-        ``"greenwood-tripp"``, ``"greenwood-williamson"`` or ``"zhu-hu"``.
+        ``"greenwood-tripp"``, ``"greenwood-williamson"`` or ``"zhou-hoeprich"``.
     offset : float
         c, distance between the planes of mean height and of mean asperity height over sigma [-]; 1.15.
 
@@ -208,10 +195,10 @@ class Roughness:
         """Roughness from the values on drawings, Ra or Rz of each flank.
 
         sigma_i = Ra_i sqrt(pi/2), of normal heights, Ra_i = Rz_i/6; sigma = sqrt(sigma_1^2 + sigma_2^2). Drawings know
-        no asperities: unless these or a law are given the load is shared by the film ratio (``"zhu-hu"``). Where one of
-        the asperities' numbers is not known, sigma/beta = 1e-3 and n beta sigma = 0.04. Found are 1e-4 to 1e-2 and 0.03
-        to 0.05, so that the pressure of the asperities is uncertain by a factor of five up and down; Rz/Ra is 4 to 10
-        in measurements.
+        no asperities: unless these or a law are given the load is shared by the film ratio (``"zhou-hoeprich"``). Where
+        one of the asperities' numbers is not known, sigma/beta = 1e-3 and n beta sigma = 0.04. Found are 1e-4 to 1e-2
+        and 0.03 to 0.05, so that the pressure of the asperities is uncertain by a factor of five up and down; Rz/Ra is
+        4 to 10 in measurements.
 
         Parameters
         ----------
@@ -266,13 +253,13 @@ class Roughness:
         known = deviation > 0.0 and radius > 0.0  # else the constructor refuses it
         usual = USUAL_NUMBER / (radius * deviation) if known else 1.0
         if law is None:
-            law = "zhu-hu" if density is None and tip_radius is None else "greenwood-tripp"
+            law = "zhou-hoeprich" if density is None and tip_radius is None else "greenwood-tripp"
         return cls(deviation, usual if density is None else density, radius, law, offset)
 
     @property
     def elastic(self) -> bool:
         """Whether the load is shared by the asperities' pressure, not by the film ratio."""
-        return self.law != "zhu-hu"
+        return self.law != "zhou-hoeprich"
 
     @property
     def number(self) -> float:
@@ -308,15 +295,12 @@ class Roughness:
             order = 1.5
             scale = 2.0 / 3.0 * self.density * math.sqrt(beta) * sigma**1.5
         scale *= reduced_modulus
-        # dF_n/dx = -n F_{n-1}
-        return (
-            scale * height_integral(order, x),
-            -scale * order / sigma * height_integral(order - 1.0, x),
-        )
+        value, slope = _height_integral(order, x)
+        return scale * value, scale / sigma * slope
 
-    def planes(self, gap: ArrayLike) -> tuple[Array, Array]:
+    def planes(self, gap: float) -> tuple[float, float]:
         """Distance of the mean planes [m] at a mean gap [m], and its derivative by that."""
-        distance, slope = plane_distance(np.asarray(gap, dtype=float) / self.deviation)
+        distance, slope = plane_distance(gap / self.deviation)
         return self.deviation * distance, slope
 
     def under_film(self, gap: float, reduced_modulus: float, hertz: float) -> tuple[float, float]:
@@ -325,8 +309,8 @@ class Roughness:
         Of E' [Pa]; where the film ratio decides, of the Hertz pressure [Pa].
         """
         if not self.elastic:
-            share, by_ratio = film_share(gap / self.deviation)
-            return hertz * (1.0 - share), -hertz * by_ratio / self.deviation
+            found = share_by_ratio(gap, self.deviation)
+            return hertz * found.share, hertz * found.share * found.steep
         distance, follow = self.planes(gap)
         pressure, slope = self.pressure(distance, reduced_modulus)
         return float(pressure), float(slope * follow)

@@ -19,43 +19,20 @@ from ehl.asperities import Roughness
 from ehl.contact import LineContact
 from ehl.film import Film
 from ehl.levels import State, figures
+from ehl.load_share import ALL, NOTHING, KnownGap, eased, excess, foreseen, odds_of, share_of, usual_growth
 from ehl.mixed_film import MixedFilm
 from ehl.options import Options, warn_of_range
 from ehl.outcome import Found
+from ehl.regressions import moes_central
 from ehl.response import Response, by_share
 from ehl.solver import solve_checked
-from ehl.supply import Supply
+from ehl.supply import OilLayer, Supply
 
-_LEAST_SHARE = 1e-10
-_NOTHING = math.log(_LEAST_SHARE)  # odds of a share that counts as none,
-_ALL = -math.log(1e-6)  # and of one that leaves a millionth to the film
-_BALANCED = 1e-7  # relative difference of the pressures that asperities carry and are asked for
+_BALANCED = 1e-7  # relative difference of what asperities carry and are asked for
 _REACH = 3.0  # largest step of the odds
 _CLOSE = 1e-2  # between bounds as close as this the balance is straight in the odds
 _TRIES = 60
-_VACUUM = 1e-300
-
-
-def central_asperity_pressure(contact: LineContact, roughness: Roughness, share: float) -> float:
-    """Pressure on the asperities at the middle of a rough line contact [Pa], by Gelinck and Schipper's fit.
-
-    ``p_c = s p_H [1 + (1.558 (n/s R^1.5 beta^0.5)^0.0337 (sigma/R)^-0.442 W^0.4757)^-1.70]^(-1/1.70)``, s the
-    asperities' share of the load: the Hertz pressure of the share, lowered by the spread of a rough contact. Where
-    the film ratio decides it is the Hertz pressure of the share.
-
-    References
-    ----------
-    E. R. M. Gelinck and D. J. Schipper, Calculation of Stribeck curves for line contacts, Tribology
-    International 33 (2000) 175-181. The constants were taken from a secondary source; the bracket is within
-    some per cent of one for hard contacts, which limits what an error in them can do.
-    """
-    if not roughness.elastic:
-        return share * contact.peak_pressure
-    R, sigma = contact.radius, roughness.deviation
-    asperities = roughness.density / share * R**1.5 * math.sqrt(roughness.tip_radius)
-    spread = 1.558 * asperities**0.0337 * (sigma / R) ** -0.442 * contact.W**0.4757
-    found: float = share * contact.peak_pressure * (1.0 + spread**-1.70) ** (-1.0 / 1.70)
-    return found
+_APART = 1e-3  # of ln of what is left, where two films show how it grows
 
 
 def solve_mixed(
@@ -146,104 +123,107 @@ class _Search:
         self.options = options
         before = start.film if isinstance(start, MixedFilm) else start
         self.state: State | None = None if before is None else before.state
-        share = start.asperity_share if isinstance(start, MixedFilm) and start.converged else 0.0
-        self.odds = math.log(share / (1.0 - share)) if share > 0.0 else -math.inf
         self.cost = Cost(0.0)
+        self.odds = -math.inf
+        if isinstance(start, MixedFilm) and start.converged and start.asperity_share > 0.0:
+            self.odds = self.likely_odds(start)
 
     def film_at(self, odds: float) -> Found:
         """Film that carries what the asperities leave, at odds ln[s/(1-s)] of their share."""
-        left = 1.0 - _share(odds)
-        eased = replace(
-            self.contact, load=left * self.contact.load, reduced_modulus=left * self.contact.reduced_modulus
-        )
-        self.last = found = solve_checked(eased, self.options, self.state)
+        self.last = found = solve_checked(eased(self.contact, share_of(-odds)), self.options, self.state)
         self.cost += found.run.cost() + Cost(0.0, counts={"films": 1})
         if not found.converged:
             raise _NoFilmError(found.film().message)
         self.state = found.state.bare()
         return found
 
-    def carried(self, central: float) -> tuple[float, float]:
-        """Asperities' pressure at a central thickness [Pa] and its derivative by that [Pa/m]."""
-        contact = self.contact
-        return self.roughness.under_film(central, contact.reduced_modulus, contact.peak_pressure)
-
-    def asked(self, odds: float, heavier: float = 1.0) -> float:
-        """Pressure that the asperities' share asks of them [Pa], at a multiple of the load."""
-        contact = replace(self.contact, load=heavier * self.contact.load)
-        return central_asperity_pressure(contact, self.roughness, _share(odds))
-
-    def asked_slopes(self, odds: float) -> tuple[float, float]:
-        """Derivatives of ln of that pressure by the odds and by ln of the load."""
-        step = 1e-6
-        by_odds = math.log(self.asked(odds + step)) - math.log(self.asked(odds - step))
-        by_load = math.log(self.asked(odds, 1 + step)) - math.log(self.asked(odds, 1 - step))
-        return by_odds / (2 * step), by_load / (2 * step)
-
     def solved(self) -> MixedFilm:
         """Share the load, with the asperities' stiffness at the contact's width and both derivatives."""
         if math.isinf(self.odds):
             smooth = self.film_at(-math.inf)
-            alone = self.carried(figures(smooth.fine).central_thickness)[0] / self.contact.peak_pressure
-            if alone < _LEAST_SHARE:
+            self.odds = self.first_odds(smooth)
+            if self.odds <= NOTHING:
                 return self.smooth(smooth)
-            share = min(alone, 0.5)
-            self.odds = math.log(share / (1.0 - share))
         balance = self.balance()
         if balance is None:
             return self.smooth(self.film_at(-math.inf))
-        film, share, by = balance.found.film(), _share(balance.odds), balance.by
-        pressure, slope = self.carried(film.central_thickness)
-        closer = float(self.roughness.planes(film.central_thickness)[1])  # planes by gap
-        stiffness = -share * self.contact.load * slope / pressure / closer
-        # ln p_a(h(w, s)) = ln p_c(w, s) gives ds/dw
-        left, steep = 1.0 - share, slope / pressure
-        asked_by_odds, asked_by_load = self.asked_slopes(balance.odds)
+        film, share, by = balance.found.film(), share_of(balance.odds), balance.by
+        contact, roughness, gap = self.contact, self.roughness, film.central_thickness
+        pressure, slope = roughness.under_film(gap, contact.reduced_modulus, contact.peak_pressure)
+        closer = roughness.planes(gap)[1]  # planes by gap
+        stiffness = -share * contact.load * slope / pressure / closer
+        # the excess stays 0 as film, share and load change: that gives the odds by the load
+        at = excess(contact, roughness, gap, balance.odds)
+        left = share_of(-balance.odds)
         separation_w, central_w = left * film.separation_slope, left * film.central_slope
-        if not self.roughness.elastic:  # what is carried grows with the Hertz pressure alike
-            asked_by_load = 0.0
-        follow = asked_by_load / self.contact.load - steep * central_w
-        follow /= steep * by.central - asked_by_odds
+        follow = -(at.by_load / contact.load + at.by_gap * central_w)
+        follow /= at.by_gap * by.central + at.by_odds
         central = central_w + by.central * follow
         separation = separation_w + by.separation * follow + (closer - 1.0) * central
         return self.result(film, share, stiffness, separation, central)
 
+    def first_odds(self, smooth: Found) -> float:
+        """Odds that the smooth film makes likely; NOTHING where asperities do not reach through it."""
+        gap = figures(smooth.fine).central_thickness
+        if excess(self.contact, self.roughness, gap, NOTHING).value <= 0.0:
+            return NOTHING
+        return foreseen(self.contact, self.roughness, KnownGap(gap, -math.inf, self.growth(smooth)))
+
+    def likely_odds(self, start: MixedFilm) -> float:
+        """Odds that a neighbour makes likely: its film, changed as Moes' formula has it; behind a layer as it is."""
+        share, near = start.asperity_share, start.film.contact
+        left, supply = 1.0 - share, self.options.supply
+        ratio = 1.0
+        if not isinstance(supply, OilLayer):
+            ratio = moes_central(eased(self.contact, left)) / moes_central(near)
+        grows = usual_growth(self.contact, left, supply)
+        known = KnownGap(ratio * start.central_thickness, odds_of(share), grows)
+        return foreseen(self.contact, self.roughness, known)
+
+    def growth(self, found: Found) -> float:
+        """Power of what is left to it with which a film grows, by its derivative."""
+        by = by_share(found.fine, found.run.supply)
+        return by.central / figures(found.fine).central_thickness
+
     def balance(self) -> _Balance | None:
-        """Share at which the asperities carry what is asked, by Newton's method in its odds between bounds.
+        """Share at which the asperities carry what is asked, from film to film in its odds between bounds.
 
         The asperities' pressure falls as their share rises, since the film that carries less is thicker, and what
-        the share asks for rises. None where they carry nothing. Close bounds that Newton's step leaves were films on
-        a coarser grid, or solved less exactly: the balance has moved, and they are forgotten.
+        the share asks for rises. Each film foresees the next: it grows as a power of what is left to it, by its
+        derivative or by the last two films. None where asperities carry nothing. Close bounds that a step leaves were
+        films on a coarser grid, or solved less exactly: the balance has moved, and they are forgotten.
         """
         odds, low, high = self.odds, -math.inf, math.inf
+        last: KnownGap | None = None
         for _ in range(_TRIES):
             found = self.film_at(odds)
-            excess, slope, by = self.excess(found, odds)
-            if abs(excess) < _BALANCED:
+            gap = figures(found.fine).central_thickness
+            more = excess(self.contact, self.roughness, gap, odds).value
+            if abs(more) < _BALANCED:
+                by = by_share(found.fine, found.run.supply).scaled(-share_of(odds))  # ln(1 - s) falls by s
                 return _Balance(found, odds, by)
-            low, high = (odds, high) if excess > 0.0 else (low, odds)
-            if high <= _NOTHING:
+            low, high = (odds, high) if more > 0.0 else (low, odds)
+            if high <= NOTHING:
                 return None
-            if low >= _ALL:
+            if low >= ALL:
                 raise _NoFilmError(
                     "the asperities carry all but a millionth of the load: take the contact as dry"
                 )
-            # of a held layer the film's part of the slope is rounding where asperities carry nearly all
-            ahead = -excess / slope if slope < 0.0 else math.copysign(_REACH, excess)
+            last = KnownGap(gap, odds, self.grows(found, gap, odds, last))
+            ahead = foreseen(self.contact, self.roughness, last) - odds
             step = max(-_REACH, min(_REACH, ahead))
             if high - low < min(abs(step), _CLOSE):
                 low, high = -math.inf, math.inf
-            target = max(_NOTHING, min(_ALL, odds + step))
-            odds = target if low < target < high else 0.5 * (low + high)
+            target = max(NOTHING, min(ALL, odds + step))
+            odds = target if low < target < high else 0.5 * (max(low, NOTHING) + min(high, ALL))
         raise _NoFilmError("no share of the load on which film and asperities agree was found")
 
-    def excess(self, found: Found, odds: float) -> tuple[float, float, Response]:
-        """Ln of the asperities' pressure over what their share asks for, its derivative and the film's by the odds."""
-        by = by_share(found.fine, found.run.supply).scaled(-_share(odds))  # ln(1 - s) falls by s
-        pressure, slope = self.carried(figures(found.fine).central_thickness)
-        excess = math.log(max(pressure, _VACUUM) / self.asked(odds))
-        steep = slope / pressure * by.central if pressure > _VACUUM else 0.0
-        return excess, steep - self.asked_slopes(odds)[0], by
+    def grows(self, found: Found, gap: float, odds: float, last: KnownGap | None) -> float:
+        """Power with which the film grows: by its derivative first, then from film to film where they differ."""
+        if last is None:
+            return self.growth(found)
+        between = math.log(share_of(-odds) / share_of(-last.odds))
+        return math.log(gap / last.gap) / between if abs(between) > _APART else last.grows
 
     def smooth(self, found: Found) -> MixedFilm:
         """Return a film that carries all."""
@@ -258,8 +238,3 @@ class _Search:
         """Return no figures."""
         blank = replace(self.last.film(), converged=False, central_thickness=math.nan)
         return MixedFilm(self.contact, self.roughness, blank, self.cost, False, reason)
-
-
-def _share(odds: float) -> float:
-    """Share s of the asperities at odds ln[s/(1-s)]; 0 at odds of minus infinity."""
-    return 1.0 / (1.0 + math.exp(-odds))

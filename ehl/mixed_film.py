@@ -37,7 +37,7 @@ class RoughFilm:
     @described("m", shown="um", error="error")
     def plane_distance(self) -> float:
         """Distance of the mean planes at x = 0; negative where heights overlap by more than they leave open."""
-        return float(self.roughness.planes(self.film.central_thickness)[0])
+        return self.roughness.planes(self.film.central_thickness)[0]
 
     @described("m", shown="um", error="error")
     def minimum_thickness(self) -> float:
@@ -81,7 +81,7 @@ class MixedFilm(RoughFilm):
     @property
     def gap_slope(self) -> float:
         """Derivative of the mean gap by the distance of the mean planes at x = 0 [-]."""
-        return 1.0 / float(self.roughness.planes(self.film.central_thickness)[1])
+        return 1.0 / self.roughness.planes(self.film.central_thickness)[1]
 
     @described("N/m")
     def asperity_load(self) -> float:

@@ -198,9 +198,9 @@ class RoughnessSection(Section):
     tip_radius_um: float | None = key(
         "radius of the asperities' tips; a thousand times sigma if left out", None, such_as=700
     )
-    law: Literal["greenwood-tripp", "greenwood-williamson", "zhu-hu"] | None = key(
+    law: Literal["greenwood-tripp", "greenwood-williamson", "zhou-hoeprich"] | None = key(
         "rule that shares the load: elastic asperities of two rough flanks or of one, or the film ratio; "
-        "zhu-hu unless given, greenwood-tripp beside density_per_mm2 or tip_radius_um",
+        "zhou-hoeprich unless given, greenwood-tripp beside density_per_mm2 or tip_radius_um",
         None,
         such_as="greenwood-tripp",
     )

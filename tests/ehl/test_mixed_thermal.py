@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+import re
+import warnings
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from base import InputError
+from base import InputError, RangeWarning
 from ehl import LineContact, Lubricant, OilLayer, Roughness, solve_mixed, solve_mixed_thermal, solve_thermal
-from ehl.mixed import central_asperity_pressure
+from ehl.load_share import central_asperity_pressure
 
 OIL = Lubricant(0.02, 17e-9, 860.0, temperature=363.15, eyring_stress=5e6)
 SLIDING = LineContact(2e5, 2.5, 6e-3, 2.26e11, OIL, sliding=1.0)
@@ -75,3 +78,49 @@ def test_faults_are_named_together():
         solve_mixed_thermal(SLIDING, "rough", boundary_friction=3.0)
     assert "roughness" in str(told.value)
     assert "boundary_friction" in str(told.value)
+
+
+GEAR_OIL = replace(Lubricant.from_iso_vg(100, 363.15), eyring_stress=7e6)
+LOADS = (3e4, 6e4, 1.2e5, 2.4e5)
+
+
+def frictions(law, entrainment):
+    drawn = Roughness.from_drawing(0.4e-6, law=law)
+    contact = LineContact(LOADS[0], entrainment, 8.5e-3, 2.3e11, GEAR_OIL, sliding=0.3 * entrainment)
+    films = [solve_mixed_thermal(replace(contact, load=load), drawn, tolerance=0.02) for load in LOADS]
+    return np.array([(film.traction_coefficient, film.asperity_share) for film in films]).T
+
+
+@pytest.mark.parametrize("entrainment", [0.1, 1.0, 5.0, 20.0])
+def test_friction_of_drawn_surfaces_rises_with_the_load(entrainment):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RangeWarning)  # of the oil's pressures
+        warnings.filterwarnings("error", "roughness: elastic asperities")
+        friction, _ = frictions(None, entrainment)
+    assert (np.diff(friction) > 0.0).all()
+
+
+def test_elastic_asperities_say_that_their_friction_falls_with_the_load():
+    """By how much: their share falls nearly as the gap's pressure over Hertz', differences of films show it too."""
+    with pytest.warns(RangeWarning, match="their part of the friction falls") as caught:
+        friction, share = frictions("greenwood-tripp", 1.0)
+    assert (np.diff(friction) < 0.0).any()
+    assert (np.diff(share) < 0.0).all()
+    found = [re.search(r"about (\d+)%", str(one.message)) for one in caught]
+    said = [float(one[1]) / 100 for one in found if one]
+    assert len(said) == len(LOADS)
+    film = (friction - 0.1 * share) / (1 - share)
+    lost = -np.diff(share) * (0.1 - (film[1:] + film[:-1]) / 2) / ((friction[1:] + friction[:-1]) / 2)
+    middle = (np.array(said)[1:] + said[:-1]) / 2
+    np.testing.assert_allclose(middle, lost, rtol=0.15)
+
+
+def test_lost_friction_is_not_warned_of_where_nothing_slides_or_asperities_carry_hardly_anything():
+    still = LineContact(1e5, 1.0, 8.5e-3, 2.3e11, GEAR_OIL)
+    fast = replace(still, entrainment=40.0, sliding=4.0)
+    drawn, fine = (Roughness.from_drawing(mean, law="greenwood-tripp") for mean in (0.1e-6, 0.05e-6))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RangeWarning)  # of the oil's pressures
+        warnings.filterwarnings("error", "roughness: elastic asperities")
+        assert solve_mixed_thermal(still, drawn, tolerance=0.02).asperity_share > 0.01
+        assert solve_mixed_thermal(fast, fine, tolerance=0.02).asperity_share < 1e-4

@@ -14,7 +14,7 @@ import pytest
 
 import flankfilm as ff
 from base import RangeWarning
-from ehl import Roughness
+from ehl import Roughness, film_ratio
 from flankfilm.coupling import LoadedTeeth, MeshLosses
 from gears import TipRelief
 from gears.closed_form import ohlendorf_loss_factor, schlenk_friction
@@ -24,6 +24,7 @@ from tests.validation.studies.mesh_losses import (
     OIL,
     RIG_OIL,
     RIG_SPEED,
+    ROUGH_TORQUES,
     ROUGHNESS,
     SPEED,
     factor,
@@ -105,15 +106,29 @@ def test_schlenk_s_powers():
 
 
 @pytest.mark.slow
-def test_friction_of_rough_gears_rises_with_the_load_as_measured():
-    """FZG type C, 8.3 m/s, 90 degC, Ra 0.4 um: Schlenk's fit to measured losses as the load grows to nine times."""
-    torques, drawn = (35.0, 94.0, 302.0), Roughness.from_drawing(mean=ROUGHNESS)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RangeWarning)
-        ours = np.array([rig_friction(torque, drawn, positions=4) for torque in torques])
+def test_friction_of_rough_gears_rises_with_the_load_as_measured(monkeypatch):
+    """FZG type C, 8.3 m/s, 90 degC, Ra 0.4 um: Schlenk's fit to measured losses as the load grows to nine times.
+
+    It lies between the published profiles' constants, with boundary friction of 0.08 to 0.12.
+    """
+    drawn = Roughness.from_drawing(mean=ROUGHNESS)
+
+    def friction(boundary):
+        held = {"positions": 4, "boundary_friction": boundary}
+        return np.array([rig_friction(torque, drawn, **held) for torque in ROUGH_TORQUES])
+
+    warnings.simplefilter(
+        "ignore", RangeWarning
+    )  # of the oil, beyond its measurements; pytest restores the filters
+    usual, high = friction(0.1), friction(0.12)
+    fine, coarse = film_ratio.PROFILES
+    monkeypatch.setattr(film_ratio, "PROFILES", (fine, (coarse[0], *fine[1:])))
+    low = friction(0.08)
     theirs = [
         schlenk_friction(fzg_pair(None), torque, RIG_SPEED, RIG_OIL.viscosity, ROUGHNESS)
-        for torque in torques
+        for torque in ROUGH_TORQUES
     ]
-    assert (np.diff(ours) > 0.0).all()
-    np.testing.assert_allclose(ours, theirs, rtol=0.25)
+    assert (np.diff(usual) > 0.0).all()
+    assert (low < theirs).all()
+    assert (theirs < high).all()
+    np.testing.assert_allclose(usual[-1], theirs[-1], rtol=0.2)

@@ -184,7 +184,7 @@ def rough() -> None:
 
     drawn = Roughness.from_drawing(mean=ROUGHNESS)
     flanks = {
-        "film ratio (Zhu, Hu)": drawn,
+        "film ratio (Zhou, Hoeprich)": drawn,
         "elastic asperities (Greenwood, Tripp)": replace(drawn, law="greenwood-tripp"),
         "smooth": None,
     }
@@ -202,7 +202,6 @@ def rough() -> None:
         axes.set(
             xlabel="torque of the pinion [N m]", ylabel="mean coefficient of friction [-]", ylim=(0.0, 0.07)
         )
-        axes.legend(fontsize="small")
     figure.savefig(IMAGES / "rough_friction.png", dpi=150)
 
 
