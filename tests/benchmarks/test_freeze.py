@@ -234,12 +234,11 @@ def test_worktrees_go_when_the_comparison_breaks_off(project, tmp_path):
 
 
 PLANTED = """
-_shown = __getattr__
+from gears import peak_pressure as _before
 
 
-def __getattr__(name):
-    value = _shown(name)
-    return (lambda *given: {!r} * value(*given)) if name == "peak_pressure" else value
+def peak_pressure(*given):
+    return {!r} * _before(*given)
 """
 """Changes what a package shows, wherever its files are."""
 
