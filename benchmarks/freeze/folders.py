@@ -20,7 +20,7 @@ HDF5 = frozenset(
 )
 OF_THE_RUN = frozenset({"versions_json", "code_sha256", "_NCProperties"})
 CHECK_SUMS = frozenset({"files.json", ".lock"})
-CLOCK = re.compile(r"\b\d[\d.,]*(?:e[+-]?\d+)?\s*(?:ms|s|min|h)\b(?!/)")
+CLOCK = re.compile(r"\b\d[\d.,]*(?:e[+-]?\d+)?\s*(?:ms|s|min|h)\b(?!/)(?:\s*\d+\s*(?:s|min)\b)?")
 RATE = re.compile(r"\b\d[\d.,]*(?:e[+-]?\d+)?\s*rows/s\b")
 UNSHOWN = frozenset({"style", "script", "metadata", "defs"})
 
@@ -94,14 +94,23 @@ class _Words(HTMLParser):
         super().__init__()
         self.words: list[str] = []
         self._hidden: list[str] = []
+        self._row = 0
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         if tag in UNSHOWN:
             self._hidden.append(tag)
+        if tag == "tr":
+            self._row = len(self.words)
 
     def handle_endtag(self, tag: str) -> None:
         if self._hidden and self._hidden[-1] == tag:
             self._hidden.pop()
+        if tag == "tr":
+            row = self.words[self._row :]
+            if len(row) == 2 and CLOCK.fullmatch(row[1]):
+                del self.words[
+                    self._row :
+                ]  # listed for its time alone: such a stage is left out where it was quick
 
     def handle_data(self, data: str) -> None:
         words = " ".join(data.split())
