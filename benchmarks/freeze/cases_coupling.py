@@ -100,7 +100,7 @@ def lubricated_over_the_face() -> dict[str, Any]:
     return {"cycle": cycle_figures(cycle, "least_film thinnest_film")}
 
 
-@case(quick=True)
+@case()
 def film_along_path() -> dict[str, Any]:
     """Films along the path of contact."""
     bodies = article()

@@ -32,7 +32,7 @@ def bodies() -> Any:
     return fem.compliance(SMALL, 0.01)
 
 
-@case(quick=True)
+@case()
 def cells() -> dict[str, Any]:
     """4, 8 and 64 cells, straight and askew; slices and walls beside free ends."""
     found: dict[str, Any] = {}
@@ -64,7 +64,7 @@ def leads() -> dict[str, Any]:
     }
 
 
-@case()
+@case(quick=True)
 def widths() -> dict[str, Any]:
     """A wider pinion, off the middle."""
     wide = Gear(20, face_width=26e-3, face_offset=1e-3)

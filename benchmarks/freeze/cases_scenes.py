@@ -30,7 +30,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
 }
 """Scenes of ``examples/`` with the keys that make them shorter here."""
 
-QUICK = ("independent_pairs", "oscillator", "auto")
+QUICK = ("independent_pairs", "oscillator")
 
 case = Cases("scenes")
 

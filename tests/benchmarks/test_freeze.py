@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import doctest
 import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from benchmarks.freeze import case, cases_scenes, comparing, folders
 from benchmarks.freeze.__main__ import chosen, line, main, passed, summary
 from benchmarks.freeze.case import NOT_THERE, Case, flat, public, take
 from benchmarks.freeze.cases_scenes import EXAMPLES, shortened, toml
@@ -261,3 +263,12 @@ def test_a_planted_change_is_seen_and_none_without(tmp_path, change):
     assert [one.name for one in found.changes] == ([] if change is None else ["contact/pressure"])
     if change is not None:
         assert found.changes[0].relative == pytest.approx(1e-12, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "module", [case, cases_scenes, comparing, folders], ids=lambda module: module.__name__
+)
+def test_examples_of_the_tool_run(module):
+    failed, tried = doctest.testmod(module)
+    assert failed == 0
+    assert tried
