@@ -6,6 +6,7 @@ import ast
 import importlib
 import subprocess
 import sys
+import tomllib
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -20,6 +21,7 @@ MAY_IMPORT = {
     "meshes": {"base", "gears"},
     "fem": {"base", "gears", "meshes"},
     "flankfilm": {"base", "gears", "meshes", "fem", "ehl", "dynamics"},
+    "benchmarks": {"base", "gears", "meshes", "fem", "ehl", "dynamics", "flankfilm"},
 }
 
 
@@ -142,6 +144,25 @@ def test_the_front_door_shows_public_names_alone_and_loads_nothing_before_use(pa
 def test_no_file_holds_too_much(package: str):
     long = {s.name: n for s in (ROOT / package).rglob("*.py") if (n := len(s.read_text().splitlines())) > 500}
     assert long == {}
+
+
+def test_comparisons_use_public_names_alone():
+    """They run in both of two commits, between which files move."""
+    reached = set()
+    for source in (ROOT / "benchmarks").rglob("*.py"):
+        for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and not node.level and node.module:
+                reached |= {node.module} if "." in node.module else set()
+            elif isinstance(node, ast.Import):
+                reached |= {alias.name for alias in node.names if "." in alias.name}
+    assert {name for name in reached if name.partition(".")[0] in MAY_IMPORT} == set()
+
+
+def test_comparisons_are_not_in_the_wheel():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert set(project["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"]) == MAY_IMPORT.keys() - {
+        "benchmarks"
+    }
 
 
 def loaded_by(code: str) -> set[str]:

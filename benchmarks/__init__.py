@@ -1,0 +1,1 @@
+"""Long comparisons and studies of the project itself; outside the wheel."""
