@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import fem
     from flankfilm.coupling import FaceLoadModels
 
-GREATEST = "greatest face-load factor"
+GREATEST = "maximum face-load factor"
 
 
 def face(found: fem.FaceLoads, models: FaceLoadModels | None, results: xr.Dataset) -> Part:
@@ -95,7 +95,7 @@ def _rows(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
     at = f"{number(1e3 * float(found.face_position[cell]), 3)} mm"
     yield "its place on the face, from the middle", at
     pressure = read_figure(found, "hertz_pressure")
-    yield f"greatest {pressure.meaning}", f"{number(float(np.nanmax(pressure.values)))} {pressure.unit}"
+    yield f"maximum {pressure.meaning}", f"{number(float(np.nanmax(pressure.values)))} {pressure.unit}"
     yield "contact pattern: part of the face that is touched", percent(found.contact_pattern, 3)
     yield from _of_shafts(found)
 
@@ -112,7 +112,7 @@ def _of_shafts(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
         ):
             if np.any(values):
                 size = number(1e6 * float(values[np.argmax(np.abs(values))]))
-                yield f"greatest {what} by the shaft of the {name}", f"{size} µm {off}"
+                yield f"maximum {what} by the shaft of the {name}", f"{size} µm {off}"
     parts = found.shaft_transmission_error, found.tilt_transmission_error
     for name, part, off in zip(("shafts", "shafts' tilt"), parts, errors, strict=True):
         if part is not None:
@@ -145,10 +145,10 @@ def models_table(models: FaceLoadModels) -> Table:
     )
     heads = (
         "model",
-        "greatest face-load factor",
+        "maximum face-load factor",
         "at the pitch point",
         "differs from the first",
-        "greatest line load [N/mm]",
+        "maximum line load [N/mm]",
         "line load differs from the first, root mean square",
     )
     return Table(heads, rows, "Behind ± stands the numerical error, not that of the model.")

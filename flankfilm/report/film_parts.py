@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from flankfilm.coupling import FilmAlongPath, LubricatedCycle
 
 
-LEAST = "least film on the path"
-"""Name of the headline."""
+LEAST, LEAST_WITH_HEAT = "minimum film on the path", "minimum film with heat"
+"""Names of headlines."""
 
 HELD = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}
 
@@ -104,7 +104,7 @@ def _definitions(stage: FilmAlongPath, face: float) -> Table:
     ends = {name: (number(k.min() / face), number(k.max() / face)) for name, k in stage.stiffness.items()}
     caption = f"Stiffness in {unit_text(PER_FACE)}."
     if not stage.at_pitch:
-        heads = ("film stiffness by", "least", "largest")
+        heads = ("film stiffness by", "minimum", "maximum")
         return Table(heads, tuple((name, *both) for name, both in ends.items()), caption)
     return Table.of(
         stage.at_pitch,
@@ -116,8 +116,8 @@ def _definitions(stage: FilmAlongPath, face: float) -> Table:
             "loss of the pair's stiffness at C": lambda row: (
                 percent(row.loss) if np.isfinite(row.loss) else "-"
             ),
-            "least": lambda row: ends.get(row.definition, "--")[0],
-            "largest": lambda row: ends.get(row.definition, "--")[1],
+            "minimum": lambda row: ends.get(row.definition, "--")[0],
+            "maximum": lambda row: ends.get(row.definition, "--")[1],
         },
         caption + (" Formulas are of flooded contacts." if stage.supply != "flooded" else ""),
     )
@@ -185,9 +185,10 @@ def _off(cycle: LubricatedCycle) -> Uncertainty:
     return Uncertainty(math.hypot(*errors), size=100.0, unit="points")
 
 
-def regime_said(ratio: float) -> str:
-    """Regime at the least film ratio of a film."""
-    return f"{regime(ratio)} lubrication (below 1 boundary, below 3 mixed)"
+def regime_said(ratio: float, *, with_ratio: bool = False) -> str:
+    """Regime at the least film ratio of a film, and what its name means."""
+    at = f" at Lambda = {ratio:.2g}" if with_ratio else ""
+    return f"{regime(ratio)} lubrication{at} (below 1 boundary, below 3 mixed)"
 
 
 def headlines(cycle: LubricatedCycle) -> list[Headline]:
@@ -196,19 +197,21 @@ def headlines(cycle: LubricatedCycle) -> list[Headline]:
     off, note = uncertainty(stage, "least_film"), "" if stage.error is not None else "by formula"
     least, change = read_figure(stage, "least_film"), read_figure(cycle, "secant_stiffness_change")
     changed = f"{float(change.values):+.2f}"
+    ratio = stage.least_film_ratio
+    kind = "" if ratio is None else regime_said(ratio, with_ratio=True)
+    named = "; ".join(filter(None, (kind, note)))
     shown = [
-        Headline(LEAST, f"{float(least.values):.3g}", note, least.unit, off),
+        Headline(LEAST, f"{float(least.values):.3g}", named, least.unit, off),
         Headline("mean secant stiffness, change by the film", changed, note, change.unit, _off(cycle)),
     ]
     if stage.starvation is not None:
         supply = f"supply: {stage.supply}"
         error = Uncertainty(None if stage.error is None else math.sqrt(2.0) * stage.error)
         least_part = f"{stage.starvation.min():.3g}"
-        name = "starved over flooded film, the least"
+        name = "starved over flooded film, minimum"
         shown.append(Headline(name, least_part, supply, uncertainty=error))
-    ratio = stage.least_film_ratio
     if ratio is not None and stage.asperity_share is not None:
         share = f"{regime_said(ratio)}; asperities carry up to {percent(stage.asperity_share.max())}"
         error = uncertainty(stage, "least_film_ratio")
-        shown.append(Headline("least film ratio Lambda", f"{ratio:.3g}", share, uncertainty=error))
+        shown.append(Headline("minimum film ratio Lambda", f"{ratio:.3g}", share, uncertainty=error))
     return shown

@@ -12,7 +12,7 @@ from ehl.regimes import MEASURED, regime
 from flankfilm.build_heat import shearing_oil, warmth
 from flankfilm.figures.reading import read_figure
 from flankfilm.output.uncertainty import Uncertainty, uncertainty
-from flankfilm.report.film_parts import regime_said
+from flankfilm.report.film_parts import LEAST_WITH_HEAT, regime_said
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent, plain
 from flankfilm.scene.key import ZERO_CELSIUS
@@ -45,7 +45,7 @@ def losses(found: MeshLosses, results: xr.Dataset, scene: Scene) -> Part:
 def headlines(found: MeshLosses) -> list[Headline]:
     """Numbers for the page's head."""
     band = " to ".join(number(loss, 3) for loss in np.sort(found.band.mesh_loss))
-    least = read_figure(found.path, "least_film")
+    least, ratio = read_figure(found.path, "least_film"), found.path.least_film_ratio
     bands = f"{band} W {_BAND}"
     if found.boundary is not None:
         low, high = (f"{number(loss, 3)}" for loss in np.sort(found.boundary.mesh_loss))
@@ -72,23 +72,26 @@ def headlines(found: MeshLosses) -> list[Headline]:
             uncertainty=uncertainty(found, "mean_friction"),
         ),
         Headline(
-            "greatest temperature of the flanks",
+            "maximum temperature of the flanks",
             f"{hottest:.1f}",
             _bulk(found),
             "°C",
             in_kelvin(found, "greatest_contact_temperature"),
         ),
         Headline(
-            "least film with heat",
+            LEAST_WITH_HEAT,
             f"{float(least.values):.3g}",
-            unit=least.unit,
+            "" if ratio is None else regime_said(ratio, with_ratio=True),
+            least.unit,
             uncertainty=uncertainty(found.path, "least_film"),
         ),
     ]
-    if (ratio := found.path.least_film_ratio) is not None:
+    if ratio is not None:
         off = uncertainty(found.path, "least_film_ratio")
         shown.append(
-            Headline("least film ratio Lambda with heat", f"{ratio:.3g}", regime_said(ratio), uncertainty=off)
+            Headline(
+                "minimum film ratio Lambda with heat", f"{ratio:.3g}", regime_said(ratio), uncertainty=off
+            )
         )
     return shown
 
@@ -226,17 +229,17 @@ def _greatest(found: MeshLosses) -> Table:
 
 def _rows(found: MeshLosses) -> Iterator[tuple[str, str]]:
     path = found.path
-    yield "greatest oil temperature above the flanks' bulk", f"{path.oil_temperature_rise.max():.1f} K"
+    yield "maximum oil temperature above the flanks' bulk", f"{path.oil_temperature_rise.max():.1f} K"
     for gear, rise in zip(("pinion", "wheel"), path.surface_temperature_rise, strict=True):
-        yield f"greatest rise of the {gear}'s flank", f"{rise.max():.1f} K"
+        yield f"maximum rise of the {gear}'s flank", f"{rise.max():.1f} K"
     yield (
-        "greatest flash temperature after Blok, at the same friction",
+        "maximum flash temperature after Blok, at the same friction",
         f"{path.flash_temperature.max():.1f} K",
     )
     slides = 1e-9 * found.path.greatest_pressure_times_sliding
-    yield "greatest Hertz pressure times sliding speed", f"{slides:.3g} GPa m/s"
+    yield "maximum Hertz pressure times sliding speed", f"{slides:.3g} GPa m/s"
     if path.film_ratio is not None:
-        yield "least film ratio Lambda with heat", f"{path.film_ratio.min():.3g}"
+        yield "minimum film ratio Lambda with heat", f"{path.film_ratio.min():.3g}"
     yield "tooth loss factor H_V of the forces", f"{found.loss_factor:.4f}"
     if found.ohlendorf_loss_factor is not None:
         yield "H_V after Ohlendorf, pairs sharing evenly", f"{found.ohlendorf_loss_factor:.4f}"

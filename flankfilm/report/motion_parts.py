@@ -140,9 +140,9 @@ def _worst(stage: SpeedSweep, results: xr.Dataset) -> Table:
         for direction in stage.force_factor
     )
     at = "at ω" if rpm is None else "at [rpm]"
-    named = force.named("greatest force" if force.unit == "N" else "greatest force over the mean")
+    named = force.named("maximum force" if force.unit == "N" else "maximum force over the mean")
     vibration = length.named("displacement, root mean square")
-    heads = ("sweep", named, at, vibration, at, "most time without contact [%]", at)
+    heads = ("sweep", named, at, vibration, at, "maximum time without contact [%]", at)
     error = percent(stage.sampling_error)
     return Table(
         heads, rows, f"Of the speeds swept; force and displacement ± {error} by the samples of a period."
@@ -209,7 +209,7 @@ def _greatest(stage: SpeedSweep) -> list[Headline]:
         note += f"; {percent(float(left))} of the error by harmonics that the series leaves out"
         error += float(left)
     off = Uncertainty(_finite(error))
-    return [Headline("greatest force over the mean force", f"{np.nanmax(factors):.3g}", note, "", off)]
+    return [Headline("maximum force over the mean force", f"{np.nanmax(factors):.3g}", note, "", off)]
 
 
 def _finite(error: float | None) -> float | None:
@@ -254,7 +254,7 @@ def diagram_headlines(stage: SpeedDiagram) -> list[Headline]:
         note = f"{percent(worst.budget['truncation'])} of it by harmonics that the series leaves out"
     note = "; ".join(filter(None, (note, more)))
     if len(stage.jumps) > 1 and off is not None:
-        note = "; ".join(filter(None, ("of the least certain jump", note)))
+        note = "; ".join(filter(None, ("of the most uncertain jump", note)))
     return [Headline("jump speeds", at + rest, note, "rpm" if stage.speed_of_one else "", off)]
 
 

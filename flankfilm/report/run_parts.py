@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,6 +18,24 @@ if TYPE_CHECKING:
 
 LEAST_SECONDS = 0.005
 """Time of a stage that is listed although it has no error of its own [s]."""
+
+
+CHOICES = {
+    "fem": "finite elements",
+    "ishikawa": "Ishikawa",
+    "weber-banaschek": "Weber-Banaschek",
+    "potential-energy": "potential energy",
+    "given": "as given",
+    "ehl": "solved",
+    "dowson": "by formulas",
+    "none": "left out",
+    "on": "counted",
+    "off": "left out",
+}
+"""What a choice of models is called, by its key in the scene."""
+
+NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.]*\d)")
+"""A number in a warning."""
 
 
 class Work(NamedTuple):
@@ -62,7 +81,7 @@ def _work(name: str, results: Results) -> Work:
         return Work("mean stiffness, from arcs", plan.resolution.sampling, error / mean, samples)
     if name == "fillets":
         unknowns = counted(value.cost.unknowns, "unknown")
-        return Work("greatest root stress per load", tolerance, value.error, unknowns)
+        return Work("maximum root stress per load", tolerance, value.error, unknowns)
     if name == "film" and plan is not None and value.film.model == "ehl":
         film = value.film
         films, rounds = counted(film.rho1.size, "film"), counted(value.rounds, "round")
@@ -115,7 +134,36 @@ def warnings(results: Results, misses: Sequence[str] = ()) -> list[str]:
     for run in results.runs.values():
         for text in run.warnings:
             heard.setdefault(text, []).append(run.title)
-    return list(misses) + [f"{', '.join(titles)}: {text}" for text, titles in heard.items()]
+    alike: dict[str, list[str]] = {}
+    for text in heard:
+        alike.setdefault(NUMBER.sub("#", text), []).append(text)
+    lines = []
+    for texts in alike.values():
+        if (one := merged(texts)) is not None:
+            titles = dict.fromkeys(title for text in texts for title in heard[text])
+            lines.append(f"{', '.join(titles)}: {one}")
+        else:
+            lines += [f"{', '.join(heard[text])}: {text}" for text in texts]
+    return [*misses, *lines]
+
+
+def merged(texts: Sequence[str]) -> str | None:
+    """Give warnings that differ in one number as one with its range; None where they differ in more.
+
+    Examples
+    --------
+    >>> merged(["pressure 1.73 GPa: above 1", "pressure 1.54 GPa: above 1"])
+    'pressure 1.54 to 1.73 GPa: above 1'
+    """
+    if len(texts) == 1:
+        return texts[0]
+    columns = list(zip(*(NUMBER.findall(text) for text in texts), strict=True))
+    differing = [place for place, column in enumerate(columns) if len(set(column)) > 1]
+    if len(differing) != 1:
+        return None
+    ends = sorted(columns[differing[0]], key=float)
+    place = list(NUMBER.finditer(texts[0]))[differing[0]]
+    return f"{texts[0][: place.start()]}{ends[0]} to {ends[-1]}{texts[0][place.end() :]}"
 
 
 def _known(text: Callable[[float], str], value: float | None) -> str:
@@ -123,11 +171,11 @@ def _known(text: Callable[[float], str], value: float | None) -> str:
     return "" if value is None else text(value)
 
 
-def decisions(results: Results, misses: Sequence[str] = ()) -> list[Part]:
-    """What was decided, how the tolerance was split, what missed it, and what was warned of; no section without any."""
+def decisions(results: Results, warned: Sequence[str] = ()) -> list[Part]:
+    """What was decided, how the tolerance was split, and what was warned of; no section without any."""
     plan, decided = results.plan, results.decisions
     planned = [] if plan is None else [plan.line]
-    lines = (*warnings(results, misses), *(d.line for d in decided), *planned)
+    lines = (*warned, *(d.line for d in decided), *planned)
     if not lines:
         return []
     tables = ([_decided(decided)] if decided else []) + ([_shares(plan)] if plan and len(plan.shares) else [])
@@ -139,7 +187,7 @@ def _decided(decided: Sequence[Decision]) -> Table:
         decided,
         {
             "decision": lambda d: d.subject,
-            "choice": lambda d: d.choice,
+            "choice": lambda d: CHOICES.get(d.choice, d.choice),
             "effect, at most": lambda d: _known(percent, d.effect),
             "allowed": lambda d: _known(percent, d.share),
             "cost of all stages, foreseen": lambda d: _known(seconds, d.seconds),

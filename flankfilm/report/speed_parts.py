@@ -26,7 +26,7 @@ def run_up(stage: SpeedRunUp, results: xr.Dataset) -> Part:
     force = scale(results, "force")
     heads = (
         "run",
-        force.named("greatest force"),
+        force.named("maximum force"),
         "at",
         "largest jump at",
         force.named("before it"),
@@ -96,7 +96,7 @@ def dynamic_map(stage: DynamicMap, results: xr.Dataset) -> Part:
     heads = (
         "torque [N m]",
         "resonance [rpm]",
-        "greatest K_v [-]",
+        "maximum K_v [-]",
         "at [rpm]",
         "ISO 6336-1, B, there [-]",
         "most time without contact [%]",
@@ -128,5 +128,5 @@ def map_headlines(stage: DynamicMap) -> list[Headline]:
     row, column = np.unravel_index(int(np.nanargmax(stage.factor)), stage.factor.shape)
     note = f"at {RPM * stage.speed[column]:.0f} rpm and {stage.torque[row]:g} N m"
     off = Uncertainty(float(stage.sampling_error))
-    name = "greatest dynamic factor K_v of the map"
+    name = "maximum dynamic factor K_v of the map"
     return [Headline(name, f"{stage.greatest:.3g}", note, uncertainty=off)]

@@ -206,7 +206,7 @@ def test_files_and_pictures_of_the_face(ran):
     assert "20 µm of slopes" in part.notes[-1]
     assert "Not in it: crowning of the pinion" in part.notes[-1]
     head = {one.name: one.note for one in face_parts.headlines(face_loads)}
-    assert "slices, 8 cells" in head["greatest face-load factor"]
+    assert "slices, 8 cells" in head["maximum face-load factor"]
 
 
 def test_outputs_of_studies_are_those_of_the_face(ran):

@@ -22,7 +22,7 @@ EXAMPLE = EXAMPLES / "real_flanks.toml"
 def run(tmp_path_factory):
     folder = tmp_path_factory.mktemp("real") / "out"
     done = flankfilm("run", EXAMPLE, "--out", folder)
-    assert "greatest root stress" in done.stdout
+    assert "maximum root stress" in done.stdout
     return folder
 
 

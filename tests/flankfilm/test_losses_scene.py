@@ -223,7 +223,7 @@ def test_files_pictures_and_page_of_losses(few):
     assert [row[0] for row in part.tables[0].rows] == ["5", "10"]
     assert len(part.figures) == 3
     head = {one.name: one for one in losses_parts.headlines(lost)}
-    power, hottest = head["power lost in the mesh"], head["greatest temperature of the flanks"]
+    power, hottest = head["power lost in the mesh"], head["maximum temperature of the flanks"]
     assert "W for Eyring stresses of 5 to 10 MPa" in power.note
     # one quantity, one error: the page, its tables and the files
     assert power.uncertainty == Uncertainty(lost.error, lost.model_error)
@@ -238,7 +238,7 @@ def test_files_pictures_and_page_of_losses(few):
     rises = lost.path.temperature_error * lost.path.surface_temperature_rise.max(axis=0)
     assert rises[at] <= kelvin * (1 + 1e-9)
     assert kelvin <= rises.max() * (1 + 1e-9)
-    film = head["least film with heat"].uncertainty.numerical
+    film = head["minimum film with heat"].uncertainty.numerical
     assert film == data["losses_least_film"].attrs["error"] == data["losses_path_least_film"].attrs["error"]
     assert data["losses_least_film"].attrs["tolerance_met"] == int(film <= scene.tolerance)
 
