@@ -52,7 +52,7 @@ OF_CYCLE = (2, 2, 2)
 
 RANKS: Mapping[str, tuple[int, ...]] = {
     "film": (1,),
-    "losses": (2,),
+    "losses": (2, 2, 3, 1),
     "root stress": (1,),
     "sweep": (2, 2),
     "drive sweep": (2, 2, 2),

@@ -214,10 +214,10 @@ def inputs(scene: Mapping[str, Any], versions_json: str) -> Part:
 
 
 def _files_by_name(table: Mapping[str, Any]) -> dict[str, Any]:
-    """A table of a scene without what was read from files, which is thousands of numbers."""
+    """A table of a scene without what was read from files, which is thousands of numbers, and without empty keys."""
     read = CURVES if "file" in table else ()
     return {
         name: _files_by_name(value) if isinstance(value, Mapping) else value
         for name, value in table.items()
-        if name not in read
+        if name not in read and value is not None
     }
