@@ -113,6 +113,11 @@ def narrow() -> Iterator[None]:
         _narrow.reset(before)
 
 
+def is_narrow() -> bool:
+    """Whether pictures are drawn as a phone shows them."""
+    return _narrow.get()
+
+
 @contextmanager
 def sheet(
     style: Style | None = None,

@@ -169,7 +169,7 @@ def test_every_function_is_tried_here_or_elsewhere():
 
 SEEN_AT_ONCE = {
     "diagram", "film_along_path", "flanks", "fourier", "mesh_stiffness", "optimum", "optimum_map", "over_torque",
-    "resonance", "revolution", "root_stress", "tooth_stress", "verification",
+    "resonance", "revolution", "root_stress", "study", "tooth_stress", "verification",
 }  # fmt: skip
 """First pictures of sections, which are drawn for a phone as well."""
 
