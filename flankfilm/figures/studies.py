@@ -63,8 +63,11 @@ def study(
             axes.set_visible(False)
         handles, labels = panels[0].get_legend_handles_labels()
         if handles:
-            title = ", ".join(key_title(key) for key in others)
-            drawn.legend(handles, labels, loc="outside upper left", ncols=4, title=title, alignment="left")
+            title = (",\n" if is_narrow() else ", ").join(key_title(key) for key in others)
+            ncols = 2 if is_narrow() else 4
+            drawn.legend(
+                handles, labels, loc="outside upper left", ncols=ncols, title=title, alignment="left"
+            )
     return drawn
 
 

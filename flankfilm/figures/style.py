@@ -156,7 +156,7 @@ def sheet(
             height *= max(1.0, 0.75 * columns)
             given = {name: value for name, value in options.items() if name != "width_ratios"}
             rows, columns, options = rows * columns, 1, {"sharex": False, **given}
-        width = min(width, PHONE)
+        width = PHONE
     with styled(style):
         own, on = tuple(mpl.rcParams["figure.figsize"]), surface()
         if on.axes:
