@@ -298,8 +298,8 @@ def drive_sweep(
         "_peak_error": peaks.error,
     }  # fmt: skip
     longer = longer_motion(drive, (float(values.min()), float(values.max())), LEAST_HARMONICS)
-    lost = [result.message for result in found.values() if not result.converged]
-    said = [result.message for result in found.values() if result.message]
+    lost = [f"{way}: {result.message}" for way, result in found.items() if not result.converged]
+    said = [f"{way}: {result.message}" for way, result in found.items() if result.message]
     return DriveSweep(
         frequency=values,
         speed=speeds,

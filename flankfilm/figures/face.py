@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -144,8 +144,9 @@ def film_map(results: xr.Dataset, *, prefix: str = "film_face", style: Style | N
     need(results, "run a scene with a film whose pair has a lead or an alignment", *places, "path_point_rho1")
     travel, face, film, pressure = (read(results, name) for name in places)
     with sheet(style, 2, height=4.6, legend=0) as (drawn, panels):
-        FlankMap.of(travel, face, film).paint(panels[0], _thin(film))
-        FlankMap.of(travel, face, pressure).paint(panels[1])
+        # short names: a panel is low
+        FlankMap.of(travel, face, replace(film, meaning="minimum film")).paint(panels[0], _thin(film))
+        FlankMap.of(travel, face, replace(pressure, meaning="Hertz pressure")).paint(panels[1])
         over_path(results, *panels)
     return drawn
 

@@ -49,7 +49,8 @@ def gears_in_mesh(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     need(results, PAIR, "outline_pinion", "outline_wheel", "path_point_place", *BODY)
     outlines = [read(results, f"outline_{name}") for name in ("pinion", "wheel")]
     centres, bores = (read(results, name).values for name in ("outline_centre", BODY[0]))
-    with sheet(style, 1, 2, height=4.4, width_ratios=(2, 3)) as (drawn, (whole, close)):
+    with sheet(style, 2, width=3.9, height=5.6, sharex=False, height_ratios=(11, 9)) as (drawn, panels):
+        whole, close = panels
         lines = colours(2)
         middle, reach = _path(close, results)
         for shape, colour, shade in zip(outlines, lines, SHADES, strict=True):
@@ -73,8 +74,8 @@ def gears_in_mesh(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         for axes in (whole, close):
             axes.set_aspect("equal")
             axes.grid(visible=False)
-            axes.set(xlabel=shape.named("x"))
-        whole.set(ylabel=shape.named("y"))
+            axes.set(ylabel=shape.named("y"))
+        close.set(xlabel=shape.named("x"))
     return drawn
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flankfilm.figures.reading import key_title, titled
-from flankfilm.figures.style import COLOURS, DASHES, Style, colours, sheet
+from flankfilm.figures.style import COLOURS, DASHES, Style, colours, is_narrow, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,7 +53,7 @@ def study(
             f"no number varies among {', '.join(keys)}: there is nothing to draw the outputs against"
         )
     others = [k for k in keys if k != numbers[0] and not _follows(found, k, numbers[0])]
-    columns = min(2, len(outputs))
+    columns = 1 if is_narrow() else min(2, len(outputs))
     lines = -(-len(outputs) // columns)
     width, height = 3.6 * columns, 2.5 * lines + 0.7
     with sheet(style, lines, columns, width=width, height=height, legend=0, sharex=False) as (drawn, panels):
@@ -63,8 +63,11 @@ def study(
             axes.set_visible(False)
         handles, labels = panels[0].get_legend_handles_labels()
         if handles:
-            title = ", ".join(key_title(key) for key in others)
-            drawn.legend(handles, labels, loc="outside upper left", ncols=4, title=title, alignment="left")
+            title = (",\n" if is_narrow() else ", ").join(key_title(key) for key in others)
+            ncols = 2 if is_narrow() else 4
+            drawn.legend(
+                handles, labels, loc="outside upper left", ncols=ncols, title=title, alignment="left"
+            )
     return drawn
 
 

@@ -7,6 +7,7 @@ import re
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import chdir, contextmanager, suppress
+from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -93,6 +94,30 @@ def colours(count: int) -> list[str]:
     return [str(look["color"]) for look in looks(count)]
 
 
+PHONE = 3.9
+"""Width of a drawing whose text a phone shows large enough [inches]."""
+
+SHORT = 22
+"""Letters of labels two of which stand beside each other in such a drawing."""
+
+_narrow: ContextVar[bool] = ContextVar("narrow", default=False)
+
+
+@contextmanager
+def narrow() -> Iterator[None]:
+    """Draw as a phone shows it: panels below each other, `PHONE` wide, with legends that this width holds."""
+    before = _narrow.set(True)
+    try:
+        yield
+    finally:
+        _narrow.reset(before)
+
+
+def is_narrow() -> bool:
+    """Whether pictures are drawn as a phone shows them."""
+    return _narrow.get()
+
+
 @contextmanager
 def sheet(
     style: Style | None = None,
@@ -125,6 +150,13 @@ def sheet(
     """
     import matplotlib as mpl
 
+    if _narrow.get():
+        legend = min(legend, 1)
+        if columns > 1:
+            height *= max(1.0, 0.75 * columns)
+            given = {name: value for name, value in options.items() if name != "width_ratios"}
+            rows, columns, options = rows * columns, 1, {"sharex": False, **given}
+        width = PHONE
     with styled(style):
         own, on = tuple(mpl.rcParams["figure.figsize"]), surface()
         if on.axes:
@@ -141,7 +173,9 @@ def sheet(
         if on.axes:
             panels[0].legend(handles, labels, handlelength=2.6)
         else:
-            drawn.legend(handles, labels, loc="outside upper left", ncols=legend, handlelength=2.6)
+            short = _narrow.get() and max(map(len, labels)) < SHORT
+            columns = 2 if short else legend
+            drawn.legend(handles, labels, loc="outside upper left", ncols=columns, handlelength=2.6)
 
 
 def _given(axes: tuple[Any, ...], panels: int) -> list[Axes]:
@@ -171,6 +205,9 @@ def _empty(size: tuple[float, ...], current: bool) -> Figure:
 
 def legend_over(axes: Axes, columns: int) -> None:
     """Put the legend of `axes` right above it: the curves leave no corner free for certain."""
+    if _narrow.get():
+        longest = max(map(len, axes.get_legend_handles_labels()[1]), default=0)
+        columns = min(columns, 4 if longest < SHORT // 4 else 2 if longest < SHORT - 4 else 1)
     axes.legend(
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),

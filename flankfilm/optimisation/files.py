@@ -22,9 +22,10 @@ if TYPE_CHECKING:
 def summary(found: Optimum) -> list[str]:
     """Lines for the terminal."""
     task = found.task
+    coarse_at, fine_at = (f"{100 * one:g} %" for one in task.tolerances)
     lines = [
         f"{found.points} of at most {task.asked.evaluations} points, {found.computed} of them computed in "
-        f"{found.seconds:.1f} s, at tolerances {task.tolerances[0]:g} and then {task.tolerances[1]:g}"
+        f"{found.seconds:.1f} s, at tolerances of {coarse_at} and then {fine_at}"
     ]
     if (both := phases(found)) is not None:
         coarse, fine, saved = both

@@ -52,10 +52,10 @@ OF_CYCLE = (2, 2, 2)
 
 RANKS: Mapping[str, tuple[int, ...]] = {
     "film": (1,),
-    "losses": (2,),
+    "losses": (2, 2, 3, 1),
     "root stress": (1,),
     "sweep": (2, 2),
-    "drive sweep": (2, 2),
+    "drive sweep": (2, 2, 2),
     "diagram": (2,),
     "dynamic-map": (2,),
 }
@@ -118,11 +118,15 @@ def _headlines(results: Results) -> list[Headline]:
     operating = results.scene.operating
     if "sweep" in values and operating is not None and operating.pinion_speed_rpm is not None:
         shown += _ranked(motion_parts.operating_headlines(values["sweep"]), (1,))
+    if "drive sweep" in values and operating is not None and operating.pinion_speed_rpm is not None:
+        around = drive_parts.operating_headlines(values["drive sweep"], operating.pinion_speed_rpm)
+        shown += _ranked(around, (1,))
     if "losses" in values:
-        shown = [
-            replace(one, name=f"{one.name}, isothermal") if one.name == film_parts.LEAST else one
-            for one in shown
-        ]
+        # teeth run on the film with heat: it goes before the isothermal one
+        warm = {film_parts.LEAST: (", isothermal", 3), film_parts.LEAST_WITH_HEAT: ("", 1)}
+        for i, one in enumerate(shown):
+            kind, rank = warm.get(one.name, ("", one.rank))
+            shown[i] = replace(one, name=one.name + kind, rank=rank)
     pair = values.get("pair")
     return shown if shown or pair is None else pair_parts.headlines(pair)
 
@@ -224,7 +228,8 @@ def _result_parts(results: Results) -> list[Part]:
         if cycle is not None:
             cycles = list(dict.fromkeys((cycle, values["dry cycle"], *values.get("other cycles", ()))))
             notes, width = _film_notes(results, film), pair.face_width
-            parts.append(mesh_parts.stiffness(values.get("closed forms"), cycles, notes, width, data))
+            single, dry = values.get("closed forms"), values["dry cycle"].contact
+            parts.append(mesh_parts.stiffness(single, dry, cycles, notes, width, data))
             if (references := values.get("references")) is not None:
                 parts.append(mesh_parts.references(references, width))
     if pair is not None and (bears := _over_face(results)) is not None:

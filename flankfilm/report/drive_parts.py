@@ -191,9 +191,35 @@ def _both(stage: DriveSweep, figure: str, column: int) -> Array:
     return np.concatenate([getattr(stage, figure)[way][:, column] for way in ("up", "down")])
 
 
+_OF_MODEL = "model: the band of the damping and the search"
+
+
+def operating_headlines(stage: DriveSweep, rpm: float) -> list[Headline]:
+    """Mesh force over the mean one at the speeds of the sweeps around the operating one; nothing beyond the sweeps."""
+    speeds, after = RPM * stage.speed, int(np.searchsorted(RPM * stage.speed, rpm))
+    if not 0 < after < len(speeds):
+        return []
+    met = np.array([*stage.force_factor.values()])[:, after - 1 : after + 1]
+    if not np.isfinite(met).any():
+        return []
+    ends = dict.fromkeys(f"{end(met):.3g}" for end in (np.nanmin, np.nanmax))
+    note = f"settled motions at {speeds[after - 1]:.0f} and {speeds[after]:.0f} rpm, swept around {rpm:g} rpm"
+    off = Uncertainty(float(stage.sampling_error))
+    return [Headline("dynamic factor around the operating speed", " to ".join(ends), note, "", off)]
+
+
 def headlines(stage: DriveSweep) -> list[Headline]:
-    """Maximum force of a bearing and maximum torque of a shaft, each with its speed."""
+    """Maximum force of the mesh, of a bearing, and maximum torque of a shaft, each with its speed."""
     found = []
+    if np.isfinite(stage.force_peak):
+        sampled = min(stage.sampling_error, stage.force_peak_error)
+        off = Uncertainty(None)
+        if np.isfinite(stage.force_peak_error):
+            off = Uncertainty(sampled, stage.force_peak_error - sampled)
+        note = f"at {RPM * stage.force_peak_speed:.0f} rpm; {_OF_MODEL}"
+        found.append(
+            Headline("maximum mesh force over the mean force", f"{stage.force_peak:.3g}", note, "", off)
+        )
     for what, part, figure, unit in (
         ("maximum force of a bearing", "bearing", "bearing_force", "N"),
         ("maximum torque of a shaft", "shaft", "shaft_torque", "N m"),
@@ -208,7 +234,7 @@ def headlines(stage: DriveSweep) -> list[Headline]:
         )
         sampled = min(stage.sampling_error, off)
         known_off = Uncertainty(sampled, off - sampled) if np.isfinite(off) else Uncertainty(None)
-        note = f"{names[at]}, at {rpm:.0f} rpm; model: the band of the damping and the search"
+        note = f"{names[at]}, at {rpm:.0f} rpm; {_OF_MODEL}"
         if stage.carried_error is not None:
             left = stage.carried_error - stage.sampling_error
             known = f"up to {percent(left)}" if np.isfinite(left) else "more, in places unknown,"

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from flankfilm.coupling import FilmAlongPath, LubricatedCycle
 
 
-LEAST = "minimum film on the path"
-"""Name of the headline."""
+LEAST, LEAST_WITH_HEAT = "minimum film on the path", "minimum film with heat"
+"""Names of headlines."""
 
 HELD = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}
 
@@ -185,9 +185,10 @@ def _off(cycle: LubricatedCycle) -> Uncertainty:
     return Uncertainty(math.hypot(*errors), size=100.0, unit="points")
 
 
-def regime_said(ratio: float) -> str:
-    """Regime at the minimum film ratio of a film."""
-    return f"{regime(ratio)} lubrication (below 1 boundary, below 3 mixed)"
+def regime_said(ratio: float, *, with_ratio: bool = False) -> str:
+    """Regime at the minimum film ratio of a film, with its limits."""
+    at = f" at Lambda = {ratio:.2g}" if with_ratio else ""
+    return f"{regime(ratio)} lubrication{at} (below 1 boundary, below 3 mixed)"
 
 
 def headlines(cycle: LubricatedCycle) -> list[Headline]:
@@ -196,8 +197,11 @@ def headlines(cycle: LubricatedCycle) -> list[Headline]:
     off, note = uncertainty(stage, "least_film"), "" if stage.error is not None else "by formula"
     least, change = read_figure(stage, "least_film"), read_figure(cycle, "secant_stiffness_change")
     changed = f"{float(change.values):+.2f}"
+    ratio = stage.least_film_ratio
+    kind = "" if ratio is None else regime_said(ratio, with_ratio=True)
+    named = "; ".join(filter(None, (kind, note)))
     shown = [
-        Headline(LEAST, f"{float(least.values):.3g}", note, least.unit, off),
+        Headline(LEAST, f"{float(least.values):.3g}", named, least.unit, off),
         Headline("change of the mean secant stiffness by the film", changed, note, change.unit, _off(cycle)),
     ]
     if stage.starvation is not None:
@@ -206,7 +210,6 @@ def headlines(cycle: LubricatedCycle) -> list[Headline]:
         least_part = f"{stage.starvation.min():.3g}"
         name = "starved over flooded film, minimum"
         shown.append(Headline(name, least_part, supply, uncertainty=error))
-    ratio = stage.least_film_ratio
     if ratio is not None and stage.asperity_share is not None:
         share = f"{regime_said(ratio)}; asperities carry up to {percent(stage.asperity_share.max())}"
         error = uncertainty(stage, "least_film_ratio")

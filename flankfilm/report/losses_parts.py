@@ -12,7 +12,7 @@ from ehl.regimes import MEASURED, regime
 from flankfilm.build_heat import shearing_oil, warmth
 from flankfilm.figures.reading import read_figure
 from flankfilm.output.uncertainty import Uncertainty, uncertainty
-from flankfilm.report.film_parts import regime_said
+from flankfilm.report.film_parts import LEAST_WITH_HEAT, regime_said
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent, plain
 from flankfilm.scene.key import ZERO_CELSIUS
@@ -45,7 +45,7 @@ def losses(found: MeshLosses, results: xr.Dataset, scene: Scene) -> Part:
 def headlines(found: MeshLosses) -> list[Headline]:
     """Numbers for the page's head."""
     band = " to ".join(number(loss, 3) for loss in np.sort(found.band.mesh_loss))
-    least = read_figure(found.path, "least_film")
+    least, ratio = read_figure(found.path, "least_film"), found.path.least_film_ratio
     bands = f"{band} W {_BAND}"
     if found.boundary is not None:
         low, high = (f"{number(loss, 3)}" for loss in np.sort(found.boundary.mesh_loss))
@@ -79,13 +79,14 @@ def headlines(found: MeshLosses) -> list[Headline]:
             in_kelvin(found, "greatest_contact_temperature"),
         ),
         Headline(
-            "minimum film with heat",
+            LEAST_WITH_HEAT,
             f"{float(least.values):.3g}",
-            unit=least.unit,
+            "" if ratio is None else regime_said(ratio, with_ratio=True),
+            least.unit,
             uncertainty=uncertainty(found.path, "least_film"),
         ),
     ]
-    if (ratio := found.path.least_film_ratio) is not None:
+    if ratio is not None:
         off = uncertainty(found.path, "least_film_ratio")
         shown.append(
             Headline(

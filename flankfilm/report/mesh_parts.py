@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flankfilm.coupling.references import MEANINGS, PARTS, RELATIVE, relative_to
-from flankfilm.figures.reading import read, read_figure
+from flankfilm.figures.reading import PER_FACE, read, read_figure, unit_text
 from flankfilm.output.uncertainty import Uncertainty, uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import alike, number, percent, plus_minus
+from flankfilm.report.text import SMALLEST, alike, number, percent, plus_minus
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -36,7 +36,14 @@ EXPLAINED = {"body": "reference_body", "bore": "reference_bore", "teeth": "refer
 LISTED = 6
 """Harmonics in the table of a mesh cycle."""
 
-OF_EACH_SECTION = ("Y_F", "Y_S", "s_Fn", "h_Fe", "rho_F", "q_s")
+OF_EACH_SECTION = {
+    "form factor Y_F": "Y_F",
+    "stress correction factor Y_S": "Y_S",
+    "chord of the root s_Fn": "s_Fn",
+    "bending moment arm h_Fe": "h_Fe",
+    "root fillet radius rho_F": "rho_F",
+    "notch parameter q_s": "q_s",
+}
 """Figures of the root of either gear by ISO 6336-3."""
 
 
@@ -47,6 +54,7 @@ def flanks(results: xr.Dataset) -> Part:
 
 def stiffness(
     single: SinglePairs | None,
+    loaded: fem.MeshCycle | None,
     cycles: Sequence[MeshCycle],
     changes: Sequence[str],
     face_width: float,
@@ -57,6 +65,8 @@ def stiffness(
     Parameters
     ----------
     single : SinglePairs or None
+    loaded : fem.MeshCycle or None
+        Loaded contact without film, whose Hertz pressure stands beside ISO's; as in the head of the page.
     cycles : sequence of MeshCycle
         Of all models; the first one gives the figures of the report.
     changes : sequence of str
@@ -69,7 +79,7 @@ def stiffness(
     tables = [_cycles(cycles, face_width), _harmonics(cycles[0])]
     if single is not None:
         shown.append("single_pairs")
-        tables += [iso_table(single.iso), contact_table(single.contact, cycles[0].contact)]
+        tables += [iso_table(single.iso), contact_table(single.contact, loaded)]
     drawn = pictures(results, *shown, model=cycles[0].label)
     notes = (said(EXPLAINED[cycles[0].reference]), *changes, said("closed_forms"))
     return Part("stiffness", "Mesh stiffness", figures=drawn, tables=tuple(tables), notes=notes)
@@ -99,7 +109,7 @@ def _cycles(cycles: Sequence[MeshCycle], face_width: float) -> Table:
         {
             "model": lambda cycle: f"{cycle.label}, {RELATIVE[cycle.reference]}",
             **shown("mean_secant_stiffness", face_width),
-            "secant from, to": ends,
+            f"secant from, to [{unit_text(PER_FACE)}]": ends,
             **shown("mean_stiffness", face_width),
             **shown("transmission_error_range"),
             "error of the contact model": lambda cycle: percent(cycle.model_error),
@@ -124,7 +134,16 @@ def references(found: StiffnessReferences, face_width: float) -> Part:
     of_hubs = found.deflection["hub_windup"]
     whole = sum(found.deflection.values()) - of_hubs
     parts = [
-        (PARTS[name], number(1e6 * part, 4), percent(part / whole)) for name, part in found.deflection.items()
+        # what rounding leaves of a part is none
+        (
+            PARTS[name],
+            *(
+                ("0", "0 %")
+                if abs(part) < SMALLEST * whole
+                else (number(1e6 * part, 4), percent(part / whole))
+            ),
+        )
+        for name, part in found.deflection.items()
     ]
     parts.insert(-1, ("total, relative to the bodies", number(1e6 * whole, 4), percent(1.0)))
     parts.append(
@@ -212,11 +231,18 @@ def pressure_headlines(loaded: fem.MeshCycle, single: SinglePairs | None) -> lis
     pressure = read_figure(loaded, "hertz_pressure")
     if not np.isfinite(pressure.values).any():
         return []
-    note = "at the positions computed, without tip edges, error unknown"
+    # near the base circle of a pinion pressures are far above that at the pitch point, which ISO has
+    place = float(loaded.rho1.flat[int(np.nanargmax(loaded.hertz_pressure))] - loaded.pair.points.A)
+    note = f"{1e3 * place:.3g} mm after A, at the positions computed, without tip edges, error unknown"
     if single is not None:
-        note += f"; ISO 6336-2 nominal {' and '.join(f'{1e-6 * one:.4g}' for one in single.contact.stresses)}"
+        note += f"; ISO 6336-2 nominal {_both(single.contact.stresses)}"
     greatest = number(float(np.nanmax(pressure.values)), 4)
     return [Headline("maximum Hertz pressure", greatest, note, pressure.unit)]
+
+
+def _both(stresses: Sequence[float]) -> str:
+    """Stress of pinion and wheel [MPa], once where it is the same."""
+    return " and ".join(dict.fromkeys(f"{1e-6 * one:.4g}" for one in stresses))
 
 
 def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
@@ -272,16 +298,19 @@ def root_headlines(stage: RootStresses) -> list[Headline]:
     values = " and ".join(f"{float(one.values):.4g}" for one in largest)
     note = ""
     if stage.iso is not None:
-        note = f"ISO 6336-3 nominal {' and '.join(f'{1e-6 * one:.4g}' for one in stage.iso.stresses)}"
+        note = f"ISO 6336-3 nominal {_both(stage.iso.stresses)}"
     name = "maximum root stress, pinion and wheel"
     return [Headline(name, values, note, largest[0].unit, Uncertainty(stage.error))]
 
 
 def _iso(iso: Iso6336RootStress) -> Table:
     rows: dict[str, Sequence[float]] = {
-        name: [getattr(section, name) for section in iso.sections] for name in OF_EACH_SECTION
+        label: [getattr(section, name) for section in iso.sections] for label, name in OF_EACH_SECTION.items()
     }
-    rows |= {"Y_B": iso.Y_B, "nominal root stress sigma_F0 [MPa]": [1e-6 * value for value in iso.stresses]}
+    rows |= {
+        "rim thickness factor Y_B": iso.Y_B,
+        "nominal root stress sigma_F0 [MPa]": [1e-6 * value for value in iso.stresses],
+    }
     cells = tuple((name, *(number(value, 5) for value in values)) for name, values in rows.items())
     return Table(("ISO 6336-3, lengths in modules", "pinion", "wheel"), cells)
 

@@ -93,11 +93,11 @@ def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
     """
     task, points = found.task, found.evaluations
     chosen = [points[place] for place in found.best]
-    one, count = len(task.objectives) == 1, len(points)
+    one = len(task.objectives) == 1
     coarse, fine = (percent(tolerance) for tolerance in task.tolerances)
     settled = "converged" if found.converged else "not converged"
     facts = [
-        Fact(counted(count, "point"), "points"),
+        Fact(counted(found.points, "point"), "points"),
         _work(data),
         Fact("one optimum" if one else f"{counted(len(chosen), 'point')} on the front", "best"),
         Fact(settled, "claims"),

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from flankfilm import figures
-from flankfilm.figures.style import to_svg
+from flankfilm.figures.style import narrow, to_svg
 from flankfilm.output.files import write_text
 from flankfilm.output.uncertainty import Uncertainty
-from flankfilm.report.text import counted, off, percent
+from flankfilm.report.text import counted, missed, off, parts, percent, total
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,15 +28,33 @@ BOUND = re.compile(r"\[[^\]]*\]|± (?:< )?[\d.e+-]+(?: %)?|\d %")
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure as inline SVG, with its caption and the name of the function that draws it from results, if one does."""
+    """A figure as inline SVG, with its caption.
+
+    Attributes
+    ----------
+    svg, caption : str
+    function : str
+        Name of the function that draws it from results, if one does.
+    redraw : callable, optional
+        Gives it as a phone shows it; of pictures that fit a phone anyway there is no other one.
+    """
 
     svg: str
     caption: str
     function: str = ""
+    redraw: Callable[[], str] | None = None
+
+    @property
+    def narrow(self) -> str:
+        """The figure for a phone; empty where it has no other one."""
+        return "" if self.redraw is None else self.redraw()
 
 
-CARDS, SHOWN = 8, 6
+CARDS, SHOWN = 8, 4
 """Figures and warnings on the first screen; more unfold."""
+
+UNFIT = frozenset(("drive_modes",))
+"""Pictures that hold too much for a phone's width: there they scroll in their frame."""
 
 FEW, MANY = 3, 7
 """Columns of a table that is no wider than it needs to be, and more than those of one in the page's own type."""
@@ -153,6 +171,10 @@ class Headline:
         What `against` puts before the note; None where nothing is to be estimated.
     rank : int
         Order on the page: 1 for limits of the teeth and the oil, 2 for what the pair does, 3 for the rest.
+    bound, made_up, mark : str
+        What a card shows of the uncertainty, by `against`: the total, its parts, and that it misses the tolerance.
+    remark : str
+        The note without these; empty as long as there are none.
     """
 
     name: str
@@ -161,12 +183,24 @@ class Headline:
     unit: str = ""
     uncertainty: Uncertainty | None = None
     rank: int = 3
+    bound: str = ""
+    made_up: str = ""
+    mark: str = ""
+    remark: str = ""
 
     def against(self, tolerance: float) -> Headline:
         """Put the uncertainty before the note, marked where it does not meet the tolerance."""
-        if self.uncertainty is None:
+        found = self.uncertainty
+        if found is None:
             return self
-        return replace(self, note="; ".join(filter(None, (off(self.uncertainty, tolerance), self.note))))
+        return replace(
+            self,
+            note="; ".join(filter(None, (off(found, tolerance), self.note))),
+            bound=total(found),
+            made_up=parts(found),
+            mark=missed(found, tolerance),
+            remark=self.note,
+        )
 
     def miss(self, tolerance: float) -> str:
         """Say that its error is above the tolerance; empty where it is not, or not known."""
@@ -194,7 +228,14 @@ class Fact:
 
 def picture(draw: Callable[[xr.Dataset], Figure], results: xr.Dataset, caption: str) -> Drawing:
     """Draw results with one of `flankfilm.figures` for the page; its name becomes the figure's id."""
-    return Drawing(to_svg(draw(results), draw.__name__), caption, f"flankfilm.figures.{draw.__name__}")
+
+    def redraw() -> str:
+        with narrow():
+            return to_svg(draw(results), f"{draw.__name__}-narrow")
+
+    name = f"flankfilm.figures.{draw.__name__}"
+    fits = draw.__name__ not in UNFIT
+    return Drawing(to_svg(draw(results), draw.__name__), caption, name, redraw if fits else None)
 
 
 def pictures(results: xr.Dataset, *names: str, **words: str) -> tuple[Drawing, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -58,7 +59,7 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
 
 def drawing(results: xr.Dataset) -> Drawing:
     """Drawing of the pair in mesh, for the page's head."""
-    return pictures(results, "gears_in_mesh")[0]
+    return replace(pictures(results, "gears_in_mesh")[0], redraw=None)
 
 
 def printed(results: xr.Dataset) -> list[str]:

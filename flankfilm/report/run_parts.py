@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,6 +18,24 @@ if TYPE_CHECKING:
 
 LEAST_SECONDS = 0.005
 """Minimum time of a stage that is listed although it has no separate error [s]."""
+
+
+CHOICES = {
+    "fem": "finite elements",
+    "ishikawa": "Ishikawa",
+    "weber-banaschek": "Weber-Banaschek",
+    "potential-energy": "potential energy",
+    "given": "as given",
+    "ehl": "solved",
+    "dowson": "by formulas",
+    "none": "left out",
+    "on": "counted",
+    "off": "left out",
+}
+"""What a choice of models is called, by its key in the scene."""
+
+NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.]*\d)")
+"""A number in a warning."""
 
 
 class Work(NamedTuple):
@@ -115,7 +134,36 @@ def warnings(results: Results, misses: Sequence[str] = ()) -> list[str]:
     for run in results.runs.values():
         for text in run.warnings:
             heard.setdefault(text, []).append(run.title)
-    return list(misses) + [f"{', '.join(titles)}: {text}" for text, titles in heard.items()]
+    alike: dict[str, list[str]] = {}
+    for text in heard:
+        alike.setdefault(NUMBER.sub("#", text), []).append(text)
+    lines = []
+    for texts in alike.values():
+        if (one := merged(texts)) is not None:
+            titles = dict.fromkeys(title for text in texts for title in heard[text])
+            lines.append(f"{', '.join(titles)}: {one}")
+        else:
+            lines += [f"{', '.join(heard[text])}: {text}" for text in texts]
+    return [*misses, *lines]
+
+
+def merged(texts: Sequence[str]) -> str | None:
+    """Give warnings that differ in one number as one with its range; None where they differ in more.
+
+    Examples
+    --------
+    >>> merged(["pressure 1.73 GPa: above 1", "pressure 1.54 GPa: above 1"])
+    'pressure 1.54 to 1.73 GPa: above 1'
+    """
+    if len(texts) == 1:
+        return texts[0]
+    columns = list(zip(*(NUMBER.findall(text) for text in texts), strict=True))
+    differing = [place for place, column in enumerate(columns) if len(set(column)) > 1]
+    if len(differing) != 1:
+        return None
+    ends = sorted(columns[differing[0]], key=float)
+    place = list(NUMBER.finditer(texts[0]))[differing[0]]
+    return f"{texts[0][: place.start()]}{ends[0]} to {ends[-1]}{texts[0][place.end() :]}"
 
 
 def _known(text: Callable[[float], str], value: float | None) -> str:
@@ -123,11 +171,11 @@ def _known(text: Callable[[float], str], value: float | None) -> str:
     return "" if value is None else text(value)
 
 
-def decisions(results: Results, misses: Sequence[str] = ()) -> list[Part]:
-    """Decisions, division of the tolerance, figures that miss it, and warnings; no section without any."""
+def decisions(results: Results, warned: Sequence[str] = ()) -> list[Part]:
+    """Decisions, division of the tolerance, and warnings; no section without any."""
     plan, decided = results.plan, results.decisions
     planned = [] if plan is None else [plan.line]
-    lines = (*warnings(results, misses), *(d.line for d in decided), *planned)
+    lines = (*warned, *(d.line for d in decided), *planned)
     if not lines:
         return []
     tables = ([_decided(decided)] if decided else []) + ([_shares(plan)] if plan and len(plan.shares) else [])
@@ -139,7 +187,7 @@ def _decided(decided: Sequence[Decision]) -> Table:
         decided,
         {
             "decision": lambda d: d.subject,
-            "choice": lambda d: d.choice,
+            "choice": lambda d: CHOICES.get(d.choice, d.choice),
             "effect, at most": lambda d: _known(percent, d.effect),
             "allowed": lambda d: _known(percent, d.share),
             "estimated cost of all stages": lambda d: _known(seconds, d.seconds),
@@ -166,10 +214,10 @@ def inputs(scene: Mapping[str, Any], versions_json: str) -> Part:
 
 
 def _files_by_name(table: Mapping[str, Any]) -> dict[str, Any]:
-    """A table of a scene without what was read from files, which is thousands of numbers."""
+    """A table of a scene without what was read from files, which is thousands of numbers, and without empty keys."""
     read = CURVES if "file" in table else ()
     return {
         name: _files_by_name(value) if isinstance(value, Mapping) else value
         for name, value in table.items()
-        if name not in read
+        if name not in read and value is not None
     }

@@ -80,18 +80,52 @@ def off(found: Uncertainty, tolerance: float | None = None) -> str:
     '± 0.19 K (numerical; model not estimated)'
     """
     if found.total is None:
-        return "error unknown"
+        return total(found)
+    return "; ".join(filter(None, (f"{total(found)} ({parts(found)})", missed(found, tolerance))))
 
-    def shown(error: float | None) -> str:
-        return f"{plain(found.size * (error or 0.0))} {found.unit}".strip() if found.size else percent(error)
 
-    parts = "numerical; model not estimated"
-    if found.model is not None:
-        parts = f"numerical {shown(found.numerical)}, model {shown(found.model)}"
-    mark = ""
-    if tolerance is not None and not found.met(tolerance):
-        mark = f"; {MARK} above the tolerance of {percent(tolerance)}"
-    return f"± {shown(found.total)} ({parts}){mark}"
+def total(found: Uncertainty) -> str:
+    """Total uncertainty of a figure.
+
+    Examples
+    --------
+    >>> total(Uncertainty(0.0012, 0.37)), total(Uncertainty(5e-4, size=378.0, unit="K")), total(Uncertainty(None))
+    ('± 37 %', '± 0.19 K', 'error unknown')
+    """
+    return "error unknown" if found.total is None else f"± {_sized(found, found.total)}"
+
+
+def parts(found: Uncertainty) -> str:
+    """Numerical and model part of an uncertainty; empty where it is unknown.
+
+    Examples
+    --------
+    >>> parts(Uncertainty(0.0012, 0.37)), parts(Uncertainty(0.0012)), parts(Uncertainty(None))
+    ('numerical 0.12 %, model 37 %', 'numerical; model not estimated', '')
+    """
+    if found.total is None:
+        return ""
+    if found.model is None:
+        return "numerical; model not estimated"
+    return f"numerical {_sized(found, found.numerical)}, model {_sized(found, found.model)}"
+
+
+def missed(found: Uncertainty, tolerance: float | None) -> str:
+    """Mark of a figure that does not meet the tolerance; empty of one that does, or whose error is unknown.
+
+    Examples
+    --------
+    >>> missed(Uncertainty(0.018), 0.01), missed(Uncertainty(0.001, 0.37), 0.01)
+    ('! above the tolerance of 1 %', '')
+    """
+    if tolerance is None or found.total is None or found.met(tolerance):
+        return ""
+    return f"{MARK} above the tolerance of {percent(tolerance)}"
+
+
+def _sized(found: Uncertainty, error: float | None) -> str:
+    """Error in per cent, or in the unit of the figure."""
+    return f"{plain(found.size * (error or 0.0))} {found.unit}".strip() if found.size else percent(error)
 
 
 MARK = "!"

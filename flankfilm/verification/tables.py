@@ -23,11 +23,13 @@ if TYPE_CHECKING:
 
 def table(found: Verification, reference: Curves) -> Table:
     """Tabulate every model against one reference: a row for each figure."""
+    from flankfilm.figures.reading import unit_text
     from flankfilm.report.other_pages import compared, compared_with
 
     name = reference.label
     heads = "figure", "unit", "finite elements", *(model.label for model in found.models)
-    return _laid_out(f"against {compared_with(found, name)}", heads, compared(found, name))
+    rows = ((figure, unit_text(unit), *cells) for figure, unit, *cells in compared(found, name))
+    return _laid_out(f"against {compared_with(found, name)}", heads, rows)
 
 
 def face_table(models: FaceLoadModels) -> Table:

@@ -1,7 +1,11 @@
 // What a reader would stumble over in a page: run in the page, gives lists that should be empty.
 (async () => {
-  for (const folded of document.querySelectorAll("details")) folded.open = true;
+  const over = (e) => e.checkVisibility() && e.scrollWidth > e.clientWidth + 1;
   const name = (e) => `${e.tagName} ${(e.textContent || "").trim().slice(0, 40)}`;
+  // what is folded may scroll in its frame; what is seen at once is drawn for the screen
+  const sideways = [...document.querySelectorAll("figure .wide")].filter(over).map((e) => e.ariaLabel);
+  for (const folded of document.querySelectorAll("details")) folded.open = true;
+  const cut = [...document.querySelectorAll(".wide")].filter((e) => e.querySelector("table") && over(e)).map(name);
   const channel = (v) => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
   const parse = (colour) => { const c = colour.match(/[\d.]+/g).map(Number); return c.length < 4 ? [...c, 1] : c; };
   const light = ([r, g, b]) => 0.2126 * channel(r) + 0.7152 * channel(g) + 0.0722 * channel(b);
@@ -48,7 +52,7 @@
     if (size < (svg ? 9 : 12)) tiny.push(`${name(e)}: ${size.toFixed(1)} px`);
   }
   return {
-    broken, wide, faint, tiny,
+    broken, wide, faint, tiny, sideways, cut,
     // a phone shows a page that is too wide smaller, by laying out a wider one
     screen: innerWidth,
     doubled: ids.filter((id, i) => ids.indexOf(id) !== i),

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from base import InputError
 from flankfilm.cache import Cache
 from flankfilm.coupling import LubricatedCycle
+from flankfilm.report.film_parts import headlines
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import FILM
 from flankfilm.stages.engine import Engine
@@ -140,6 +143,20 @@ def test_rough_flanks_share_the_load(flooded: LubricatedCycle):
         rough.film.central_thickness > flooded.film.central_thickness
     )  # asperities hold the flanks apart
     assert [row.definition for row in rough.film.at_pitch][-1] == "whole"
+
+
+def test_the_card_of_the_minimum_film_names_its_regime(flooded: LubricatedCycle):
+    rough = stage(ROUGH + "sigma_um = 0.25\n")
+
+    def note(cycle: LubricatedCycle) -> str:
+        return {one.name: one.note for one in headlines(cycle)}["minimum film on the path"]
+
+    for times, regime in ((0.1, "boundary"), (1.0, "mixed"), (10.0, "full film")):
+        ratio = times * rough.film.film_ratio
+        film = replace(rough.film, film_ratio=ratio)
+        said = note(replace(rough, film=film))
+        assert said.startswith(f"{regime} lubrication at Lambda = {ratio.min():.2g} (below 1 boundary")
+    assert note(flooded) == ""  # of smooth flanks there is no ratio
 
 
 def test_the_articles_grid_starves_light_contacts():

@@ -238,6 +238,10 @@ def test_files_pictures_and_page_of_losses(few):
     rises = lost.path.temperature_error * lost.path.surface_temperature_rise.max(axis=0)
     assert rises[at] <= kelvin * (1 + 1e-9)
     assert kelvin <= rises.max() * (1 + 1e-9)
+    rough = replace(lost, path=replace(lost.path, film_ratio=np.full(lost.path.rho1.shape, 0.7)))
+    named = {one.name: one.note for one in losses_parts.headlines(rough)}["minimum film with heat"]
+    assert named.startswith("boundary lubrication at Lambda = 0.7 ")
+    assert head["minimum film with heat"].note == ""  # of smooth flanks there is no ratio
     film = head["minimum film with heat"].uncertainty.numerical
     assert film == data["losses_least_film"].attrs["error"] == data["losses_path_least_film"].attrs["error"]
     assert data["losses_least_film"].attrs["tolerance_met"] == int(film <= scene.tolerance)

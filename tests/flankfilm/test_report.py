@@ -18,13 +18,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from flankfilm import figures
 from flankfilm.cache import Cache
-from flankfilm.figures.style import to_svg
+from flankfilm.figures.style import PHONE, narrow, to_svg
 from flankfilm.optimisation.files import dataset as optimum_dataset
 from flankfilm.optimisation.optimum import Evaluation, Optimum
 from flankfilm.optimisation.task import read_task
 from flankfilm.output.run import results_dataset, write_data
+from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.contents import write_report
 from flankfilm.report.other_pages import write_optimum_page, write_study_page, write_verification_page
+from flankfilm.report.page import Head, Headline, render
+from flankfilm.report.run_parts import merged
 from flankfilm.results import Results
 from flankfilm.scene import parse_scene
 from flankfilm.stages.catalogue import FIELDS, VERIFICATION
@@ -164,8 +167,21 @@ def test_every_function_is_tried_here_or_elsewhere():
     assert tried == set(figures.__all__)
 
 
+SEEN_AT_ONCE = {
+    "diagram", "film_along_path", "flanks", "fourier", "mesh_stiffness", "optimum", "optimum_map", "over_torque",
+    "resonance", "revolution", "root_stress", "study", "tooth_stress", "verification",
+}  # fmt: skip
+"""First pictures of sections, which are drawn for a phone as well."""
+
+
 def drawn(made: Made):
     """Every figure by name, ready to be measured."""
+    with narrow():
+        for draw in OF_A_RUN:
+            if draw.__name__ in SEEN_AT_ONCE:
+                yield f"{draw.__name__} for a phone", draw(made.results)
+        for name in SEEN_AT_ONCE & made.others.keys():
+            yield f"{name} for a phone", getattr(figures, name)(made.others[name])
     for draw in OF_A_RUN:
         yield draw.__name__, draw(made.results)
     for name, data in made.others.items():
@@ -175,6 +191,7 @@ def drawn(made: Made):
 
 def test_axes_tell_units_legends_cover_no_data_and_nothing_is_cut_off(made):
     for name, figure in drawn(made):
+        assert figure.get_figwidth() == PHONE or "phone" not in name, name
         renderer = FigureCanvasAgg(figure).get_renderer()
         figure.draw(renderer)
         panels = [axes for axes in figure.axes if axes.axison and axes.get_visible()]
@@ -339,7 +356,7 @@ def test_the_page_about_reports_names_every_function():
 EVERY_TEXT = Path(__file__).with_name("page_checks.js").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(("width", "dark"), [(360, False), (360, True), (1200, False), (1200, True)])
+@pytest.mark.parametrize(("width", "dark"), [(360, False), (400, True), (1200, False), (1200, True)])
 def test_pages_in_a_browser(made, browser, width, dark):
     for name, page in made.pages.items():
         browser.open(page, width, dark=dark)
@@ -352,7 +369,46 @@ def test_pages_in_a_browser(made, browser, width, dark):
         assert found.faint == [], f"{name}: text of too little contrast"
         assert found.tiny == [], f"{name}: text too small to read"
         assert found.figures > 0, name
+        assert found.sideways == [], f"{name}: pictures seen at once that scroll sideways"
+        assert width < 1200 or found.cut == [], f"{name}: tables that the screen cuts"
         assert found.paper < 0.2 if dark else found.paper > 0.8, f"{name}: the scheme is not followed"
+
+
+FIRST_SCREEN = """({
+  drawing: document.querySelector("figure").getBoundingClientRect().bottom,
+  cards: [...document.querySelector(".cards").children].map(one => one.getBoundingClientRect().bottom),
+  names: [...document.querySelectorAll("figure svg")].find(one => one.checkVisibility()).outerHTML.slice(0, 4000),
+})"""
+"""Bottom edges of the drawing and of the figures of a page's head, and the first picture."""
+
+
+def test_the_first_screen_holds_the_drawing_and_eight_figures(made, browser):
+    browser.open(made.pages["run"], 1200, height=800)
+    found = SimpleNamespace(**browser.run(FIRST_SCREEN))
+    assert "gears_in_mesh-" in found.names
+    assert found.drawing <= 800
+    assert len(found.cards) == 8
+    assert max(found.cards) <= 800
+
+
+def test_cards_show_the_value_with_all_its_uncertainty_and_a_mark_where_the_tolerance_is_missed():
+    one = Headline("power", "827.6", "by films", "W", Uncertainty(0.018, 0.21))
+    page = render(Head("A page", [], [one.against(0.01), one.against(0.02)]), [])
+    first, second = re.findall(r'<dl class="card">.*?</dl>', page)
+    for card in (first, second):
+        assert "827.6 <small>W</small> <small>± 23 %</small>" in card
+        assert "numerical 1.8 %, model 21 %; by films" in card.replace("\u00a0", " ")
+    assert "<strong>! above the tolerance of 1 %</strong>" in first.replace("\u00a0", " ")
+    assert "tolerance" not in second
+
+
+def test_warnings_that_differ_in_one_number_are_one_with_its_range():
+    pressures = [
+        f"Hertz pressure {one} GPa: above about 1 GPa an extrapolation" for one in ("1.73", "0.9", "1.54")
+    ]
+    assert merged(pressures) == "Hertz pressure 0.9 to 1.73 GPa: above about 1 GPa an extrapolation"
+    assert merged(["depth 2.2 < 4", "depth 2.1 < 3"]) is None
+    assert merged(["no number"]) == "no number"
 
 
 def test_print_is_dark_on_light_and_fits_paper(made, browser):
