@@ -274,7 +274,8 @@ def drive_sweep(
     >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3).with_backlash(50e-6)
     >>> cycle = mesh_cycle(pair, 600.0, model="potential-energy")
     >>> shaft = Shaft((ShaftSegment(0.2, 0.04),), (Bearing(0.02, 4e8), Bearing(0.18, 4e8)), 0.1, 0.0)
-    >>> drive = pair_drive(pair, cycle, 600.0, 209.44, shafts=(shaft, shaft), end_inertias=(0.02, 0.05))
+    >>> drive = pair_drive(pair, cycle, 600.0, 209.44, shafts=(shaft, shaft), end_inertias=(0.02, 0.05),
+    ...     fourier_order=1)
     >>> swept = drive_sweep(drive, speed=[200.0])
     >>> [round(value) for value in swept.shaft_torque_mean["up"][0]]  # of both shafts, N m
     [600, 667]
