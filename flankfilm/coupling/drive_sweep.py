@@ -192,19 +192,19 @@ class DriveSweep:
     converged: bool = quantity("1", "whether every motion could be followed", no_error=EXACT)
     message: str = quantity("", "what the sweeps report")
 
-    @described("N", error="greatest_bearing_error")
+    @described("N", error="sampling_error")
     def greatest_bearing_force(self) -> float | None:
         """Maximum force of a bearing over the range of speed; None without bearings."""
         return greatest(self.bearing_force_peak)
 
-    @described("N m", error="greatest_shaft_error")
+    @described("N m", error="sampling_error")
     def greatest_shaft_torque(self) -> float | None:
         """Maximum torque of a shaft or coupling over the range of speed; None without one that yields."""
         return greatest(self.shaft_torque_peak)
 
     @property
     def greatest_bearing_error(self) -> float | None:
-        """Relative error of the maximum force of a bearing."""
+        """Relative error of the maximum force of a bearing by search, samples and the band of the damping."""
         return _at_greatest(self.bearing_force_peak, self.bearing_force_peak_error)
 
     @property

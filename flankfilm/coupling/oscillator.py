@@ -71,7 +71,7 @@ class PairOscillator:
     @property
     def error(self) -> float | None:
         """Relative error of the mean stiffness; None where it is unknown."""
-        return None if self.series.cycle is None else self.series.cycle.mean_error
+        return self.series.mean_error
 
     @property
     def no_error(self) -> str:
@@ -113,7 +113,13 @@ class PairOscillator:
         """Mesh frequency omega over the natural one."""
         return self.oscillator.frequency
 
-    @described("Hz")
+    @property
+    def frequency_error(self) -> float | None:
+        """Relative error of the natural frequency, half that of the mean stiffness; None where that is unknown."""
+        mean = self.series.mean_error
+        return None if mean is None else 0.5 * mean
+
+    @described("Hz", error="frequency_error")
     def natural_frequency(self) -> float | None:
         """Natural frequency; None for an oscillator in its own units."""
         return None if self.scales is None else self.scales.natural_frequency
