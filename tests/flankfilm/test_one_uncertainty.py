@@ -1,4 +1,4 @@
-"""A computed example: card and table of the report, terminal, results.nc, its table and studies give one uncertainty."""
+"""A computed example: all displays of the report, the terminal, files and studies give one uncertainty."""
 
 from __future__ import annotations
 
@@ -56,8 +56,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Results:
     text = re.sub("wants = .*", WANTS, text, count=1).replace("tolerance = 0.005", "tolerance = 0.01")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found = ff.run(ff.parse_scene(text), out=tmp_path_factory.mktemp("run"), cache=False)
-    return found
+        return ff.run(ff.parse_scene(text), out=tmp_path_factory.mktemp("run"), cache=False)
 
 
 def studied(run: Results, name: str) -> float:
