@@ -147,7 +147,9 @@ def compliance(
         message = f"error {error:.1e} above the tolerance {tolerance:.1e}: the mesh is the finest allowed"
     settled = error < WORST or refinements is not None
     if not settled:
-        message += f"; from {WORST:.0%} on no figure is believed: lower the tolerance, or give the refinements"
+        message += (
+            f"; from {WORST:.0%} on no figure is believed: lower the tolerance, or give the refinements"
+        )
     bodies = Compliance(
         pair,
         plane,
