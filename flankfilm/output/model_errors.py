@@ -21,8 +21,8 @@ DISC, WEB = 0.021, 0.057
 FREE_ENDS = 0.002
 """The same with cells of the face and free ends: displacement along the loaded flank."""
 
-NARROW = 10.0
-"""Face width in modules that this was measured at; narrower gears are somewhere between plane strain and stress."""
+NARROW = (1.0, 5.0, 10.0), (0.91, 0.58, 0.21)
+"""Face widths in modules, and how far a disc is on the way from plane strain to plane stress; DISC is the last."""
 
 TEETH = (18, 36, 120), (0.015, 0.005, 0.001)
 """Numbers of teeth, and what the inertia of the teeth, left out of the bodies, takes from the deflection of a mesh."""
@@ -61,10 +61,13 @@ def _plane(contact: Any) -> float:
         return FREE_ENDS if _solid(pair) else WEB
     if not _solid(pair):
         return WEB
-    if contact.plane == "strain" and pair.face_width >= NARROW * pair.module:
+    if contact.plane == "strain" and pair.face_width >= NARROW[0][-1] * pair.module:
         return DISC
     poisson = max(one.poisson_ratio for one in pair.materials)
-    return float(poisson**2 / (1.0 - poisson**2))
+    way = 1.0  # narrower than any that was measured, or the other end
+    if contact.plane == "strain" and pair.face_width >= NARROW[0][0] * pair.module:
+        way = float(np.interp(np.log(pair.face_width / pair.module), np.log(NARROW[0]), NARROW[1]))
+    return way * float(poisson**2 / (1.0 - poisson**2))
 
 
 def _teeth(contact: Any) -> float:

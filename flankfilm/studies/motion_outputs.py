@@ -163,7 +163,7 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
     ),
     _moved(
         "greatest_force_factor_error",
-        Figure("1", "its estimated relative error by samples and the series' order; nan for a given series"),
+        Figure("1", "its estimated relative error by samples and the series' order"),
         _force_error,
     ),
     _moved(

@@ -7,6 +7,7 @@ import re
 import warnings
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -137,6 +138,36 @@ def test_what_is_not_known_says_so(run: Results):
     closed = [one for one in run.values["other cycles"] if one.contact is None]
     assert all(MODEL_ERRORS[("MeshFigures", "mean_stiffness")].of(one) is None for one in closed)
     assert closed
+
+
+@pytest.mark.parametrize(
+    ("modules", "blank", "plane", "face", "part"),
+    [
+        (20.0, None, "strain", None, 0.021),
+        (10.0, None, "strain", None, 0.021),
+        (5.0, None, "strain", None, 0.58 * 0.09 / 0.91),
+        (0.5, None, "strain", None, 0.09 / 0.91),
+        (20.0, None, "stress", None, 0.09 / 0.91),
+        (20.0, object(), "strain", None, 0.057),
+        (3.0, None, "strain", "free-ends", 0.002),
+        (20.0, None, "strain", "walls", 0.021),
+    ],
+)
+def test_what_the_plane_leaves_out(modules: float, blank: object, plane: str, face: str | None, part: float):
+    gear = SimpleNamespace(blank=blank, teeth=10**6)
+    steel = SimpleNamespace(poisson_ratio=0.3)
+    pair = SimpleNamespace(
+        pinion=gear, wheel=gear, materials=(steel, steel), face_width=2e-3 * modules, module=2e-3
+    )
+    over = None if face is None else SimpleNamespace(setting=SimpleNamespace(model=face), pair=pair)
+    contact = SimpleNamespace(
+        pair=pair, plane=plane, face=over, reference="bore", model_error=0.01, beyond_path=True
+    )
+    of = MODEL_ERRORS[("MeshFigures", "mean_secant_stiffness")].of
+    assert of(contact) == pytest.approx(0.01 + part, rel=1e-9)
+    if over is not None:
+        factor = MODEL_ERRORS[("FaceLoads", "greatest_face_load_factor")].of(over)
+        assert factor == (0.005 if face == "free-ends" else 0.13)
 
 
 def test_parts_of_the_model_error(run: Results):
