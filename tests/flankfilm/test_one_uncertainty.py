@@ -87,7 +87,9 @@ def test_every_display_gives_one_uncertainty(run: Results, begins: str):
     assert errors[0] == card.uncertainty.numerical
     model = None if errors[1] is None else studied(run, errors[1])
     assert model == card.uncertainty.model
-    if not variable:
+    if not variable:  # a curve, with the error of its maximum
+        about = run.dataset["root_pinion_tension"].attrs
+        assert (about["error"], about["model_error"]) == (errors[0], model)
         return
     about = run.dataset[variable].attrs
     assert about["error"] == card.uncertainty.numerical
