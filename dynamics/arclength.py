@@ -316,4 +316,5 @@ def _joined(walkers: list[_Walker], watch: Stopwatch) -> Branch:
         good,
         message,
         met,
+        problem.oscillator,
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import groupby
-from typing import Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -114,6 +114,10 @@ class Branch(AsArray):
         "another reason",
         "end",
         default=(None, None),
+    )
+    oscillator: Any = part(
+        "what moves, at a value of the parameter that does not count; None of a branch that was put together",
+        default=None,
     )
 
     def special(self, kind: str) -> list[SpecialPoint]:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from base import Array
+from dynamics.branch import Branch
 from dynamics.diagrams import Diagram
 from dynamics.flows import flow_of
 
@@ -31,24 +32,39 @@ def returns(found: Diagram) -> Array:
     >>> returns(diagram(oscillator, bounds=(0.55, 0.6), periods=1, searches=2, swept=5, max_period=1)).shape
     (0, 6)
     """
-    pieces = []
-    for number, branch in enumerate(found.branches):
-        if branch.periods == 1:
-            continue
-        here = [found.oscillator.with_parameter(found.parameter, value) for value in branch.values.tolist()]
-        # (point, period, X and V): the last period ends where the orbit began
-        points = np.array(
-            [
-                _in_plane(
-                    one, flow_of(one).follow(state, branch.periods, 0, False).states[: branch.periods - 1]
-                )
-                for one, state in zip(here, branch.states, strict=True)
-            ]
-        )
-        for period in range(branch.periods - 1):
-            places = np.full(len(branch.values), number), np.full(len(branch.values), period + 1)
-            pieces.append(np.column_stack([*places, branch.values, points[:, period], branch.stable]))
+    pieces = [
+        np.column_stack([np.full(len(rows), number), rows])
+        for number, branch in enumerate(found.branches)
+        if len(rows := branch_returns(branch, found.oscillator))
+    ]
     return np.concatenate(pieces) if pieces else np.empty((0, 6))
+
+
+def branch_returns(branch: Branch, oscillator: Any) -> Array:
+    """Follow the orbits of one branch of an oscillator likewise.
+
+    Returns
+    -------
+    (n, 5) array
+        Columns as of `returns`, without the branch.
+    """
+    if branch.periods == 1:
+        return np.empty((0, 5))
+    here = [oscillator.with_parameter(branch.parameter, value) for value in branch.values.tolist()]
+    # (point, period, X and V): the last period ends where the orbit began
+    points = np.array(
+        [
+            _in_plane(one, flow_of(one).follow(state, branch.periods, 0, False).states[: branch.periods - 1])
+            for one, state in zip(here, branch.states, strict=True)
+        ]
+    )
+    pieces = [
+        np.column_stack(
+            [np.full(len(branch.values), period + 1), branch.values, points[:, period], branch.stable]
+        )
+        for period in range(branch.periods - 1)
+    ]
+    return np.concatenate(pieces)
 
 
 def _in_plane(oscillator: Any, states: Array) -> Array:

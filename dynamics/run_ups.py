@@ -11,6 +11,8 @@ without the error, and stay.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from itertools import count
 
 import numpy as np
 import numpy.typing as npt
@@ -127,6 +129,7 @@ def run_up(
     *,
     state: npt.ArrayLike | None = None,
     outputs: npt.ArrayLike | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> RunUp:
     """Follow the motion while the frequency rises or falls evenly in time.
 
@@ -142,6 +145,8 @@ def run_up(
         State at the start. Left out: what the motion from rest settles to at the first frequency.
     outputs : array_like, shape (outputs, dimension), optional
         What else is wanted of the motion, linear in the state: factors on displacements and speeds, one row each.
+    progress : callable, optional
+        Called with the number of blocks done, and of those of both runs, the second with steps twice as long.
 
     Raises
     ------
@@ -171,8 +176,14 @@ def run_up(
         at = checked_state(state, size=oscillator.dimension)
     rows = checked_outputs(outputs, oscillator.dimension)
     held = 1 if oscillator.is_exact else HELD
-    fine = _ramp(oscillator, (first, last), number, at, held, rows)
-    coarse = _ramp(oscillator, (first, last), number, at, 2 * held, rows)
+    done = count(1)
+
+    def block_done() -> None:
+        if progress is not None:
+            progress(next(done), 2 * number)
+
+    fine = _ramp(oscillator, (first, last), number, at, held, rows, block_done)
+    coarse = _ramp(oscillator, (first, last), number, at, 2 * held, rows, block_done)
     rms_error, peak_error, greatest_error = _errors(fine[0], coarse[0], fine[4])
     good = bool(np.all(np.isfinite(fine[0])))
     decay = max(oscillator.decay, 1e-300)
@@ -247,10 +258,12 @@ def _ramp(
     state: Array,
     held: int,
     rows: Array,
+    block_done: Callable[[], None],
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Figures (blocks, 5 + 2 outputs), lines (blocks, 2, orders), starts of the blocks, last state, rest of peaks.
 
-    Each frequency is held for so many periods; the last is what may lie above the largest samples.
+    Each frequency is held for so many periods; the last is what may lie above the largest samples. `block_done` is
+    called after each block.
     """
     first, last = bounds
     turns = held * (np.arange(number * BLOCK // held) + 0.5) / (number * BLOCK)
@@ -284,6 +297,7 @@ def _ramp(
         above[block] = [_above(curve) for curve in (x, force, *np.abs(carried.T))]
         for row, values in zip(lines[block], (x, force), strict=True):
             row[:] = 2.0 / len(x) * np.abs(np.fft.rfft(values))[1 : HIGHEST * BLOCK + 1]
+        block_done()
     return figures, lines, starts, at, above
 
 

@@ -52,6 +52,7 @@ class GearRootStress:
         "teeth and samples is at the place along the face where the maximum tension is",
         default=None,
     )
+    webbed: bool = part("whether the gear has a rim on a web", default=False)
 
     @property
     def errors(self) -> Mapping[str, float]:

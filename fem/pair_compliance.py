@@ -98,6 +98,8 @@ def compliance(
     Returns
     -------
     Compliance
+        Converged where its error is below 20 % (`base.results.WORST`), be it above the tolerance, or where
+        `refinements` are given; errors above the tolerance are in its message.
 
     Raises
     ------
@@ -143,6 +145,11 @@ def compliance(
     message = f"mesh refined {level} time{'' if level == 1 else 's'}, error {error:.1e}"
     if error > tolerance and refinements is None:
         message = f"error {error:.1e} above the tolerance {tolerance:.1e}: the mesh is the finest allowed"
+    settled = error < WORST or refinements is not None
+    if not settled:
+        message += (
+            f"; from {WORST:.0%} on no figure is believed: lower the tolerance, or give the refinements"
+        )
     bodies = Compliance(
         pair,
         plane,
@@ -154,7 +161,7 @@ def compliance(
         min(ceil(pair.contact_ratio) + 1, *(len(one.flexible.cross_series) for one in (first, second))),
         error,
         Cost(0.0),
-        error < WORST or refinements is not None,
+        settled,
         message,
         supports=held,
         fit_error=fit_error,

@@ -200,6 +200,8 @@ def fillets(
         counts={"annulus_unknowns": sum(solved.annulus_unknowns for solved, _ in results)},
     )
     settled = error < WORST or fillet_edge is not None
+    if not settled:
+        message += f"; from {WORST:.0%} on no figure is believed: lower the tolerance, or give the edge"
     return Fillets(pair, plane, pinion, wheel, 0.5 * finest, errors, (first, second), cost, settled, message)
 
 

@@ -174,6 +174,7 @@ def _gear_stress(
         compression,
         np.stack([low, high]),
         fillets_error,
+        webbed=(pair.pinion, pair.wheel)[gear].blank is not None,
     )
 
 
@@ -200,6 +201,7 @@ def _over_face(
             over.passage,
             float(roots.errors[gear]),
             over.face,
+            webbed=(pair.pinion, pair.wheel)[gear].blank is not None,
         )
 
     pinion, wheel = over_face(roots, solved, pair, face.setting)

@@ -270,7 +270,7 @@ class MeshFigures(ABC):
         """Mean mesh stiffness (tangent)."""
         return self._estimates["mean_stiffness"].value
 
-    @described("N/m", error="errors", model_error="model_error")
+    @described("N/m", error="errors")
     def mean_secant_stiffness(self) -> float:
         """Mean mesh stiffness (secant)."""
         return self._estimates["mean_secant_stiffness"].value

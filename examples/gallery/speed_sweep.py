@@ -19,9 +19,10 @@ def draw() -> Figure:
     """Maximum tooth force over the speed, up and down, with the speeds at which a stable motion ends."""
     pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3, material=STEEL).with_backlash(50e-6)
     cycle = ff.mesh_cycle(pair, TORQUE)
-    motion = ff.pair_oscillator(pair, cycle, TORQUE, SPEEDS[0] * RPM, error_amplitude=10e-6)
+    swept_over = SPEEDS[0] * RPM, SPEEDS[-1] * RPM
+    motion = ff.pair_oscillator(pair, cycle, TORQUE, swept_over[0], error_amplitude=10e-6, speeds=swept_over)
     swept = ff.speed_sweep(motion, SPEEDS * RPM)
-    found = ff.jump_speeds(motion, (SPEEDS[0] * RPM, SPEEDS[-1] * RPM), max_period=2)
+    found = ff.jump_speeds(motion, swept_over, max_period=2)
 
     lost = swept.least_grazing * found.speed_of_one / RPM
     print(f"contact first lost at {lost:.0f} rpm ± {100 * swept.least_grazing_error:.1g} %")

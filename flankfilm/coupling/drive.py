@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -212,6 +212,8 @@ def pair_drive(
     tilt_stiffness: float = 0.0,
     load_centre: float = 0.0,
     mesh_matrix: Array | None = None,
+    fourier_order: int | Literal["auto"] = "auto",
+    tolerance: float = 0.005,
 ) -> PairDrive:
     """Drive train of a pair: bending and torsion of both shafts, with the modes that the mesh reaches.
 
@@ -257,6 +259,8 @@ def pair_drive(
     mesh_matrix : ndarray, shape (positions, 2, 2), optional
         The mesh between gears that tilt over its cycle (`tilting_mesh`), of which both are means: what its variation
         changes of the frequencies is `tilt_change`, beside that of the stiffness, which is in the series.
+    fourier_order, tolerance
+        As of `pair_oscillator`, by the pair on rigid shafts, within `speeds` where they are given.
 
     Raises
     ------
@@ -270,7 +274,8 @@ def pair_drive(
     >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3).with_backlash(50e-6)
     >>> cycle = mesh_cycle(pair, 600.0, model="potential-energy")
     >>> shaft = Shaft((ShaftSegment(0.2, 0.04),), (Bearing(0.02, 4e8), Bearing(0.18, 4e8)), 0.1, 0.0)
-    >>> drive = pair_drive(pair, cycle, 600.0, 209.44, shafts=(shaft, shaft), end_inertias=(0.02, 0.05))
+    >>> drive = pair_drive(pair, cycle, 600.0, 209.44, shafts=(shaft, shaft), end_inertias=(0.02, 0.05),
+    ...     fourier_order=1)
     >>> drive.freedoms[:4]
     ('pinion gear', 'pinion end', 'pinion deflection', 'pinion tilt')
     >>> [output.name for output in drive.outputs][:3]
@@ -286,7 +291,8 @@ def pair_drive(
     rigid = pair_oscillator(
         pair, stiffness, torque, speed, damping_ratio=damping_ratio, error_amplitude=error_amplitude,
         error_phase=error_phase, extra_inertia=extra_inertia, length_scale=length_scale, one_sided=one_sided,
-        reference=reference, free_damping_ratio=free_damping_ratio,
+        reference=reference, free_damping_ratio=free_damping_ratio, fourier_order=fourier_order, tolerance=tolerance,
+        speeds=speeds,
     )  # fmt: skip
     scales = rigid.scales
     assert scales is not None  # a pair has them

@@ -192,19 +192,19 @@ class DriveSweep:
     converged: bool = quantity("1", "whether every motion could be followed", no_error=EXACT)
     message: str = quantity("", "what the sweeps report")
 
-    @described("N", error="greatest_bearing_error")
+    @described("N", error="sampling_error")
     def greatest_bearing_force(self) -> float | None:
         """Maximum force of a bearing over the range of speed; None without bearings."""
         return greatest(self.bearing_force_peak)
 
-    @described("N m", error="greatest_shaft_error")
+    @described("N m", error="sampling_error")
     def greatest_shaft_torque(self) -> float | None:
         """Maximum torque of a shaft or coupling over the range of speed; None without one that yields."""
         return greatest(self.shaft_torque_peak)
 
     @property
     def greatest_bearing_error(self) -> float | None:
-        """Relative error of the maximum force of a bearing."""
+        """Relative error of the maximum force of a bearing by search, samples and the band of the damping."""
         return _at_greatest(self.bearing_force_peak, self.bearing_force_peak_error)
 
     @property
@@ -274,7 +274,8 @@ def drive_sweep(
     >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3).with_backlash(50e-6)
     >>> cycle = mesh_cycle(pair, 600.0, model="potential-energy")
     >>> shaft = Shaft((ShaftSegment(0.2, 0.04),), (Bearing(0.02, 4e8), Bearing(0.18, 4e8)), 0.1, 0.0)
-    >>> drive = pair_drive(pair, cycle, 600.0, 209.44, shafts=(shaft, shaft), end_inertias=(0.02, 0.05))
+    >>> drive = pair_drive(pair, cycle, 600.0, 209.44, shafts=(shaft, shaft), end_inertias=(0.02, 0.05),
+    ...     fourier_order=1)
     >>> swept = drive_sweep(drive, speed=[200.0])
     >>> [round(value) for value in swept.shaft_torque_mean["up"][0]]  # of both shafts, N m
     [600, 667]

@@ -122,7 +122,11 @@ class DynamicMap:
 
 
 def dynamic_map(
-    motion_at: Callable[[float], PairOscillator | PairDrive], torques: Sequence[float], speeds: ArrayLike
+    motion_at: Callable[[float], PairOscillator | PairDrive],
+    torques: Sequence[float],
+    speeds: ArrayLike,
+    *,
+    progress: Callable[[str, int, int], None] = lambda what, done, every: None,
 ) -> DynamicMap:
     """Maximum force over the mean one, over speed and torque.
 
@@ -135,6 +139,8 @@ def dynamic_map(
         [N m]
     speeds : array_like, shape (n,)
         Pinion speeds, rising [rad/s].
+    progress : callable
+        Called with what is counted, how many are done, and of how many, of all torques together.
 
     Raises
     ------
@@ -159,11 +165,15 @@ def dynamic_map(
             faults.add("torques", "none", "must be at least one", "give a list of torques")
     rows: dict[str, list[Array]] = {name: [] for name in ("up", "down", "separated", "iso", "parts")}
     resonances, changed, lost, off, used = [], list[Array](), 0, 0.0, 0
-    for torque in loads:
+    for row, torque in enumerate(loads):
+
+        def shown(done: int, of_torque: int, before: int = row) -> None:
+            progress("speeds", before * of_torque + done, len(loads) * of_torque)
+
         motion = motion_at(torque)
         assert motion.scales is not None
         values = np.array([motion.scales.frequency(one) for one in at.tolist()])
-        both, ways = [], up_and_down(motion.oscillator, "frequency", values)
+        both, ways = [], up_and_down(motion.oscillator, "frequency", values, shown)
         for way, swept in ways.items():
             shaken = vibrations(motion.oscillator, swept, load=motion.mean_force, outputs=motion.outputs)
             rows[way].append(shaken.force)

@@ -87,11 +87,8 @@ class MeshLosses:
         "1",
         "mean coefficient of friction, weighted by force and sliding",
         error="error",
-        model_error="model_errors",
     )
-    sliding_loss: float = quantity(
-        "W", "mean power lost by sliding on the path", error="error", model_error="model_errors"
-    )
+    sliding_loss: float = quantity("W", "mean power lost by sliding on the path", error="error")
     rolling_loss: float = quantity(
         "W", "mean power lost by the oil's flow under its pressure", no_error=ROLLING
     )
@@ -130,12 +127,12 @@ class MeshLosses:
         "friction, losses and temperatures over the face; None where the load is even along it", default=None
     )
 
-    @described("W", error="error", model_error="model_errors")
+    @described("W", error="error")
     def mesh_loss(self) -> float:
         """Mean power lost in the mesh: by sliding, rolling and tip edges."""
         return self.sliding_loss + self.rolling_loss + self.edge_loss
 
-    @described("1", error="loss_error", model_error="model_errors")
+    @described("1", error="loss_error")
     def efficiency(self) -> float:
         """Power put out over power put in."""
         return 1.0 - self.mesh_loss / self.input_power

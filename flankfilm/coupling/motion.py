@@ -157,6 +157,19 @@ class SpeedSweep:
         return math.fsum(known.values()) if "stiffness" in known or set(known) == {"flow"} else None
 
     @property
+    def greatest_factor_error(self) -> float | None:
+        """Relative error of the maximum force by samples and the series' order, near it; None without a motion."""
+        factors = np.array([*self.force_factor.values()])
+        if not np.isfinite(factors).any():
+            return None
+        way, at = np.unravel_index(int(np.nanargmax(factors)), factors.shape)
+        left = 0.0
+        if self.force_change is not None and self.checked is not None:
+            nearest = int(np.argmin(np.abs(self.checked - self.frequency[at])))
+            left = float(self.force_change[[*self.force_factor][way]][nearest])
+        return self.sampling_error + left
+
+    @property
     def converged(self) -> bool:
         """Whether no solver has anything to report."""
         return not self.messages

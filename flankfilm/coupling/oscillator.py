@@ -5,18 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
 import dynamics
 import gears
-from base import Array, Cost, InputError, described, part, quantity, record
+from base import Array, Cost, Faults, InputError, Limit, described, part, quantity, record
 from base.results import EXACT
 from flankfilm.coupling.carried import DriveOutput
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.excitation import peak_to_peak
 from flankfilm.coupling.references import MEANINGS
-from flankfilm.coupling.series import MeshSeries, mesh_series
+from flankfilm.coupling.series import MOST_HARMONICS, MeshSeries, mesh_series
 
 MEAN_FORCE = 0.1
 """Dimensionless mean force that the length scale is chosen for, unless that is given."""
@@ -70,7 +71,7 @@ class PairOscillator:
     @property
     def error(self) -> float | None:
         """Relative error of the mean stiffness; None where it is unknown."""
-        return None if self.series.cycle is None else self.series.cycle.mean_error
+        return self.series.mean_error
 
     @property
     def no_error(self) -> str:
@@ -112,7 +113,13 @@ class PairOscillator:
         """Mesh frequency omega over the natural one."""
         return self.oscillator.frequency
 
-    @described("Hz")
+    @property
+    def frequency_error(self) -> float | None:
+        """Relative error of the natural frequency, half that of the mean stiffness; None where that is unknown."""
+        mean = self.series.mean_error
+        return None if mean is None else 0.5 * mean
+
+    @described("Hz", error="frequency_error")
     def natural_frequency(self) -> float | None:
         """Natural frequency; None for an oscillator in its own units."""
         return None if self.scales is None else self.scales.natural_frequency
@@ -199,6 +206,9 @@ def pair_oscillator(
     length_scale: float | None = None,
     one_sided: bool = False,
     reference: str = "body",
+    fourier_order: int | Literal["auto"] = "auto",
+    tolerance: float = 0.005,
+    speeds: tuple[float, float] | None = None,
 ) -> PairOscillator:
     """Oscillator of a pair along the line of action, driven by its mesh stiffness.
 
@@ -214,8 +224,8 @@ def pair_oscillator(
     ----------
     pair : gears.GearPair
     stiffness : MeshCycle or MeshSeries
-        Of a mesh cycle the first harmonic of the secant is taken. A series of a mesh cycle with another reference
-        is fitted anew, to the same order.
+        Of a mesh cycle the series of the secant is taken, see `fourier_order`. A series of a mesh cycle with another
+        reference is fitted anew, to the same order.
     torque, speed : float
         Of the pinion [N m], [rad/s]. Where the wheel drives, with a negative torque, X counts in the direction of that
         load, and the stiffness is that of the back flanks.
@@ -234,6 +244,14 @@ def pair_oscillator(
         Whether the back flanks cannot touch.
     reference : {"body", "bore", "teeth"}
         What the deflection is measured against, as of `fem.mesh_cycle`; the inertia on the bores counts for "body".
+    fourier_order : int or "auto"
+        Harmonics of the stiffness of a mesh cycle; "auto": as few as the tolerance allows, by the rule of scenes
+        (`mesh_series`). A series that is given has its own.
+    tolerance : float
+        What these harmonics may leave out, relative: of the stiffness, and of the motion within `speeds`.
+    speeds : (float, float), optional
+        Lowest and highest speed of the pinion that is looked at [rad/s]: harmonics that resonate between them are
+        taken. Left out: the stiffness alone decides.
 
     Raises
     ------
@@ -250,7 +268,17 @@ def pair_oscillator(
     >>> round(motion.mean_force, 3), 6e3 < motion.natural_frequency < 8e3
     (0.1, True)
     """
-    series = _measured(stiffness, reference, extra_inertia)
+    order = _checked_series(fourier_order, tolerance, speeds)
+    measured = _measured(stiffness, reference, extra_inertia)
+    if isinstance(measured, MeshSeries):
+        series = measured
+    else:
+        bounds = None
+        if speeds is not None:
+            mean = measured.mean("secant")
+            of_one = pair_scales(pair, torque, mean, extra_inertia, length_scale).speed(1.0)
+            bounds = min(speeds) / of_one, max(speeds) / of_one
+        series = mesh_series(measured, "secant", order, tolerance, bounds, damping_ratio)
     said = "" if series.reference is None else f"stiffness measured against {MEANINGS[series.reference]}"
     if pair.backlash < -1e-12 * pair.module:
         allowed = "must be at least 0 for the motion, in which back flanks touch alternately"
@@ -291,17 +319,32 @@ def _as_given(values: Array) -> float | tuple[float, ...]:
 
 def _measured(
     stiffness: MeshCycle | MeshSeries, reference: str, bore_inertia: tuple[float, float]
-) -> MeshSeries:
-    """Series of a stiffness whose deflection is measured against a reference, where it can be."""
+) -> MeshCycle | MeshSeries:
+    """Stiffness whose deflection is measured against a reference, where it can be."""
     cycle = stiffness if isinstance(stiffness, MeshCycle) else stiffness.cycle
     if cycle is None or cycle.contact is None:
-        return mesh_series(stiffness, order=1) if isinstance(stiffness, MeshCycle) else stiffness
+        return stiffness
     measured = cycle.against(reference, bore_inertia)
     if isinstance(stiffness, MeshCycle):
-        return mesh_series(measured, order=1)
+        return measured
     assert measured.contact is not None
     before, after = ((one.reference, one.bore_inertia) for one in (cycle.contact, measured.contact))
     return stiffness if before == after else mesh_series(measured, stiffness.kind, stiffness.order)
+
+
+def _checked_series(
+    fourier_order: object, tolerance: object, speeds: tuple[float, float] | None
+) -> int | None:
+    """Order of a series, None where it is to be found; with every fault of what decides on it."""
+    found = None
+    with Faults() as faults:
+        if fourier_order != "auto":
+            found = faults.whole("fourier_order", fourier_order, 1, MOST_HARMONICS, 'or "auto", the default')
+        faults.number("tolerance", tolerance, Limit.above(0.0, 0.2, remedy="0.005 is 0.5 %"))
+        if speeds is not None:
+            for i, one in enumerate(speeds):
+                faults.number(f"speeds[{i}]", one, Limit.above(0.0, 1e6, "rad/s", "give the pinion's speeds"))
+    return found
 
 
 def pair_inertias(pair: gears.GearPair, extra: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -118,6 +118,7 @@ def speed_run_up(
     frequency: tuple[float, float] | None = None,
     seconds: float | None = None,
     periods: int = 8000,
+    progress: Callable[[str, int, int], None] = lambda what, done, every: None,
 ) -> SpeedRunUp:
     """Run a pair up through a range of speeds, evenly in time, and down again.
 
@@ -133,6 +134,8 @@ def speed_run_up(
         Time of a run-up [s], for a pair with physical scales.
     periods : int
         Mesh periods of a run-up where no time is given.
+    progress : callable
+        Called with what is counted, how many are done, and of how many, of run-up and coast-down together.
 
     Raises
     ------
@@ -169,8 +172,20 @@ def speed_run_up(
     if seconds is not None and scales is not None:
         number = faults_of_time(seconds * scales.omega_n * per_tau)
     rows = output_rows(motion.outputs, motion.oscillator.dimension)
-    up = dynamics.run_up(motion.oscillator, ends, number, outputs=rows)
-    down = dynamics.run_up(motion.oscillator, ends[::-1], number, outputs=rows)
+    up = dynamics.run_up(
+        motion.oscillator,
+        ends,
+        number,
+        outputs=rows,
+        progress=lambda done, all_: progress(BLOCKS, done, 2 * all_),
+    )
+    down = dynamics.run_up(
+        motion.oscillator,
+        ends[::-1],
+        number,
+        outputs=rows,
+        progress=lambda done, all_: progress(BLOCKS, all_ + done, 2 * all_),
+    )
     each, mean = {"up": up, "down": down}, motion.mean_force or np.nan
     said = [f"{way}: {one.message}" for way, one in each.items()]
     return SpeedRunUp(
@@ -205,6 +220,9 @@ def speed_run_up(
         message="; ".join(said),
     )
 
+
+BLOCKS = "blocks of 16 mesh periods"
+"""What progress counts."""
 
 MOST = 2_000_000
 """Mesh periods of a run-up: a quarter of an hour of computing."""

@@ -56,8 +56,17 @@ def orbit(found: dynamics.Orbit) -> Figure:
 
 
 def branch(found: dynamics.Branch) -> Figure:
-    """Draw the motions of a branch over its parameter, unstable ones dashed, with its special points."""
-    return _branches((found,), found.parameter)
+    """Draw the motions of a branch over its parameter, unstable ones dashed, with its special points.
+
+    Of orbits of several periods, all points at the start of a period.
+    """
+    from dynamics.returns import branch_returns
+
+    further = None
+    if found.oscillator is not None and found.oscillator.is_exact:
+        rows = branch_returns(found, found.oscillator)
+        further = np.column_stack([np.zeros(len(rows)), rows])
+    return _branches((found,), found.parameter, further=further)
 
 
 def branches(found: dynamics.Diagram) -> Figure:

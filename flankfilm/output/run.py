@@ -23,6 +23,7 @@ from flankfilm.output.convergence import with_convergence
 from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.flanks import measured_flanks
 from flankfilm.output.geometry import geometry_columns
+from flankfilm.output.model_errors import entry
 from flankfilm.output.passages import fillet_stress, passage
 from flankfilm.output.tables import columns, uncertainties
 from flankfilm.output.variables import (
@@ -384,7 +385,13 @@ def _roots(found: RootStresses) -> Iterator[xr.Dataset]:
         gear = getattr(found.stress, name)
         for prefix, found_there in ((f"root_{name}", passage(gear)), (f"fillet_{name}", fillet_stress(gear))):
             stresses = [one.name for one in found_there if one.figure.unit == "Pa"]
-            yield of_quantities(prefix, found_there, dict.fromkeys(stresses, found.stress.error))
+            data = of_quantities(prefix, found_there, dict.fromkeys(stresses, found.stress.error))
+            known = entry(gear, "greatest_tension_Pa")
+            if known is not None:
+                for name_of in stresses:
+                    about = {"model_error": known.of(gear), "model_error_source": known.source}
+                    data[joined(prefix, name_of)].attrs.update(about)
+            yield data
         if gear.face is not None:
             yield of_record(f"root_face_{name}", gear.face)
     if found.iso_face is not None:

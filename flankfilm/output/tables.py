@@ -73,6 +73,7 @@ def uncertainties(data: xr.Dataset) -> dict[str, NDArray[np.object_]]:
         "unit": [read_in(data, name) for name in names],
         "numerical_error": [one["error"] for one in about],
         "model_error": [one.get("model_error", "") for one in about],
+        "model_error_source": [one.get("model_error_source", "") for one in about],
         "total_uncertainty": [one["error"] + one.get("model_error", 0.0) for one in about],
         "tolerance_met": [one.get("tolerance_met", "") for one in about],
     }

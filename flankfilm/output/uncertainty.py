@@ -1,8 +1,8 @@
 """How far a figure may be off, and whether that meets the tolerance: every display asks here.
 
 A figure's numerical error is what grids, samples and rounds leave; a tolerance bounds it. Its model error is what the
-laws and numbers behind it leave open, where that is estimated: no tolerance makes it smaller. Both are relative to the
-figure's value in SI, and the total is their sum.
+laws and numbers behind it leave open, where that is estimated (`flankfilm.output.model_errors`): no tolerance makes it
+smaller. Both are relative to the figure's value in SI, and the total is their sum.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from base.results import Figure, figures
+from flankfilm.output.model_errors import entry
 
 __all__ = ["Uncertainty", "held_error", "held_model_error", "met", "uncertainty"]
 
@@ -82,7 +83,9 @@ def held_error(record: object, name: str, figure: Figure) -> tuple[str, Any]:
 
 
 def held_model_error(record: object, name: str, figure: Figure) -> Any:
-    """Model error of a figure of a record; None where it is not estimated."""
+    """Model error of a figure of a record, of the table or as the record holds it; None where it is not estimated."""
+    if (known := entry(record, name)) is not None:
+        return known.of(record)
     error: Any = getattr(record, figure.model_error, None) if figure.model_error else None
     return error.get(name) if isinstance(error, Mapping) else error
 

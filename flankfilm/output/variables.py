@@ -5,7 +5,8 @@ record's own, ``<prefix>_<axis>``, but for those that mean the same in every rec
 ``long_name``, ``display_units`` where people read another unit; ``alias_of``, the variable of which this is the older
 name, kept for one version; ``error``, where the relative error is known, ``error_variable``, the variable that holds
 those of its entries, or ``error_note``, why there is none; ``model_error``, what the model leaves open, where it is
-estimated; ``tolerance_met`` beside an ``error``. A figure of which nothing says so has none of them, which a test
+estimated, with ``model_error_source``, the page of the documentation that says so; ``tolerance_met`` beside an
+``error``. A figure of which nothing says so has none of them, which a test
 finds.
 """
 
@@ -18,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base.results import Figure, Quantity, figures, quantities, why_no_error
+from flankfilm.output.model_errors import entry
 from flankfilm.output.uncertainty import held_error, held_model_error, met
 
 if TYPE_CHECKING:
@@ -89,8 +91,12 @@ def of_record(prefix: str, record: object, names: Container[str] | None = None) 
     data = of_quantities(prefix, wanted, _errors(record, known))
     for name, one in known.items():
         model = held_model_error(record, name, one.figure)
-        if _finite(model) and joined(prefix, name) in data:
-            data[joined(prefix, name)].attrs["model_error"] = float(model)
+        source = entry(record, name)
+        for variable in {joined(prefix, one.figure.called or name), joined(prefix, name)}:
+            if _finite(model) and variable in data:
+                data[variable].attrs["model_error"] = float(model)
+                if source is not None:
+                    data[variable].attrs["model_error_source"] = source.source
     return data
 
 

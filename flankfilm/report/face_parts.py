@@ -9,7 +9,7 @@ import numpy as np
 
 from flankfilm.coupling.face_models import LABELS
 from flankfilm.figures.reading import read_figure
-from flankfilm.output.uncertainty import Uncertainty
+from flankfilm.output.uncertainty import uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent, plus_minus
 
@@ -45,9 +45,11 @@ def headlines(found: fem.FaceLoads) -> list[Headline]:
     load = read_figure(found, "greatest_line_load")
     factor = number(found.greatest_face_load_factor)
     note = f"{LABELS[found.setting.model]}, {found.setting.cells} cells"
-    of_load = Uncertainty(found.line_load_error)
+    of_factor, of_load = (
+        uncertainty(found, name) for name in ("greatest_face_load_factor", "greatest_line_load")
+    )
     return [
-        Headline(GREATEST, factor, note, uncertainty=Uncertainty(found.error)),
+        Headline(GREATEST, factor, note, uncertainty=of_factor),
         Headline(load.meaning, number(float(load.values)), unit=load.unit, uncertainty=of_load),
     ]
 

@@ -112,10 +112,17 @@ def _cycles(cycles: Sequence[MeshCycle], face_width: float) -> Table:
             f"secant from, to [{unit_text(PER_FACE)}]": ends,
             **shown("mean_stiffness", face_width),
             **shown("transmission_error_range"),
-            "error of the contact model": lambda cycle: percent(cycle.model_error),
+            "model error of secant, tangent, transmission error": _models,
         },
         "± is the numerical error, where it is known.",
     )
+
+
+def _models(cycle: MeshCycle) -> str:
+    """Model errors of the means and of the transmission error, as the page's head shows them."""
+    names = ("mean_secant_stiffness", "mean_stiffness", "transmission_error_range")
+    known = [uncertainty(cycle, name).model for name in names]
+    return "not estimated" if None in known else ", ".join(map(percent, known))
 
 
 def references(found: StiffnessReferences, face_width: float) -> Part:
@@ -300,7 +307,8 @@ def root_headlines(stage: RootStresses) -> list[Headline]:
     if stage.iso is not None:
         note = f"ISO 6336-3 nominal {_both(stage.iso.stresses)}"
     name = "maximum root stress, pinion and wheel"
-    return [Headline(name, values, note, largest[0].unit, Uncertainty(stage.error))]
+    model = max(uncertainty(stage.stress, f"{gear}_tension_Pa").model or 0.0 for gear in ("pinion", "wheel"))
+    return [Headline(name, values, note, largest[0].unit, Uncertainty(stage.error, model))]
 
 
 def _iso(iso: Iso6336RootStress) -> Table:

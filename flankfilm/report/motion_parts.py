@@ -13,6 +13,7 @@ from base.units import factor
 from flankfilm.coupling.references import MEANINGS
 from flankfilm.figures.motion import scale
 from flankfilm.figures.reading import read, read_figure
+from flankfilm.output.model_errors import first_harmonic
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import counted, number, percent, plus_minus
@@ -74,7 +75,7 @@ def fourier_headlines(stage: MeshSeries) -> list[Headline]:
     left = f"remainder after {counted(stage.order, 'harmonic')}: {percent(stage.remainder)} of the mean"
     if stage.left_out is not None and stage.left_out.motion is not None:
         left += f" and up to {percent(float(stage.left_out.motion[stage.order]))} of the motion"
-    off = Uncertainty(known, size=1.0)
+    off = Uncertainty(known, first_harmonic(stage), size=1.0)
     return [Headline("stiffness, first harmonic over the mean", f"{kappa:.4f}", left, uncertainty=off)]
 
 
@@ -206,12 +207,10 @@ def _greatest(stage: SpeedSweep) -> list[Headline]:
     at = float(stage.frequency[int(np.nanargmax(np.nanmax(factors, axis=0)))])
     rpm = _speed(stage)
     where = f"ω = {at:.4g}" if rpm is None else f"{rpm * at:.0f} rpm"
-    note, error = f"at {where}, of the speeds swept", float(stage.sampling_error)
-    if stage.force_change is not None and stage.checked is not None:
-        way = max(stage.force_factor, key=lambda one: np.nanmax(stage.force_factor[one], initial=-np.inf))
-        left = stage.force_change[way][int(np.argmin(np.abs(stage.checked - at)))]
-        note += f"; {percent(float(left))} of the error by harmonics that the series omits"
-        error += float(left)
+    note, error = f"at {where}, of the speeds swept", stage.greatest_factor_error
+    if stage.force_change is not None and error is not None:
+        left = percent(error - stage.sampling_error)
+        note += f"; {left} of the error by harmonics that the series omits"
     off = Uncertainty(_finite(error))
     return [Headline("maximum force over the mean force", f"{np.nanmax(factors):.3g}", note, "", off)]
 

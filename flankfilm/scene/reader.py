@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from base import Fault, InputError
+from base import Fault, InputError, shorten
 from flankfilm.folder import content_of
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.flank_files import read_flank_files
@@ -54,6 +54,10 @@ def read_scene(path: Path | str) -> Scene:
     >>> read_scene("pair.toml").tolerance
     0.005
     """
+    if not isinstance(path, str | Path):
+        raise InputError.at(
+            "path", shorten(path), "must be the path of a scene file", "give the text to parse_scene"
+        )
     path = Path(path)
     return parse_scene(read_text(path), name=str(path), folder=path.parent)
 

@@ -67,11 +67,12 @@ def RUN_UP(run: Engine) -> coupling.SpeedRunUp:
     section = required(run.scene.dynamics, "[dynamics]", "the run-up")
     asked = required(section.run_up, "dynamics.run_up", "the run-up", "add the range")
     periods = 8000 if asked.periods is None else asked.periods
+    motion, rows = moving(run), run.rows(RUN_UP)
     if asked.frequency is not None:
-        return coupling.speed_run_up(moving(run), frequency=asked.frequency, periods=periods)
+        return coupling.speed_run_up(motion, frequency=asked.frequency, periods=periods, progress=rows)
     low, high = asked.ends
     speeds = (low * math.pi / 30.0, high * math.pi / 30.0)
-    return coupling.speed_run_up(moving(run), speeds, seconds=asked.seconds, periods=periods)
+    return coupling.speed_run_up(motion, speeds, seconds=asked.seconds, periods=periods, progress=rows)
 
 
 @stage(
@@ -116,7 +117,7 @@ def DYNAMIC_MAP(run: Engine) -> coupling.DynamicMap:
             )
         return coupling.pair_oscillator(run[PAIR], series, torque, float(speeds[0]), **given)
 
-    return coupling.dynamic_map(at, operating.torques_Nm, speeds)
+    return coupling.dynamic_map(at, operating.torques_Nm, speeds, progress=run.rows(DYNAMIC_MAP))
 
 
 def _mesh_at(run: Engine, torque: float) -> coupling.MeshCycle:

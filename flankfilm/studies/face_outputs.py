@@ -19,7 +19,7 @@ from flankfilm.figures.reading import GEARS
 from flankfilm.stages.catalogue import DRY_CYCLE, ROOT_STRESS
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.face import FACE_MODELS, FACE_TOLERANCE
-from flankfilm.studies.output import Named, Take, output_of
+from flankfilm.studies.output import Named, Take, model_error_of, output_of
 from gears.closed_form import Iso6336FaceLoad
 
 EVEN = "{}; nan where the load is even along the face"
@@ -127,6 +127,13 @@ FACE_OUTPUTS: tuple[Named, ...] = (
     _of_face("contact_pattern", "contact_pattern"),
     _of_face("face_load_factor_error", "error"),
     _of_face("greatest_line_load_error", "line_load_error"),
+    model_error_of(
+        "face_load_factor_model_error",
+        "face-load factor and maximum line load",
+        "stiffness",
+        lambda engine: getattr(engine[DRY_CYCLE].contact, "face", None),
+        "greatest_face_load_factor",
+    ),
     _over_tolerance(
         "robust_face_load_factor",
         figures(FaceTolerance)["robust_face_load_factor"],

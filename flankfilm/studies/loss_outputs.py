@@ -13,7 +13,7 @@ from ehl.regimes import NUMBERS, regime_number
 from flankfilm.coupling.losses_along_path import LossesAlongPath
 from flankfilm.coupling.losses_record import MeshLosses
 from flankfilm.stages.losses import LOSSES
-from flankfilm.studies.output import Named, Take, in_result, output_of, outputs_from
+from flankfilm.studies.output import Named, Take, in_result, model_error_of, output_of, outputs_from
 
 _losses = outputs_from(lambda engine: engine[LOSSES], MeshLosses, "losses")
 _path = outputs_from(lambda engine: engine[LOSSES].path, LossesAlongPath, "losses")
@@ -102,7 +102,15 @@ LOSS_OUTPUTS: tuple[Named, ...] = (
     *_gears(),
     _path("least_film", name="least_film_with_heat", said="{} along the path, with heat and shear thinning"),
     _path("least_film_ratio", name="film_ratio_with_heat", said="{} with heat; nan if smooth"),
-    _losses("model_error", name="losses_model_error"),
+    *(
+        model_error_of(f"{name}_model_error", said, "losses", lambda engine: engine[LOSSES], figure)
+        for name, said, figure in (
+            ("losses", "the power lost in the mesh", "mesh_loss"),
+            ("mean_friction", "the mean friction", "mean_friction"),
+            ("sliding_loss", "the power lost by sliding", "sliding_loss"),
+            ("efficiency", "the mesh's efficiency", "efficiency"),
+        )
+    ),
     *_boundary(),
     _path("greatest_pressure_times_sliding", name="pressure_times_sliding"),
     _error("losses_error", "estimated relative error of mean friction and losses", attrgetter("error")),

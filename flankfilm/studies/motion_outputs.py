@@ -16,13 +16,12 @@ from flankfilm.coupling.drive_sweep import DriveSweep
 from flankfilm.coupling.dynamic_map import DynamicMap
 from flankfilm.coupling.oscillator import PairOscillator
 from flankfilm.coupling.run_ups import SpeedRunUp
-from flankfilm.coupling.series import MEANS
 from flankfilm.coupling.sidebands import MotionSpectrum
 from flankfilm.stages.drives import DRIVE, DRIVE_SWEEP
 from flankfilm.stages.engine import Engine, Stage
 from flankfilm.stages.motion import SCALING, SWEEP
 from flankfilm.stages.speeds import DIAGRAM, DYNAMIC_MAP, RUN_UP, SPECTRUM
-from flankfilm.studies.output import Named, in_result, output_of, outputs_from
+from flankfilm.studies.output import Named, in_result, model_error_of, output_of, outputs_from
 
 if TYPE_CHECKING:
     from flankfilm.coupling.jumps import SpeedDiagram
@@ -56,13 +55,6 @@ def _resonance(motion: PairOscillator) -> float | None:
     return None if motion.scales is None else motion.scales.speed(1.0)
 
 
-def _half_mean_error(motion: PairOscillator) -> float | None:
-    """The natural frequency goes with the root of the mean stiffness."""
-    cycle = motion.series.cycle
-    found = None if cycle is None else cycle.errors[MEANS[motion.series.kind]]
-    return None if found is None else 0.5 * found
-
-
 def _greatest(values: Mapping[str, Array] | None) -> float | None:
     """Largest of both directions of a sweep, of the motions that are known; None without any."""
     known = [one[~np.isnan(one)] for one in (values or {}).values()]
@@ -93,7 +85,9 @@ def _moved(name: str, figure: Figure, value: Callable[[SpeedSweep | DriveSweep],
 
 
 def _force_error(found: SpeedSweep | DriveSweep) -> float | None:
-    """Sampling, and what more harmonics change at the values that were looked at; None where that is not known."""
+    """Sampling, and what more harmonics change; None where that is not known."""
+    if not isinstance(found, DriveSweep):
+        return found.greatest_factor_error
     truncation = _greatest(found.force_change)
     return None if truncation is None else truncation + found.sampling_error
 
@@ -153,7 +147,14 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
             "1", "estimated relative error of natural frequency and resonance speed, by the mean stiffness"
         ),
         "fourier",
-        in_result(SCALING, _half_mean_error),
+        in_result(SCALING, attrgetter("frequency_error")),
+    ),
+    model_error_of(
+        "natural_frequency_model_error",
+        "natural frequency and resonance speed",
+        "fourier",
+        lambda engine: engine[SCALING],
+        "natural_frequency",
     ),
     _moved(
         "greatest_force_factor",
@@ -162,7 +163,7 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
     ),
     _moved(
         "greatest_force_factor_error",
-        Figure("1", "its estimated relative error by samples and the series' order; nan for a given series"),
+        Figure("1", "its estimated relative error by samples and the series' order"),
         _force_error,
     ),
     _moved(
@@ -212,6 +213,19 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
         Figure("1", "estimated relative error of that torque, likewise"),
         "sweep",
         in_result(DRIVE_SWEEP, attrgetter("greatest_shaft_error")),
+    ),
+    *(
+        model_error_of(f"{figure}_model_error", said, "sweep", lambda engine: engine[DRIVE_SWEEP], figure)
+        for figure, said in (
+            ("greatest_bearing_force", "that force, by the band of the damping and the search"),
+            ("greatest_shaft_torque", "that torque, likewise"),
+        )
+    ),
+    output_of(
+        "drive_sampling_error",
+        Figure("1", "estimated relative error of that force and torque by samples of a period"),
+        "sweep",
+        in_result(DRIVE_SWEEP, attrgetter("sampling_error")),
     ),
     output_of(
         "drive_sweep_error",

@@ -11,6 +11,7 @@ from base import Figure
 from base.results import figures
 from base.units import factor
 from flankfilm.output.tables import spelt
+from flankfilm.output.uncertainty import uncertainty
 from flankfilm.output.variables import sentence
 from flankfilm.stages.engine import Engine, Stage
 
@@ -66,6 +67,17 @@ def outputs_from(stage: Callable[[Engine], Any], kind: type, want: str) -> Calla
         return output_of(name or figure, about, want, value, said)
 
     return make
+
+
+def model_error_of(name: str, said: str, want: str, record: Callable[[Engine], Any], figure: str) -> Named:
+    """Output of what the model leaves open of a figure of a record, relative; nan where it is not estimated."""
+
+    def of(engine: Engine) -> float | None:
+        found = record(engine)
+        return None if found is None else uncertainty(found, figure).model
+
+    about = Figure("1", f"what the model leaves open of {said}, relative; nan where it is not estimated")
+    return output_of(name, about, want, of)
 
 
 def in_result(stage: Stage[Any], value: Take) -> Callable[[Engine], Any]:

@@ -48,7 +48,7 @@ _HELD: Mapping[str, tuple[str, ...]] = {
     "natural_frequency_error": ("natural_frequency_Hz", "resonance_speed_rpm"),
     "greatest_force_factor_error": ("greatest_force_factor",),
     "drive_frequency_error": ("lowest_drive_frequency_Hz", "drive_mesh_frequency_Hz"),
-    "drive_sweep_error": ("greatest_bearing_force_N", "greatest_shaft_torque_Nm"),
+    "drive_sampling_error": ("greatest_bearing_force_N", "greatest_shaft_torque_Nm"),
     "run_up_error": (
         "greatest_run_up_factor",
         "greatest_run_up_bearing_force_N",
@@ -64,10 +64,25 @@ _HELD: Mapping[str, tuple[str, ...]] = {
     "jump_error_falling": ("jump_speed_falling_rpm", "jump_frequency_falling"),
 }
 
-MODEL_ERROR_OF: Mapping[str, str] = {
-    "mean_secant_stiffness_N_per_mm_um": "stiffness_model_error",
-    "mesh_loss_W": "losses_model_error",
+_MODEL: Mapping[str, tuple[str, ...]] = {
+    "stiffness_model_error": ("mean_secant_stiffness_N_per_mm_um",),
+    "tangent_stiffness_model_error": ("mean_tangent_stiffness_N_per_mm_um", "mean_stiffness_N_per_mm_um"),
+    "transmission_error_model_error": ("transmission_error_um",),
+    "face_load_factor_model_error": ("face_load_factor", "greatest_line_load_N_per_mm"),
+    **{
+        f"root_stress_model_error_{gear}": (f"root_tension_{gear}_MPa", f"root_compression_{gear}_MPa")
+        for gear in ("pinion", "wheel")
+    },
+    "natural_frequency_model_error": ("natural_frequency_Hz", "resonance_speed_rpm"),
+    "greatest_bearing_force_model_error": ("greatest_bearing_force_N",),
+    "greatest_shaft_torque_model_error": ("greatest_shaft_torque_Nm",),
+    "losses_model_error": ("mesh_loss_W",),
+    "mean_friction_model_error": ("mean_friction",),
+    "sliding_loss_model_error": ("sliding_loss_W",),
+    "efficiency_model_error": ("mesh_efficiency",),
 }
+
+MODEL_ERROR_OF: Mapping[str, str] = {name: error for error, names in _MODEL.items() for name in names}
 """Output to the output that holds what its model leaves open, relative."""
 
 ERROR_OF: Mapping[str, str] = {name: error for error, names in _HELD.items() for name in names}

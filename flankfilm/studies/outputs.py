@@ -29,7 +29,7 @@ from flankfilm.stages.engine import Engine
 from flankfilm.studies.face_outputs import FACE_OUTPUTS
 from flankfilm.studies.loss_outputs import LOSS_OUTPUTS
 from flankfilm.studies.motion_outputs import MOTION_OUTPUTS
-from flankfilm.studies.output import Named, Output, Take, in_result, output_of, outputs_from
+from flankfilm.studies.output import Named, Output, Take, in_result, model_error_of, output_of, outputs_from
 from gears import GearPair, WarmPair
 
 OLDER = "older name, kept for one version, of"
@@ -277,11 +277,23 @@ OUTPUTS: Mapping[str, Output] = dict(
             "film",
             in_result(FILM, attrgetter("film.least_film_error")),
         ),
-        output_of(
-            "stiffness_model_error",
-            Figure("1", "what the model of the contacts leaves open of the mean secant stiffness, relative"),
-            "stiffness",
-            in_result(MESH, attrgetter("model_error")),
+        *(
+            model_error_of(f"{name}_model_error", said, "stiffness", lambda engine: engine[MESH], figure)
+            for name, said, figure in (
+                ("stiffness", "the mean secant stiffness", "mean_secant_stiffness"),
+                ("tangent_stiffness", "the mean tangent stiffness", "mean_stiffness"),
+                ("transmission_error", "the peak-to-peak transmission error", "transmission_error_range"),
+            )
+        ),
+        *(
+            model_error_of(
+                f"root_stress_model_error_{gear}",
+                f"the stresses along the fillets of the {gear}",
+                "root-stress",
+                lambda engine: engine[ROOT_STRESS].stress,
+                f"{gear}_tension_Pa",
+            )
+            for gear in ("pinion", "wheel")
         ),
         output_of(
             "film_error",

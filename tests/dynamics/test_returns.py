@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import dynamics
-from dynamics.returns import returns
+from dynamics.returns import branch_returns, returns
 
 OSCILLATOR = dynamics.GearOscillator(
     stiffness=dynamics.FourierStiffness(mean=1.0, amplitudes=(0.18,), phases=(0.0,)),
@@ -42,10 +44,32 @@ def test_an_orbit_has_a_point_at_the_start_of_each_further_period(found: dynamic
 
 def test_the_picture_draws_all_points_of_an_orbit(found: dynamics.Diagram):
     """It drew one of n."""
+    drawn = points_of(found)
+    for row in returns(found):
+        assert tuple(np.round(row[2:4], 9)) in drawn
+
+
+def test_the_picture_of_a_branch_draws_all_points_of_an_orbit(found: dynamics.Diagram):
+    alone = next(branch for branch in found.branches if branch.periods == 2)
+    again = dynamics.continue_branch(
+        dynamics.find_orbit(
+            OSCILLATOR.with_parameter("frequency", alone.values[0]), alone.states[0], periods=2
+        ),
+        "frequency",
+        (1.6, 1.8),
+    )
+    assert again.periods == 2
+    for branch in (alone, again):
+        drawn, rows = points_of(branch), branch_returns(branch, OSCILLATOR)
+        assert len(rows) == len(branch.values)
+        for row in rows:
+            assert tuple(np.round(row[1:3], 9)) in drawn
+
+
+def points_of(record: Any) -> set[tuple[float, ...]]:
+    """All points of a record's picture, rounded."""
     from flankfilm.views import register
 
     register()
-    lines = found.plot().axes[0].lines
-    drawn = {tuple(np.round(point, 9)) for line in lines for point in line.get_xydata()}
-    for row in returns(found):
-        assert tuple(np.round(row[2:4], 9)) in drawn
+    lines = record.plot().axes[0].lines
+    return {tuple(np.round(point, 9)) for line in lines for point in line.get_xydata()}

@@ -54,7 +54,8 @@ def values(text: str, wants: set[str]) -> dict[str, float]:
 OF_TRAINS = {
     *("lowest_drive_frequency_Hz", "drive_mesh_frequency_Hz", "drive_frequency_error"),
     *("greatest_bearing_force_N", "greatest_shaft_torque_Nm", "drive_sweep_error", "drive_valid_to_Hz"),
-    *("greatest_bearing_force_error", "greatest_shaft_torque_error"),
+    *("greatest_bearing_force_error", "greatest_shaft_torque_error", "drive_sampling_error"),
+    *("greatest_bearing_force_model_error", "greatest_shaft_torque_model_error"),
     *("drive_tilt_stiffness_Nm_per_rad", "drive_load_centre_mm", "drive_tilt_change"),
     *(f"greatest_{of}_{what}" for of in ("run_up", "map") for what in ("bearing_force_N", "shaft_torque_Nm")),
 }

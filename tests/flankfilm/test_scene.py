@@ -123,6 +123,12 @@ def test_contacts_that_move_are_asked_of_coupled_finite_elements_alone(old: str,
     assert "stiffness.moving_contact" in found[where]
 
 
+@pytest.mark.parametrize("path", [3, None, {"title": "a scene"}])
+def test_what_is_no_path_is_refused_by_name(path: object):
+    with pytest.raises(InputError, match=r"path = .*: must be the path of a scene file"):
+        read_scene(path)  # type: ignore[arg-type]
+
+
 def test_all_faults_come_at_once():
     text = template()
     for old, new in (

@@ -20,7 +20,7 @@ from flankfilm.cache import Cache
 from flankfilm.coupling import FilmModel, Flanks, LoadedTeeth, LubricatedCycle, MeshCycle, torque_curves
 from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FILM, VERIFICATION
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.motion import SCALING, SWEEP
+from flankfilm.stages.motion import FOURIER, SCALING, SWEEP
 from flankfilm.stages.speeds import DIAGRAM
 from tests.flankfilm.scenes import ARTICLE
 
@@ -101,7 +101,7 @@ def test_the_least_film_of_the_pairs_is_that_of_the_path(cycle: LubricatedCycle)
 
 @pytest.mark.slow
 def test_oscillator_sweep_and_jumps_are_those_of_the_scene(run: Engine, cycle: LubricatedCycle):
-    motion = ff.pair_oscillator(PAIR, cycle, 600.0, SPEED, error_amplitude=1e-6 * 10)
+    motion = ff.pair_oscillator(PAIR, cycle, 600.0, SPEED, error_amplitude=1e-6 * 10, fourier_order=1)
     assert motion.oscillator == run[SCALING].oscillator
     speeds = np.linspace(15000, 16000, 3) * math.pi / 30.0
     swept = ff.speed_sweep(motion, speeds)
@@ -110,6 +110,37 @@ def test_oscillator_sweep_and_jumps_are_those_of_the_scene(run: Engine, cycle: L
     found = ff.jump_speeds(motion, (speeds[0], speeds[-1]), searches=2, max_period=1)
     assert np.array_equal(found.jump_frequency, run[DIAGRAM].jump_frequency)
     assert np.array_equal(found.jump_error, run[DIAGRAM].jump_error)
+
+
+def test_harmonics_of_the_stiffness_are_as_many_by_default_as_in_scenes():
+    text = SCENE.replace("WANTS", '"stiffness", "sweep"').replace("fourier_order = 1\n", "")
+    text = text.replace("MODEL", "fem").replace("FILM", "none")
+    low, high = (rpm * math.pi / 30.0 for rpm in (1000, 16000))
+    scene = Engine(ff.parse_scene(text.replace("[15000, 16000]", "[1000, 16000]")), Cache(None))
+    series, cycle = scene[FOURIER], scene[DRY_CYCLE]
+    motion = ff.pair_oscillator(PAIR, cycle, 600.0, SPEED, tolerance=series.share, speeds=(high, low))
+    assert motion.series.stiffness == series.stiffness
+    alone = ff.pair_oscillator(PAIR, cycle, 600.0, SPEED)
+    assert alone.series.share == 0.005
+    assert alone.series.remainder <= 0.005  # of the stiffness; the motion of no range
+    assert 1 < alone.series.order < motion.series.order < 50
+    assert ff.pair_oscillator(PAIR, cycle, 600.0, SPEED, fourier_order=2).series.order == 2
+
+
+@pytest.mark.parametrize(
+    ("options", "where"),
+    [
+        ({"fourier_order": 0}, "fourier_order"),
+        ({"fourier_order": "all"}, "fourier_order"),
+        ({"tolerance": 0.0}, "tolerance"),
+        ({"speeds": (0.0, 100.0)}, "speeds[0]"),
+        ({"speeds": (10.0, "100")}, "speeds[1]"),
+    ],
+)
+def test_faults_of_the_harmonics_are_named(cycle: LubricatedCycle, options: dict, where: str):
+    with pytest.raises(InputError) as raised:
+        ff.pair_oscillator(PAIR, cycle, 600.0, SPEED, **options)
+    assert [fault.where for fault in raised.value.faults] == [where]
 
 
 def test_the_verification_is_that_of_the_scene():

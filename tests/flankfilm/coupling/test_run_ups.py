@@ -86,3 +86,15 @@ def test_what_a_longer_series_changes_of_a_map_is_what_it_changes_of_the_sweeps(
     changes = [float(one[np.isfinite(one)].max()) for one in swept.force_change.values()]
     assert found.truncation == pytest.approx(max(*changes, swept.truncation), rel=1e-9)
     assert found.truncation > 10.0 * found.sampling_error
+
+
+def test_run_ups_and_maps_report_what_is_done():
+    """Blocks of run-up and coast-down, each twice; speeds of all torques up and down: once each, to the end."""
+    shown: list[tuple[str, int, int]] = []
+    ff.speed_run_up(motion_at(100.0), (500.0, 700.0), periods=64, progress=lambda *one: shown.append(one))
+    many = 2 * 2 * 4  # ways, lengths of steps, blocks
+    assert [one[1:] for one in shown] == [(done, many) for done in range(1, many + 1)]
+    shown.clear()
+    ff.dynamic_map(motion_at, [50.0, 100.0], [500.0, 600.0, 700.0], progress=lambda *one: shown.append(one))
+    many = 2 * 2 * 3  # torques, ways, speeds
+    assert shown == [("speeds", done, many) for done in range(1, many + 1)]
