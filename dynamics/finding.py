@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
-from dynamics.flow import tables
+from dynamics.flow import carried, tables
 from dynamics.flows import flow_of
 from dynamics.index import index_at_infinity
 from dynamics.limits import SEARCHED, whole_numbers
-from dynamics.manifolds import carried
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 from dynamics.protocol import Flow, PeriodicOscillator, exact_only

@@ -221,6 +221,29 @@ def tabulated(packed: Array, cells: int, degree: int = DEGREE) -> Tables:
     return Tables(packed, coef, edge)
 
 
+def carried(table: Tables, states: npt.ArrayLike, periods: int, backwards: bool = False) -> Array:
+    """States after whole periods, shape (any, 2); nan where a motion is lost.
+
+    Parameters
+    ----------
+    table : Tables
+        Of `tables`, or of `dynamics.manifolds.reversed_tables` if backwards.
+    states : array_like, shape (any, 2)
+        X and V at tau = 0.
+    periods : int
+        Excitation periods.
+    backwards : bool
+        Whether the tables are those of the reversed oscillator.
+    """
+    at = np.array(states, dtype=np.float64).reshape(-1, 2)
+    turn = np.array([1.0, -1.0 if backwards else 1.0])
+    at *= turn
+    labels = np.full(len(at), -1, dtype=np.int64)
+    table.settle(at, np.empty((0, 4)), 0.0, periods, labels)  # nowhere to settle: followed to the end
+    at[labels == -2] = np.nan
+    return np.asarray(at * turn)
+
+
 @exact_only
 def turning_points(oscillator: GearOscillator | Tables, state: npt.ArrayLike, periods: int = 1) -> Array:
     """Every extremum of X from a state at tau = 0.

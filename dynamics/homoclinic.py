@@ -12,8 +12,8 @@ import numpy as np
 
 from base import Array, Booleans
 from dynamics.branch import Branch
-from dynamics.flow import tables
-from dynamics.manifolds import carried, is_direct_saddle
+from dynamics.flow import carried, tables
+from dynamics.manifolds import is_direct_saddle
 from dynamics.oscillator import GearOscillator
 from dynamics.roots import bracketed
 from dynamics.shooting import Orbit, find_orbit

@@ -9,8 +9,7 @@ import numpy as np
 
 from base import Array
 from dynamics.excitation import largest
-from dynamics.flow import Tables, tables
-from dynamics.manifolds import carried
+from dynamics.flow import Tables, carried, tables
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, quantity, record
-from dynamics.flow import Tables, tables, tabulated
+from dynamics.flow import Tables, carried, tables, tabulated
 from dynamics.limits import POSITIVE
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
@@ -69,29 +69,6 @@ def reversed_tables(oscillator: GearOscillator) -> Tables:
             packed[oscillator.places(name)] *= -1.0
     cells = math.ceil(oscillator.cells)
     return tabulated(packed, cells)
-
-
-def carried(table: Tables, states: npt.ArrayLike, periods: int, backwards: bool = False) -> Array:
-    """States after whole periods, shape (any, 2); nan where a motion is lost.
-
-    Parameters
-    ----------
-    table : Tables
-        Of `tables`, or of `reversed_tables` if backwards.
-    states : array_like, shape (any, 2)
-        X and V at tau = 0.
-    periods : int
-        Excitation periods.
-    backwards : bool
-        Whether the tables are those of the reversed oscillator.
-    """
-    at = np.array(states, dtype=np.float64).reshape(-1, 2)
-    turn = np.array([1.0, -1.0 if backwards else 1.0])
-    at *= turn
-    labels = np.full(len(at), -1, dtype=np.int64)
-    table.settle(at, np.empty((0, 4)), 0.0, periods, labels)  # nowhere to settle: followed to the end
-    at[labels == -2] = np.nan
-    return np.asarray(at * turn)
 
 
 @exact_only

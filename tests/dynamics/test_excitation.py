@@ -21,8 +21,8 @@ from dynamics import (
     sweep,
     trajectory,
 )
-from dynamics.flow import tables
-from dynamics.manifolds import carried, reversed_tables
+from dynamics.flow import carried, tables
+from dynamics.manifolds import reversed_tables
 from dynamics.sensitivity import map_derivatives
 from dynamics.stepwise.flow import StepwiseFlow
 

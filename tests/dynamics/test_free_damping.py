@@ -11,8 +11,8 @@ import pytest
 import dynamics
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, find_orbit, period_map, trajectory
-from dynamics.flow import tables
-from dynamics.manifolds import carried, reversed_tables
+from dynamics.flow import carried, tables
+from dynamics.manifolds import reversed_tables
 from dynamics.sensitivity import map_derivatives
 from tests.dynamics.conftest import step_by_step
 

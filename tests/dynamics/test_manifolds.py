@@ -16,8 +16,8 @@ from dynamics import (
     period_map,
 )
 from dynamics.branch import stretches
-from dynamics.flow import tables
-from dynamics.manifolds import carried, reversed_tables
+from dynamics.flow import carried, tables
+from dynamics.manifolds import reversed_tables
 from tests.validation.article_motion import lubricated, starved
 
 
