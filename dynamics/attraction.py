@@ -12,10 +12,10 @@ from dynamics.arrays import AsArray
 from dynamics.exponents import stretch_rate
 from dynamics.homes import Homes
 from dynamics.limits import LONGEST_PERIOD, PATIENT, RADIUS, checked_axis
-from dynamics.protocol import Flow, Oscillator
+from dynamics.protocol import Flow, Oscillator, settling_periods
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.states import apart, checked_state
-from dynamics.sweeps import APERIODIC, creeping, long_flow, orbit_tolerance, repeat_after, settling_periods
+from dynamics.sweeps import APERIODIC, creeping, long_flow, orbit_tolerance, repeat_after
 
 UNDECIDED, UNBOUNDED, UNSETTLED = -1, -2, -3
 SEEDS = 48  # starts that are followed to the end first, so that the rest need not be

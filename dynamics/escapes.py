@@ -19,9 +19,9 @@ from base.results import EXACT
 from dynamics.attraction import Attractor
 from dynamics.limits import PERIODS, STARTS, ordered
 from dynamics.oscillator import GearOscillator
-from dynamics.protocol import Flow, exact_only
+from dynamics.protocol import Flow, exact_only, settling_periods
 from dynamics.states import checked_state
-from dynamics.sweeps import APERIODIC, long_flow, settling_periods
+from dynamics.sweeps import APERIODIC, long_flow
 
 SIDE = 128  # cells along each side of the grid that covers the attractor
 MARGIN = 4  # cells around it that still count as on it: it moves and grows a little with the parameter

@@ -11,9 +11,9 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
 from dynamics.limits import AVERAGED, BATCHES, TRANSIENT, checked_grid
-from dynamics.protocol import Flow, Oscillator, lost_motion
+from dynamics.protocol import Flow, Oscillator, lost_motion, settling_periods
 from dynamics.states import checked_state
-from dynamics.sweeps import long_flow, settling_periods
+from dynamics.sweeps import long_flow
 
 
 @record

@@ -17,10 +17,9 @@ from dynamics.index import index_at_infinity
 from dynamics.limits import SEARCHED, whole_numbers
 from dynamics.motions import period_map
 from dynamics.oscillator import GearOscillator
-from dynamics.protocol import Flow, PeriodicOscillator, exact_only
+from dynamics.protocol import Flow, PeriodicOscillator, exact_only, settling_periods
 from dynamics.shooting import Orbit, find_orbit
 from dynamics.states import Region, checked_region
-from dynamics.sweeps import settling_periods
 
 BESIDE = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2)  # of the size of the region
 PLAIN = 25  # Newton iterations from a start without deflation

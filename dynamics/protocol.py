@@ -340,6 +340,12 @@ def lost_motion(state: Array, reason: str) -> InputError:
     return InputError.at("state", str(np.asarray(state).tolist()), allowed, f"{reason}: check the input")
 
 
+def settling_periods(oscillator: Oscillator, low: int = 200, high: int = 5000) -> int:
+    """Periods in which damping alone shrinks a disturbance by 1e-6, within [low, high]."""
+    decay = oscillator.decay * oscillator.period
+    return high if decay <= 0.0 else int(min(max(math.log(1e6) / decay, low), high))
+
+
 def exact_only(function: Callable[P, R]) -> Callable[P, R]:
     """Have a function refuse, by name, an oscillator that is no `GearOscillator`, or what moves by another one."""
     return _refusing(function, lambda oscillator: oscillator.is_exact, "a GearOscillator")

@@ -23,9 +23,8 @@ from dynamics.arrays import AsArray
 from dynamics.flows import flow_of
 from dynamics.limits import POSITIVE, Whole
 from dynamics.motions import share_below
-from dynamics.protocol import EPS, PeriodicOscillator, periodic_only
+from dynamics.protocol import EPS, PeriodicOscillator, periodic_only, settling_periods
 from dynamics.states import checked_outputs, checked_state
-from dynamics.sweeps import settling_periods
 
 SAMPLES = 64
 """Samples of a period, enough for order 8 and for the maximum force to a part in a thousand."""

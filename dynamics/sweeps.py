@@ -13,7 +13,7 @@ from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
 from dynamics.arrays import AsArray
 from dynamics.flows import flow_of, flows_along
 from dynamics.limits import KEPT, LONGEST_PERIOD, TRANSIENT, checked_grid
-from dynamics.protocol import EPS, Flow, Oscillator
+from dynamics.protocol import EPS, Flow, Oscillator, settling_periods
 from dynamics.shooting import find_orbit, motion_label
 from dynamics.states import checked_state
 
@@ -59,12 +59,6 @@ class SweepResult(AsArray):
     def columns(self) -> Array:
         """States, shape (values, kept, dimension)."""
         return self.states
-
-
-def settling_periods(oscillator: Oscillator, low: int = 200, high: int = 5000) -> int:
-    """Periods in which damping alone shrinks a disturbance by 1e-6, within [low, high]."""
-    decay = oscillator.decay * oscillator.period
-    return high if decay <= 0.0 else int(min(max(math.log(1e6) / decay, low), high))
 
 
 def long_flow(oscillator: Oscillator, tolerance: float | None) -> Flow:

@@ -14,7 +14,7 @@ import numpy as np
 import dynamics
 from base import Array
 from dynamics.drives.flow import drive_flow
-from dynamics.sweeps import settling_periods
+from dynamics.protocol import settling_periods
 from flankfilm.coupling.carried import output_rows
 from flankfilm.coupling.resonance import Vibrations, vibration
 

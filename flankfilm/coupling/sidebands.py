@@ -17,9 +17,8 @@ import dynamics
 import gears
 from base import Array, Cost, InputError, Stopwatch, part, quantity, record
 from base.results import EXACT, ITSELF
-from dynamics.protocol import PeriodicOscillator
+from dynamics.protocol import PeriodicOscillator, settling_periods
 from dynamics.stiffness import MAX_ORDER
-from dynamics.sweeps import settling_periods
 from fem.setting import Deviations
 from flankfilm.coupling.carried import output_rows, part_figures
 from flankfilm.coupling.drive import PairDrive
