@@ -11,7 +11,7 @@ import numpy as np
 
 from base import Array, Faults, described, part, record
 from fem.flamant import hertz_half_width, hertz_indentation
-from fem.local_law import HertzApproach
+from fem.hertz_approach import HertzApproach
 from fem.solved_pair import SolvedPair
 from fem.support import held_profiles
 from fem.torsion import step_wind_up
