@@ -91,8 +91,9 @@ def code_digest(packages: tuple[str, ...]) -> str:
     for name in LIBRARIES:
         digest.update(f"{name}=={metadata.version(name)}\n".encode())
     for package in sorted(packages):
-        for source in sorted(_folder(package).rglob("*.py")):
-            digest.update(source.name.encode())
+        folder = _folder(package)
+        for source in sorted(folder.rglob("*.py")):
+            digest.update(source.relative_to(folder).as_posix().encode())
             digest.update(source.read_bytes())
     return digest.hexdigest()
 
