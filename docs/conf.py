@@ -55,7 +55,7 @@ autosummary_filename_map = {
         "dynamics.Manifold",
         "fem.Compliance",
         "fem.Fillets",
-        "gears.contour.Contour",
+        "gears.tooth.contour.Contour",
     )
 }
 autodoc_typehints = "signature"

@@ -19,7 +19,7 @@ from flankfilm.scene.dynamics import DynamicsSection
 from flankfilm.scene.ground import in_keys, under_keys
 from flankfilm.scene.section import required
 from flankfilm.slow_motion import faults_of_ranges
-from gears.hertz import half_width
+from gears.pair.hertz import half_width
 
 LEAST_SHARE = 0.5
 """Load of a pair at the pitch point, over that of pairs which share equally, that no pair there falls below."""
@@ -98,8 +98,8 @@ def _held(scene: Scene, pair: gears.GearPair) -> tuple[Fault, ...]:
     """Faults of hubs and tip edges that do not fit the gears, where finite elements have them."""
     if scene.stiffness.model == "given":
         return ()
-    from fem.setting import Setting
-    from fem.support import held_profiles
+    from fem.elasticity.support import held_profiles
+    from fem.laws.setting import Setting
 
     hubs = supports(scene)
 

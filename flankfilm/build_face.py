@@ -98,7 +98,7 @@ def _of_films(scene: Scene, where: str, drop: str) -> Iterator[Fault]:
 
 def _of_setting(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
     """Faults of cells, alignment and leads, each under its key."""
-    from fem.face_setting import FREE_ENDS, face_setting
+    from fem.pair.face_setting import FREE_ENDS, face_setting
 
     given, found = face(scene), Faults()
     setting = face_setting(

@@ -8,7 +8,7 @@ import gears
 from base import RangeWarning
 from flankfilm.build import pinion_torque
 from flankfilm.scene import Scene
-from gears.hertz import peak_pressure
+from gears.pair.hertz import peak_pressure
 
 PRESSURE = 8e9
 """Hertzian pressure [Pa]: twice what ISO 76 allows hardened bearing steel at rest."""

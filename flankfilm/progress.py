@@ -23,7 +23,7 @@ COMPILED = {
     "dynamics.kernels.drives": "motions of drive trains",
     "dynamics.kernels.correcting": "branches of orbits",
     "dynamics.kernels": "motions with backlash",
-    "ehl.shear_kernels": "films with heat",
+    "ehl.kernels.shear_kernels": "films with heat",
     "ehl": "films",
 }
 """What compiled functions are for, by the beginning of their module's name; the first that fits."""
@@ -99,7 +99,7 @@ def compiling_line(module: str) -> str:
 
     Examples
     --------
-    >>> compiling_line("ehl.kernels")
+    >>> compiling_line("ehl.kernels.kernels")
     'compiling for films, once: later runs load what is kept'
     """
     kinds = [kind for start, kind in COMPILED.items() if module.startswith(start)]

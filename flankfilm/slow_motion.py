@@ -1,7 +1,7 @@
 """Speeds so far below the resonance that no motion is followed there, found from cheap bounds of the stiffness.
 
 A mesh period of the exact flow is divided into cells by the fastest time scale; their number is bounded
-(`dynamics.oscillator.MAX_CELLS`), and with it the lowest frequency.
+(`dynamics.model.oscillator.MAX_CELLS`), and with it the lowest frequency.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ def least_frequency(damping_ratio: float, harmonics: float) -> float:
     >>> 6e-5 < least_frequency(0.05, 0.0) < 7e-5
     True
     """
-    from dynamics.oscillator import MAX_CELLS, GearOscillator
-    from dynamics.stiffness import FourierStiffness
+    from dynamics.model.oscillator import MAX_CELLS, GearOscillator
+    from dynamics.model.stiffness import FourierStiffness
 
     stiffness = FourierStiffness(1.0, (harmonics,), (0.0,))
     return GearOscillator(stiffness, damping_ratio, 0.0, 0.0, 1.0, 0.0).cells / MAX_CELLS

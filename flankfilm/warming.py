@@ -85,8 +85,8 @@ def warmed(name: str) -> Warmed:
 def _motions() -> None:
     """Sweeps, basins, orbits and trajectories of the exact flow."""
     import dynamics
-    from dynamics.flow import tables
-    from dynamics.multiple_shooting import stretches
+    from dynamics.flow.flow import tables
+    from dynamics.orbits.multiple_shooting import stretches
 
     pair = _pair()
     dynamics.sweep(pair, "frequency", [0.6])
@@ -99,7 +99,7 @@ def _motions() -> None:
 
 def _branches() -> None:
     """Points of branches of the exact flow."""
-    from dynamics.corrector import OrbitProblem
+    from dynamics.branches.corrector import OrbitProblem
 
     ends = np.array([0.5]), np.array([0.7])
     OrbitProblem(_pair(), ("frequency",), 1, *ends, 1.0).evaluate(np.array([0.5, 0.2, 0.5]))

@@ -13,7 +13,7 @@ from base import Array
 
 if TYPE_CHECKING:
     from gears.closed_form.record import ClosedForm
-    from gears.pair import GearPair
+    from gears.pair.pair import GearPair
 
 _CELL = 'style="text-align: right; padding: 0.1em 0.8em"'
 _HEAD = 'style="text-align: left; padding: 0.1em 0.8em; font-weight: normal"'
@@ -78,7 +78,7 @@ def closed_form_html(result: ClosedForm) -> str:
 
 def _drawing(pair: GearPair) -> str:
     """Vector picture of both gears about the pitch point."""
-    from gears.polygon import outline
+    from gears.tooth.polygon import outline
 
     placed = pair.placement(pair.points.C)
     centre = placed.contact_point

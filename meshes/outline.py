@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base import Array, Faults, Limit
-from gears.plane import polar
+from gears.tooth.plane import polar
 
 if TYPE_CHECKING:
     from gears import ToothProfile

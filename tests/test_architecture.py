@@ -25,6 +25,37 @@ MAY_IMPORT = {
 }
 
 
+WINGS: dict[str, list[list[str]]] = {
+    "fem": [
+        ["elasticity"],
+        ["influence"],
+        ["pair"],
+        ["laws"],
+        ["contact"],
+        ["cycle"],
+        ["stress"],
+        ["fields"],
+    ],
+    "ehl": [["oil"], ["kernels"], ["discrete"], ["solving"], ["films"]],
+    "gears": [["tooth"], ["pair"], ["sharing", "closed_form"]],
+    "dynamics": [
+        ["kernels"],
+        ["model"],
+        ["flow"],
+        ["orbits"],
+        ["branches", "motion"],
+        ["attraction"],
+        ["inverse"],
+    ],
+}
+"""Folders of each package from the lowest up; those on one floor know nothing of each other.
+
+What stands in the package itself is above them all.
+"""
+FILES = 22
+"""Modules that a folder holds at most."""
+
+
 def imported(source: Path) -> set[str]:
     names: set[str] = set()
     for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
@@ -121,6 +152,91 @@ def test_circles_are_found_in_functions_under_type_checking_and_through_stubs(tm
     assert set(files.circle()) == {"shop.till", "shop.door"}
     (package / "door.py").write_text("from math import pi")
     assert Files(package).circle() == []
+
+
+class Wings:
+    """Folders of a package in their order, and the imports among them, under TYPE_CHECKING too."""
+
+    def __init__(self, folder: Path, order: list[list[str]]) -> None:
+        self.files = Files(folder)
+        self.folder = folder
+        self.floors = {wing: floor for floor, wings in enumerate(order) for wing in wings}
+
+    def wing(self, module: str) -> str:
+        """Folder of the package in which a module stands; empty for the package itself."""
+        parts = self.files.sources[module].relative_to(self.folder).parts
+        return parts[0] if len(parts) > 1 else ""
+
+    def floor(self, wing: str) -> int:
+        return self.floors.get(wing, len(self.floors))
+
+    def climbing(self) -> list[tuple[str, str]]:
+        """Imports of what stands above, or beside on the same floor."""
+        return [
+            (module, other)
+            for module, others in sorted(self.files.imports.items())
+            for other in sorted(others)
+            if (here := self.wing(module)) != (there := self.wing(other))
+            and self.floor(there) >= self.floor(here)
+        ]
+
+    def circle(self) -> list[str]:
+        """Folders, at any depth, that import each other in a circle."""
+        graph: dict[str, set[str]] = {}
+        for module, others in self.files.imports.items():
+            here = self.place(module)
+            graph.setdefault(here, set()).update(set(map(self.place, others)) - {here})
+        try:
+            TopologicalSorter(graph).prepare()
+        except CycleError as error:
+            return list(error.args[1])
+        return []
+
+    def place(self, module: str) -> str:
+        return self.files.sources[module].parent.relative_to(self.folder.parent).as_posix()
+
+
+@pytest.mark.parametrize("package", sorted(WINGS))
+def test_imports_go_down_among_the_folders_of_a_package(package: str):
+    wings = Wings(ROOT / package, WINGS[package])
+    assert {wing for module in wings.files.sources if (wing := wings.wing(module))} == wings.floors.keys()
+    assert wings.climbing() == []
+    assert wings.circle() == []
+
+
+@pytest.mark.parametrize("package", sorted(WINGS))
+def test_no_folder_holds_too_many_files(package: str):
+    folders = {source.parent for source in (ROOT / package).rglob("*.py")}
+    held = {folder: sum(source.name != "__init__.py" for source in folder.glob("*.py")) for folder in folders}
+    assert {folder: number for folder, number in held.items() if number > FILES} == {}
+    assert all(
+        (folder / "__init__.py").read_text(encoding="utf-8").lstrip("r").startswith('"""')
+        for folder in folders
+    )
+
+
+def test_imports_that_climb_or_go_round_are_found_among_folders(tmp_path):
+    package = tmp_path / "shop"
+    for wing in ("", "cellar", "sales", "office", "cellar/box"):
+        (package / wing).mkdir()
+        (package / wing / "__init__.py").write_text("")
+    (package / "cellar" / "shelf.py").write_text("if TYPE_CHECKING:\n    from shop.sales.till import Till")
+    (package / "cellar" / "lamp.py").write_text("from shop.cellar.box.lid import Lid")
+    (package / "cellar" / "box" / "lid.py").write_text("from shop.cellar import floor")
+    (package / "cellar" / "floor.py").write_text("")
+    (package / "sales" / "till.py").write_text("from shop.cellar import floor")
+    (package / "office" / "desk.py").write_text("import shop.sales.till")
+    order = [["cellar"], ["sales", "office"]]
+    wings = Wings(package, order)
+    assert wings.climbing() == [
+        ("shop.cellar.shelf", "shop.sales.till"),
+        ("shop.office.desk", "shop.sales.till"),
+    ]
+    assert wings.circle()
+    (package / "cellar" / "shelf.py").write_text("")
+    (package / "cellar" / "lamp.py").write_text("")
+    wings = Wings(package, [["cellar"], ["sales"], ["office"]])
+    assert (wings.climbing(), wings.circle()) == ([], [])
 
 
 def test_the_coupling_knows_no_scene_and_no_files():

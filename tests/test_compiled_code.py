@@ -17,8 +17,8 @@ MOTION = """
 import dataclasses, json
 import numpy as np
 import dynamics
-from dynamics.flow import turning_points
-from dynamics.sensitivity import map_derivatives
+from dynamics.flow.flow import turning_points
+from dynamics.branches.sensitivity import map_derivatives
 
 both = dynamics.GearOscillator(
     stiffness=dynamics.FourierStiffness(1.0, (0.18, 0.05), (0.0, 0.4)),

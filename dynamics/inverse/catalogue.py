@@ -8,17 +8,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.branch import SpecialPoint
-from dynamics.branch_tree import BranchTree, Origin
-from dynamics.continuation import continue_branch
-from dynamics.finding import find_orbits
+from dynamics.attraction.branch_tree import BranchTree, Origin
+from dynamics.branches.branch import SpecialPoint
+from dynamics.branches.continuation import continue_branch
+from dynamics.branches.tracking import marked
+from dynamics.flow.motions import period_map
 from dynamics.inverse.events import Event, Problem
 from dynamics.inverse.matching import Line, match
 from dynamics.inverse.refinement import Fit
-from dynamics.motions import period_map
-from dynamics.oscillator import GearOscillator
-from dynamics.shooting import Orbit, find_orbit
-from dynamics.tracking import marked
+from dynamics.model.oscillator import GearOscillator
+from dynamics.orbits.finding import find_orbits
+from dynamics.orbits.shooting import Orbit, find_orbit
 
 SETTLED = 2000  # periods in which the motion at the upper bound is taken to have settled
 THERE = 1e-3  # of its size: a motion so near to an orbit has settled on it

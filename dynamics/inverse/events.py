@@ -10,9 +10,9 @@ from functools import cached_property
 import numpy as np
 
 from base import Array, Faults, Limit
-from dynamics.branch import KINDS, SpecialPoint
-from dynamics.limits import NUMBER, ordered
-from dynamics.oscillator import GearOscillator
+from dynamics.branches.branch import KINDS, SpecialPoint
+from dynamics.model.limits import NUMBER, ordered
+from dynamics.model.oscillator import GearOscillator
 
 MAX_TRIALS = 100_000  # combinations of trial values
 

@@ -16,7 +16,7 @@ from dynamics.inverse.report import Identification
 from dynamics.inverse.scan import Trial, anchored, ranked, scan, solved_name
 from dynamics.inverse.scoring import by_chance, probabilities
 from dynamics.inverse.solution import Solution, distinct, identification, solution
-from dynamics.oscillator import GearOscillator
+from dynamics.model.oscillator import GearOscillator
 
 REFINED = 5  # best trials that are refined
 CLEAR = 1e-9  # trials expected by chance below which nothing else is looked at

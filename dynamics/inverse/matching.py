@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dynamics.branch import SpecialPoint
+from dynamics.branches.branch import SpecialPoint
 from dynamics.inverse.events import Event
 
 Line = Sequence[SpecialPoint]  # special points of one branch, in their order along it

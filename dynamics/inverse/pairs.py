@@ -19,13 +19,13 @@ import numpy as np
 
 from base import Array, Cost, Faults, Stopwatch, quantity, record
 from base.results import EXACT
-from dynamics.continuation import orbits_over
-from dynamics.grazing import ResonanceError, contact_orbit
+from dynamics.branches.continuation import orbits_over
+from dynamics.branches.grazing import ResonanceError, contact_orbit
+from dynamics.branches.roots import bracketed
+from dynamics.flow.motions import period_map
 from dynamics.inverse.events import Event, OneOf
-from dynamics.motions import period_map
-from dynamics.oscillator import GearOscillator
-from dynamics.roots import bracketed
-from dynamics.shooting import find_orbit
+from dynamics.model.oscillator import GearOscillator
+from dynamics.orbits.shooting import find_orbit
 
 BEFORE, SETTLE = 0.97, 300
 """Of the doubling's amplitude, where the motion settles, and periods that it takes."""

@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 
 from dynamics.inverse.events import OneOf, Problem, Ranged, Unknown
-from dynamics.oscillator import GearOscillator
+from dynamics.model.oscillator import GearOscillator
 
 PLAY, FORCE, ERROR = "half_backlash", "mean_force", "error_amplitude"
 

@@ -11,9 +11,9 @@ from functools import cached_property
 import numpy as np
 
 from base import Array
+from dynamics.branches.tracking import Mark
 from dynamics.inverse.events import Problem
-from dynamics.oscillator import GearOscillator
-from dynamics.tracking import Mark
+from dynamics.model.oscillator import GearOscillator
 
 LEFT_OUT = 2  # events that are left out together when a fit of all is no good
 TRIED = 6  # such choices that are followed up

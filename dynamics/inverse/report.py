@@ -8,7 +8,7 @@ from base import Cost, quantity, record
 from dynamics.inverse.events import Event
 from dynamics.inverse.rounding import Rounding
 from dynamics.inverse.scoring import Direction
-from dynamics.oscillator import GearOscillator
+from dynamics.model.oscillator import GearOscillator
 
 
 @record

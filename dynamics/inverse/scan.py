@@ -10,8 +10,8 @@ from typing import NamedTuple
 from dynamics.inverse.catalogue import CONTACT, DOUBLED, EVERY, Catalogue
 from dynamics.inverse.events import Event, Problem, Ranged
 from dynamics.inverse.reduction import FORCE
-from dynamics.oscillator import GearOscillator
-from dynamics.shooting import find_orbit
+from dynamics.model.oscillator import GearOscillator
+from dynamics.orbits.shooting import find_orbit
 
 ORDER = ("saddle-node", "period-doubling", "grazing")  # grazings are often printed late: they come last
 GRID = 8  # values of the solved parameter at which orbits of the anchor's label are searched for

@@ -15,7 +15,7 @@ from dynamics.inverse.refinement import OUTLIER, Fit, agreement
 from dynamics.inverse.report import Candidate, Identification
 from dynamics.inverse.rounding import Rounding, rounded
 from dynamics.inverse.scoring import by_chance, directions, left_out, probabilities, spread, unseen
-from dynamics.oscillator import GearOscillator
+from dynamics.model.oscillator import GearOscillator
 
 RARE = 0.01  # probability below which a match, or all of them together, is not put down to chance
 ALIKE = 1e-3  # relative difference below which two oscillators are the same candidate

@@ -184,7 +184,7 @@ def correct(
         for k in range(3):
             last[k] = u[k]
             u[k] += right[k]
-    rounding = 1.5e-14 * periods * max(1.0, abs(u[0]), abs(u[1]))  # as in dynamics.corrector
+    rounding = 1.5e-14 * periods * max(1.0, abs(u[0]), abs(u[1]))  # as in dynamics.branches.corrector
     flag = FINE
     if limit > 0 and not best <= rounding * max(1.0, largest(lin, 2)):
         flag = LOST

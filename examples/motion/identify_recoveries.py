@@ -17,7 +17,7 @@ import time
 import numpy as np
 
 from dynamics import FourierStiffness, GearOscillator, continue_branch, doubled_orbit, find_orbit
-from dynamics.grazing import contact_orbit
+from dynamics.branches.grazing import contact_orbit
 from dynamics.inverse import Event, Identification, Ranged, identify
 
 BOUNDS = (0.3, 1.3)

@@ -15,8 +15,8 @@ from flankfilm.bench.work_cases import work_motion
 if TYPE_CHECKING:
     from base import Array
     from dynamics import Branch, Orbit
-    from dynamics.exponents import LyapunovResult
-    from dynamics.sweeps import SweepResult
+    from dynamics.motion.exponents import LyapunovResult
+    from dynamics.motion.sweeps import SweepResult
 
 
 MANY = 1000
@@ -40,7 +40,7 @@ def motion_flow(quick: bool) -> Levels:
     0.2. The estimate is the change with half the cells, as the sweep has it.
     """
     from dynamics import period_map
-    from dynamics.flow import tables
+    from dynamics.flow.flow import tables
 
     osc = oscillator()
     degrees = (6, 8, 10, 13) if quick else (6, 7, 8, 9, 10, 11, 12, 13)
@@ -85,7 +85,7 @@ def motion_drive(quick: bool) -> Levels:
     periods, over its largest component. Motor, pinion, wheel and load, omega 0.9, D 0.15. The estimate is the change
     with half the cells, as the sweep has it.
     """
-    from dynamics.drives.flow import DriveFlow, tabulated
+    from dynamics.flow.drive_flow import DriveFlow, tabulated
 
     osc = drive_train()
     start, cells = osc.rest_state() + 0.3, math.ceil(osc.cells)
@@ -126,7 +126,7 @@ def motion_orbit(quick: bool) -> Levels:
     transient has died out (which has no estimate). Error of the state, over its largest component.
     """
     from dynamics import find_orbit, period_map
-    from dynamics.flow import tables
+    from dynamics.flow.flow import tables
 
     osc = oscillator()
     table, exact = tables(osc), tables(osc, 4, 30)

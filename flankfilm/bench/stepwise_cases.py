@@ -42,7 +42,7 @@ def motion_stepwise(short: str, name: str, law: Any) -> Levels:
     periods, over its largest component. The oscillator of the exact flow, its contact with {name}.
     """
     from dynamics import SmoothOscillator, period_map
-    from dynamics.stepwise.flow import StepwiseFlow
+    from dynamics.flow.stepwise_flow import StepwiseFlow
 
     exact, start = oscillator(), np.array(START)
     osc = SmoothOscillator(law, exact.damping_ratio, exact.mean_force, exact.error_amplitude, exact.frequency)

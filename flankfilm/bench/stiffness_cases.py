@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from base import Array
     from fem import Compliance, Fillets, MeshCycle, RootStress
     from gears import GearPair
-    from gears.events import Division
+    from gears.sharing.events import Division
 
 
 POSITIONS = 40

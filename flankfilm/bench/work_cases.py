@@ -73,7 +73,7 @@ def work_contact() -> Levels:
     study has 8 pinions of 18 to 25 teeth and 8 wheels of 31 to 66, 64 pairs at three torques each; its gears are known.
     """
     import fem
-    from fem.vtk import write_vtk_series
+    from fem.fields.vtk import write_vtk_series
     from gears import Gear, GearPair
 
     pair = example_pair()
@@ -146,7 +146,7 @@ def work_motion() -> Levels:
     The oscillator of the exact flow, kernels compiled: what is built on its period map.
     """
     import dynamics
-    from dynamics.flow import tables
+    from dynamics.flow.flow import tables
 
     osc = oscillator()
     values = np.linspace(0.1, 2.1, 2000)

@@ -10,7 +10,7 @@ import numpy as np
 import ehl
 import gears
 from base import Array, Cost, described, part, quantity, record
-from fem.pair_figures import HERTZ
+from fem.cycle.pair_figures import HERTZ
 from flankfilm.coupling import film_points
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.films import FilmModel, PathFilms, film_inside

@@ -12,7 +12,7 @@ import fem
 from base import Array, Cost, InputError, described, part, quantity, record
 from base.results import ITSELF
 from gears.closed_form.record import UNKNOWN
-from gears.mesh_figures import MeshArcs, MeshFigures
+from gears.sharing.mesh_figures import MeshArcs, MeshFigures
 
 
 class ByPairs(Protocol):

@@ -29,7 +29,7 @@ from flankfilm.coupling.oscillator import PairOscillator, pair_oscillator
 from flankfilm.coupling.reduction import MOST_MODES, reduced_train
 from flankfilm.coupling.tilting_mesh import change_over_cycle
 from flankfilm.coupling.train import ShaftDamping, Train, joined, lowest_modes, shaft_damping
-from gears.beams import ReducedShaft
+from gears.pair.beams import ReducedShaft
 
 if TYPE_CHECKING:
     from flankfilm.coupling.cycle import MeshCycle
@@ -218,8 +218,8 @@ def pair_drive(
     """Drive train of a pair: bending and torsion of both shafts, with the modes that the mesh reaches.
 
     Displacements are turns times base radius, positive as the pinion drives, and deflections along the line of action
-    towards the wheel. Shafts are beams and torsion bars of many elements (`gears.beams`), gears are rigid bodies that
-    tilt with them; the train is reduced to modes (`flankfilm.coupling.reduction`). The back flanks press along the
+    towards the wheel. Shafts are beams and torsion bars of many elements (`gears.pair.beams`), gears are rigid bodies
+    that tilt with them; the train is reduced to modes (`flankfilm.coupling.reduction`). The back flanks press along the
     other line of action; here they press along the same. Free rotation of the train is taken out.
 
     Parameters

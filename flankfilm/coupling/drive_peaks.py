@@ -13,8 +13,8 @@ import numpy as np
 
 import dynamics
 from base import Array
-from dynamics.drives.flow import drive_flow
-from dynamics.protocol import settling_periods
+from dynamics.flow.drive_flow import drive_flow
+from dynamics.model.protocol import settling_periods
 from flankfilm.coupling.carried import output_rows
 from flankfilm.coupling.resonance import Vibrations, vibration
 

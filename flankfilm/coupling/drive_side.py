@@ -9,7 +9,7 @@ import numpy as np
 
 import gears
 from base import Array
-from gears.beams import ReducedShaft, bending, halved, node_at, reduced, rotary, shaft_nodes, torsion
+from gears.pair.beams import ReducedShaft, bending, halved, node_at, reduced, rotary, shaft_nodes, torsion
 
 
 class GearBody(NamedTuple):

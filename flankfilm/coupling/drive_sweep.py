@@ -280,7 +280,7 @@ def drive_sweep(
     >>> [round(value) for value in swept.shaft_torque_mean["up"][0]]  # of both shafts, N m
     [600, 667]
     """
-    from dynamics.up_and_down import up_and_down
+    from dynamics.motion.up_and_down import up_and_down
 
     watch = Stopwatch()
     values, speeds = frequencies_of(drive.rigid, speed, frequency)

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from base import Array, Cost, Faults, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
-from dynamics.limits import NUMBER, checked_grid
-from dynamics.up_and_down import up_and_down
+from dynamics.model.limits import NUMBER, checked_grid
+from dynamics.motion.up_and_down import up_and_down
 from flankfilm.coupling.carried import greatest, part_figures
 from flankfilm.coupling.drive import PairDrive
 from flankfilm.coupling.oscillator import PairOscillator

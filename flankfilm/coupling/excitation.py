@@ -19,8 +19,8 @@ import fem
 import gears
 from base import Array, Cost, Faults, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
-from dynamics.stiffness import MAX_ORDER
-from fem.setting import Deviations, Setting
+from dynamics.model.stiffness import MAX_ORDER
+from fem.laws.setting import Deviations, Setting
 
 SAMPLES = 4096
 """Samples of a curve that is given at unequal positions, and of a sum of harmonics whose range is looked for."""

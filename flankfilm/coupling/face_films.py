@@ -8,7 +8,7 @@ import numpy as np
 
 from base import Array, Cost, described, part, quantity, record
 from base.results import EXACT, ITSELF
-from fem.face_cells import FaceCells
+from fem.cycle.face_cells import FaceCells
 from flankfilm.coupling.along_path import FORMULA
 from flankfilm.coupling.cells import cells_of
 from flankfilm.coupling.film_table import FilmTable

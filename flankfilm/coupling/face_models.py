@@ -11,11 +11,11 @@ import fem
 import gears
 from base import Array, Cost, InputError, Stopwatch, described, part, quantity, record
 from base.results import EXACT, ITSELF
-from fem.face_setting import FREE_ENDS, SLICES, WALLS
+from fem.pair.face_setting import FREE_ENDS, SLICES, WALLS
 from flankfilm.coupling.believed import believed
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
-from gears.errors import GeometryError
+from gears.tooth.errors import GeometryError
 
 __all__ = ["FaceLoadModels", "face_load_models", "left_out_by_iso"]
 

@@ -11,7 +11,7 @@ from base import Array, Cost, Faults, Limit, Stopwatch, described, quantity, rec
 from base.results import EXACT, ITSELF
 from flankfilm.coupling.cells import cells_of
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
-from gears.face import ALIGNED, ALIGNMENT_LIMITS
+from gears.tooth.face import ALIGNED, ALIGNMENT_LIMITS
 
 __all__ = ["FaceTolerance", "face_load_tolerance"]
 

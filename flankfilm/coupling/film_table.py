@@ -27,7 +27,7 @@ from base import Array, InputError, RangeWarning
 from flankfilm.coupling.cells import cells_of
 from flankfilm.coupling.films import FilmModel, PathFilms, PlacedMeniscus, Solved, film_inside, films_of
 from flankfilm.coupling.line_contacts import line_contacts
-from gears.hertz import half_width
+from gears.pair.hertz import half_width
 
 if TYPE_CHECKING:
     from flankfilm.coupling.cycle import MeshCycle

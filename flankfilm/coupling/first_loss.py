@@ -74,7 +74,7 @@ def grazing_budget(
 
 def _clearance(oscillator: dynamics.GearOscillator) -> float:
     """Minimum clearance of the orbit that never leaves contact."""
-    from dynamics.grazing import contact_orbit
+    from dynamics.branches.grazing import contact_orbit
 
     return contact_orbit(oscillator).clearance
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import gears
-from fem.face_setting import FREE_ENDS
+from fem.pair.face_setting import FREE_ENDS
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,8 @@ from base import Array
 from flankfilm.coupling.series import MEANS, MeshSeries
 
 if TYPE_CHECKING:
-    from dynamics.branch import Stretch
-    from dynamics.protocol import PeriodicOscillator
+    from dynamics.branches.branch import Stretch
+    from dynamics.model.protocol import PeriodicOscillator
     from flankfilm.coupling.drive import PairDrive
     from flankfilm.coupling.truncation import Longer
 

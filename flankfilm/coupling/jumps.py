@@ -26,7 +26,7 @@ from flankfilm.coupling.speed_ranges import (
 from flankfilm.coupling.truncation import Longer, MissedJump, longer_branches, longer_motion, missed_jumps
 
 if TYPE_CHECKING:
-    from dynamics.branch import Stretch
+    from dynamics.branches.branch import Stretch
 
 
 @record

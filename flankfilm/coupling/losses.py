@@ -9,8 +9,8 @@ import numpy as np
 import ehl
 import gears
 from base import Cost, Faults, Stopwatch, unclocked
-from ehl.options import warn_of_pressure
-from ehl.regimes import BOUNDARY_FRICTION
+from ehl.discrete.regimes import BOUNDARY_FRICTION
+from ehl.solving.options import warn_of_pressure
 from flankfilm.coupling.films import Held
 from flankfilm.coupling.heated_films import HeatedOil
 from flankfilm.coupling.heated_table import HeatedTable

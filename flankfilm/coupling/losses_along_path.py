@@ -10,7 +10,7 @@ import ehl
 import gears
 from base import Array, described, quantity, record
 from base.results import EXACT, ITSELF
-from fem.pair_figures import HERTZ
+from fem.cycle.pair_figures import HERTZ
 from flankfilm.coupling.extreme_errors import of_greatest, of_least
 from flankfilm.coupling.heated_films import HeatedFilms
 

@@ -6,8 +6,8 @@ import numpy as np
 
 import ehl
 from base import Faults, Limit
-from ehl.regimes import BOUNDARY
-from fem.moving_contact import COMPLIANT
+from ehl.discrete.regimes import BOUNDARY
+from fem.contact.moving_contact import COMPLIANT
 from flankfilm.coupling.films import Held, PlacedMeniscus
 from flankfilm.coupling.loaded_teeth import LoadedTeeth
 

@@ -10,7 +10,7 @@ import numpy as np
 import gears
 from base import Array, described, quantity, record
 from base.results import EXACT, ITSELF
-from fem.face_cells import FaceCells
+from fem.cycle.face_cells import FaceCells
 from flankfilm.coupling.cells import cells_of
 from flankfilm.coupling.films import touching
 from flankfilm.coupling.heated_table import HeatedTable

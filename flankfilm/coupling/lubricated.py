@@ -10,8 +10,8 @@ import numpy as np
 import ehl
 import gears
 from base import Array, SolverError, Stopwatch, unclocked
-from ehl.options import warn_of_pressure
-from fem.local_law import film_yielding
+from ehl.solving.options import warn_of_pressure
+from fem.laws.local_law import film_yielding
 from flankfilm.coupling.along_path import FilmAlongPath, gathered
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw

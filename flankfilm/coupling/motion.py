@@ -211,7 +211,7 @@ def speed_sweep(
     """
     with unclocked():
         from dynamics import contact_grazing, sweep
-        from dynamics.up_and_down import up_and_down
+        from dynamics.motion.up_and_down import up_and_down
     watch = Stopwatch()
     values, speeds = frequencies_of(motion, speed, frequency)
     oscillator = motion.oscillator

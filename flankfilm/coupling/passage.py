@@ -11,7 +11,7 @@ import ehl
 import gears
 from base import Array, Cost, Faults, Limit, SolverError, Stopwatch, described, part, quantity, record
 from base.results import EXACT
-from fem.pair_figures import HERTZ
+from fem.cycle.pair_figures import HERTZ
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.films import contacts_of
 from flankfilm.coupling.warned import warned_once

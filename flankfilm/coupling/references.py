@@ -131,7 +131,7 @@ def stiffness_references(
     >>> found.reference, [round(float(k) / 40e6, 1) for k in found.mean_stiffness]  # N/(mm um)
     (('body', 'bore', 'teeth'), [24.3, 21.4, 24.7])
     """
-    from fem.breakdown import deflection_parts
+    from fem.cycle.breakdown import deflection_parts
     from gears.closed_form import iso6336
 
     watch = Stopwatch()

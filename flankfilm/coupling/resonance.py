@@ -12,7 +12,7 @@ from flankfilm.coupling.carried import DriveOutput, output_rows
 
 if TYPE_CHECKING:
     import dynamics
-    from dynamics.protocol import PeriodicOscillator
+    from dynamics.model.protocol import PeriodicOscillator
 
 SAMPLES = 400
 """Samples of a mesh period."""
@@ -114,7 +114,7 @@ def vibration(
     outputs : sequence of DriveOutput
         What parts carry.
     """
-    from dynamics.motions import mesh_force, share_below, trajectory
+    from dynamics.flow.motions import mesh_force, share_below, trajectory
 
     if not np.all(np.isfinite(state)):
         return Vibration(np.nan, np.nan, np.nan, 0.0, np.full((3, len(outputs)), np.nan))

@@ -15,7 +15,7 @@ from flankfilm.coupling.face_models import left_out_by_iso
 
 if TYPE_CHECKING:
     from fem import Kept
-    from fem.fields import GearField
+    from fem.fields.fields import GearField
 
 
 @record
@@ -177,7 +177,7 @@ def pitch_point_fields(
     6
     """
     with unclocked():
-        from fem.fields import loaded_fields
+        from fem.fields.fields import loaded_fields
     watch = Stopwatch()
     distance = np.abs(np.where(np.isfinite(cycle.rho1), cycle.rho1, np.inf) - pair.points.C)
     position = int(np.argmin(distance.min(axis=1)))

@@ -10,7 +10,7 @@ import numpy as np
 import dynamics
 from base import Array, Cost, Faults, InputError, Stopwatch, described, quantity, record
 from base.results import EXACT
-from dynamics.limits import PERIODS, POSITIVE
+from dynamics.model.limits import PERIODS, POSITIVE
 from flankfilm.coupling.carried import greatest, output_rows, part_figures
 from flankfilm.coupling.drive import PairDrive
 from flankfilm.coupling.oscillator import PairOscillator

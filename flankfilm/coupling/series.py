@@ -20,7 +20,7 @@ from base import Array, Cost, SolverError, Stopwatch, described, part, quantity,
 from base.results import EXACT, ITSELF
 from flankfilm.coupling.cycle import MeshCycle
 from gears.closed_form.record import UNKNOWN
-from gears.mesh_figures import SHOWN
+from gears.sharing.mesh_figures import SHOWN
 
 MOST_HARMONICS = 50
 """Highest order of a series."""

@@ -9,13 +9,13 @@ import numpy as np
 import fem
 import gears
 from base import Array, Cost, Stopwatch
-from fem.local_law import film_yielding
-from fem.setting import Setting
+from fem.laws.local_law import film_yielding
+from fem.laws.setting import Setting
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw, Placed
 from flankfilm.coupling.single_pairs import MODELS, single_pair_stiffness
-from gears.events import Sampled, arcs_alike, arcs_between_events
-from gears.mesh_figures import CURVES, MeshArcs
+from gears.sharing.events import Sampled, arcs_alike, arcs_between_events
+from gears.sharing.mesh_figures import CURVES, MeshArcs
 
 SAMPLING = 0.1
 """Part of a tolerance that what the arcs leave out may be."""

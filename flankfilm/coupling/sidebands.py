@@ -17,9 +17,9 @@ import dynamics
 import gears
 from base import Array, Cost, InputError, Stopwatch, part, quantity, record
 from base.results import EXACT, ITSELF
-from dynamics.protocol import PeriodicOscillator, settling_periods
-from dynamics.stiffness import MAX_ORDER
-from fem.setting import Deviations
+from dynamics.model.protocol import PeriodicOscillator, settling_periods
+from dynamics.model.stiffness import MAX_ORDER
+from fem.laws.setting import Deviations
 from flankfilm.coupling.carried import output_rows, part_figures
 from flankfilm.coupling.drive import PairDrive
 from flankfilm.coupling.excitation import ErrorSeries, peak_to_peak, unloaded_error

@@ -14,8 +14,8 @@ from base import Array
 from flankfilm.coupling.oscillator import PairOscillator
 
 if TYPE_CHECKING:
-    from dynamics.branch import Stretch
-    from dynamics.protocol import PeriodicOscillator
+    from dynamics.branches.branch import Stretch
+    from dynamics.model.protocol import PeriodicOscillator
 
 Ranges = tuple[tuple[float, float], ...]
 
@@ -42,7 +42,7 @@ def force_factors(
     ndarray, shape (points, 3)
         Empty without a mean force.
     """
-    from dynamics.motions import force_range
+    from dynamics.flow.motions import force_range
 
     rows = []
     for branch in found.branches:

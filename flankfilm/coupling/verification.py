@@ -18,7 +18,7 @@ from flankfilm.coupling.mesh_cycles import resolved
 from flankfilm.coupling.sharing_pairs import contact_places
 from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
 from gears.closed_form.record import UNKNOWN
-from gears.mesh_figures import Estimate, MeshArcs
+from gears.sharing.mesh_figures import Estimate, MeshArcs
 
 POSITIONS = 360
 """Positions of a base pitch in curves; figures follow from arcs, whatever the positions."""

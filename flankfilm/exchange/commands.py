@@ -102,7 +102,7 @@ def export_profile(
     from flankfilm.build import gear_pair
     from flankfilm.exchange.profile_files import write_drawing, write_points
     from flankfilm.scene import read_scene
-    from gears.contour import contour
+    from gears.tooth.contour import contour
 
     if teeth != "all" and not (teeth.isdecimal() and len(teeth) < 6):
         raise InputError.at("--teeth", teeth, "must be a whole number, or all", "Such as --teeth 3")
@@ -144,7 +144,7 @@ def export_mesh(
     refinements : int
         How often every element is split in four, 0 to 4.
     """
-    from fem.export import export_position
+    from fem.fields.export import export_position
     from flankfilm.build import pinion_torque
     from flankfilm.cache import results_cache
     from flankfilm.folder import claim

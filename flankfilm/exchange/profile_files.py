@@ -11,7 +11,7 @@ import numpy as np
 from flankfilm.output.files import write_csv, write_text
 
 if TYPE_CHECKING:
-    from gears.contour import Contour
+    from gears.tooth.contour import Contour
 
 
 def write_points(path: Path, contour: Contour) -> int:

@@ -59,7 +59,7 @@ def traction_of(
     from flankfilm.build import gear_pair
     from flankfilm.build_heat import shearing_oil
     from flankfilm.scene.section import required
-    from gears.hertz import peak_pressure
+    from gears.pair.hertz import peak_pressure
 
     for name in ("pair", "material"):
         required(getattr(scene, name), f"[{name}]", "a traction curve")

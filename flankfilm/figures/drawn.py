@@ -14,7 +14,7 @@ from flankfilm.output.variables import figure_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from fem.fields import GearField
+    from fem.fields.fields import GearField
     from flankfilm.coupling.motion import Portrait
     from gears import GearPair
 
@@ -38,7 +38,7 @@ SLIDING = Figure("m/s", "sliding, u1 - u2", ("station",), no_error=EXACT)
 
 def outlines(pair: GearPair) -> tuple[Quantity, ...]:
     """Draw both gears as closed polygons, with a pair of teeth at the pitch point."""
-    from gears.polygon import outline
+    from gears.tooth.polygon import outline
 
     placed = pair.placement(pair.points.C)
     pinion, wheel = (

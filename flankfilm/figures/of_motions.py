@@ -60,7 +60,7 @@ def branch(found: dynamics.Branch) -> Figure:
 
     Of orbits of several periods, all points at the start of a period.
     """
-    from dynamics.returns import branch_returns
+    from dynamics.attraction.returns import branch_returns
 
     further = None
     if found.oscillator is not None and found.oscillator.is_exact:
@@ -76,7 +76,7 @@ def branches(found: dynamics.Diagram) -> Figure:
 
 def _returns(found: dynamics.Diagram) -> Array:
     """Points of orbits of several periods after each; none for trains, whose states are drawn."""
-    from dynamics.returns import returns
+    from dynamics.attraction.returns import returns
 
     return returns(found) if found.oscillator.is_exact else np.empty((0, 6))
 

@@ -142,7 +142,7 @@ def _curve(axes: Axes, x: Reading, y: Reading, label: str) -> None:
 
 def pair(found: gears.GearPair) -> Figure:
     """Draw both gears about the pitch point, with the path of contact."""
-    from gears.polygon import outline
+    from gears.tooth.polygon import outline
 
     placed = found.placement(found.points.C)
     middle, reach = placed.contact_point, 3.5 * found.module

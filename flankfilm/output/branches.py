@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base.results import EXACT, ITSELF
-from dynamics.returns import returns
+from dynamics.attraction.returns import returns
 from flankfilm.output.variables import figure_of, of_quantities
 from gears.closed_form.record import STANDARD
 

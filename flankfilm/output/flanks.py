@@ -10,7 +10,7 @@ import numpy as np
 from base import Array, Quantity
 from base.results import EXACT
 from flankfilm.output.variables import figure_of, of_quantities
-from gears.flank_curves import FlankCurve
+from gears.tooth.flank_curves import FlankCurve
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,7 +11,7 @@ from base.results import EXACT
 from flankfilm.output.variables import figure_of
 
 if TYPE_CHECKING:
-    from fem.gear_root import GearRootStress
+    from fem.stress.gear_root import GearRootStress
 
 __all__ = ["fillet_stress", "passage"]
 

@@ -37,7 +37,7 @@ from flankfilm.output.variables import (
     with_tolerance,
 )
 from flankfilm.plan.decisions import decisions
-from gears.mesh_figures import MeshFigures
+from gears.sharing.mesh_figures import MeshFigures
 
 if TYPE_CHECKING:
     import xarray as xr

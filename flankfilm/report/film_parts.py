@@ -10,7 +10,7 @@ import numpy as np
 
 from base import Array
 from base.units import factor
-from ehl.regimes import MEASURED, regime
+from ehl.discrete.regimes import MEASURED, regime
 from flankfilm.coupling.least_film import parts_of
 from flankfilm.figures.reading import PER_FACE, read_figure, unit_text
 from flankfilm.output.run import held_as_it_is

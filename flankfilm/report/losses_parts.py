@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehl.regimes import MEASURED, regime
+from ehl.discrete.regimes import MEASURED, regime
 from flankfilm.build_heat import shearing_oil, warmth
 from flankfilm.figures.reading import read_figure
 from flankfilm.output.uncertainty import Uncertainty, uncertainty

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     import fem
-    from fem.root_peaks import RootPeak
+    from fem.stress.root_peaks import RootPeak
     from flankfilm.coupling import (
         LoadedFields,
         MeshCycle,

@@ -21,7 +21,7 @@ from flankfilm.report.text import counted, number, percent, plus_minus
 if TYPE_CHECKING:
     import xarray as xr
 
-    from dynamics.branch import Stretch
+    from dynamics.branches.branch import Stretch
     from flankfilm.coupling import FilmDamping, MeshSeries, PairOscillator, SpeedDiagram, SpeedSweep
     from flankfilm.coupling.jump_errors import Jump
 

@@ -8,10 +8,10 @@ from typing import Any, ClassVar, Literal
 from pydantic import model_validator
 
 from base import Fault, Limit
-from fem.face_setting import CELLS, FREE_ENDS, USUAL
+from fem.pair.face_setting import CELLS, FREE_ENDS, USUAL
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
-from gears.face import ALIGNMENT_LIMITS
+from gears.tooth.face import ALIGNMENT_LIMITS
 
 __all__ = ["LEAD_KEYS", "AlignmentSection", "faults_of_leads"]
 

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from base import Limit
-from dynamics.limits import OSCILLATOR as LIMITS
+from dynamics.model.limits import OSCILLATOR as LIMITS
 from flankfilm.scene.error_curve import AMPLITUDE_UM, PHASE_DEG, ErrorCurveSection, harmonics
 from flankfilm.scene.key import key, within
 from flankfilm.scene.section import Limits, Section, refused

@@ -8,11 +8,11 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from base import Limit
-from ehl.asperities import LIMITS as ROUGHNESS
-from ehl.grades import LIMITS as GRADE
-from ehl.lubricant import LIMITS as OIL
-from ehl.lubricant import STRESS_LIMITS
-from ehl.regimes import BOUNDARY, BOUNDARY_FRICTION
+from ehl.discrete.asperities import LIMITS as ROUGHNESS
+from ehl.discrete.regimes import BOUNDARY, BOUNDARY_FRICTION
+from ehl.oil.grades import LIMITS as GRADE
+from ehl.oil.lubricant import LIMITS as OIL
+from ehl.oil.lubricant import STRESS_LIMITS
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
 

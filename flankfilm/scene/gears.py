@@ -10,13 +10,13 @@ from base import InputError, Limit
 from flankfilm.scene.flank_sections import DeviationsSection, WearSection, wrong_counts
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
-from gears.blank import LIMITS as BLANK
-from gears.face import LEAD_LIMITS as LEAD
-from gears.gear import LIMITS as GEAR
-from gears.gear import RELIEF_LIMITS as RELIEF
-from gears.pair import BACKLASH
-from gears.pair import LIMITS as PAIR
-from gears.rack import LIMITS as RACK
+from gears.pair.pair import BACKLASH
+from gears.pair.pair import LIMITS as PAIR
+from gears.tooth.blank import LIMITS as BLANK
+from gears.tooth.face import LEAD_LIMITS as LEAD
+from gears.tooth.gear import LIMITS as GEAR
+from gears.tooth.gear import RELIEF_LIMITS as RELIEF
+from gears.tooth.rack import LIMITS as RACK
 
 TIP_DIAMETER = Limit.above(0.0, 1e4, "m")
 

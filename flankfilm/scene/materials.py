@@ -8,9 +8,9 @@ from pydantic import model_validator
 
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Section, refused
-from gears.material import LIMITS as MATERIAL
-from gears.material import Material
-from gears.named_materials import MATERIALS, named_material
+from gears.tooth.material import LIMITS as MATERIAL
+from gears.tooth.material import Material
+from gears.tooth.named_materials import MATERIALS, named_material
 
 
 class ElasticSection(Section):

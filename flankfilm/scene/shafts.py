@@ -12,7 +12,7 @@ from flankfilm.scene.ground import in_keys
 from flankfilm.scene.key import key, within
 from flankfilm.scene.materials import ElasticSection
 from flankfilm.scene.section import Limits, Section, refused
-from gears.shafts import BEARING, SEGMENT
+from gears.pair.shafts import BEARING, SEGMENT
 
 PLACE = Limit(0.0, 1e4, "m", "Count from the left end of the shaft")
 MOST_STEPS = 200

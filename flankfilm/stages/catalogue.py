@@ -11,8 +11,8 @@ from typing import Any, TypeVar
 
 import fem
 import gears
-from fem.face_setting import FREE_ENDS
-from fem.moving_contact import contacts_move
+from fem.contact.moving_contact import contacts_move
+from fem.pair.face_setting import FREE_ENDS
 from flankfilm import coupling
 from flankfilm.build import gear_pair, pinion_speed, pinion_torque, supports, tip_roundings, warm_pair
 from flankfilm.build_face import even_along_face, face, varies_by

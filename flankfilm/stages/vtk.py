@@ -42,8 +42,8 @@ def write_fields(folder: Path, run: Engine, progress: Progress = silent) -> list
 
     Fields over the face have no state.
     """
-    from fem.paraview_state import STATE
-    from fem.vtk import write_vtk_series
+    from fem.fields.paraview_state import STATE
+    from fem.fields.vtk import write_vtk_series
 
     cycle = loaded_contact(run)
     rows = even_rows(len(cycle.position))

@@ -11,7 +11,7 @@ import numpy as np
 import fem
 from base import Figure
 from base.results import figures
-from fem.root_peaks import RootPeak
+from fem.stress.root_peaks import RootPeak
 from flankfilm.build_face import varies_by
 from flankfilm.coupling.face_models import LABELS, FaceLoadModels
 from flankfilm.coupling.face_tolerance import FaceTolerance

@@ -9,7 +9,7 @@ import numpy as np
 
 from base import Figure
 from base.results import figures
-from ehl.regimes import NUMBERS, regime_number
+from ehl.discrete.regimes import NUMBERS, regime_number
 from flankfilm.coupling.losses_along_path import LossesAlongPath
 from flankfilm.coupling.losses_record import MeshLosses
 from flankfilm.stages.losses import LOSSES

@@ -15,7 +15,7 @@ import numpy as np
 import gears
 from base import Figure
 from base.results import figures
-from ehl.regimes import NUMBERS, regime_number
+from ehl.discrete.regimes import NUMBERS, regime_number
 from flankfilm.build import pinion_speed, pinion_torque
 from flankfilm.coupling.along_path import FilmAlongPath
 from flankfilm.coupling.cycle import MeshCycle

@@ -9,8 +9,8 @@ from gears.closed_form.contact import constant_contact_compliance, contact_compl
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
 from gears.closed_form.sainsot import sainsot_body
-from gears.pair import GearPair
-from gears.path import PathOfContact
+from gears.pair.pair import GearPair
+from gears.pair.path import PathOfContact
 
 SHEAR_FACTOR = 1.2
 """Ratio of the mean square to the squared mean of the shear stress in a rectangular section."""

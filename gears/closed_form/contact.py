@@ -10,10 +10,10 @@ import numpy as np
 from base import Array, RangeWarning
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
-from gears.errors import GeometryError
-from gears.hertz import NORMAL_FORCE, depth_compliance, half_width
-from gears.pair import GearPair
-from gears.path import PathOfContact
+from gears.pair.hertz import NORMAL_FORCE, depth_compliance, half_width
+from gears.pair.pair import GearPair
+from gears.pair.path import PathOfContact
+from gears.tooth.errors import GeometryError
 
 _DEEP = 4.0  # depth over half-width below which the far-field form of the approach errs by a per cent
 

@@ -7,9 +7,9 @@ import warnings
 
 from base import Faults, RangeWarning, quantity, record
 from gears.closed_form.record import STANDARD
-from gears.errors import GeometryError
-from gears.hertz import NORMAL_FORCE
-from gears.pair import GearPair
+from gears.pair.hertz import NORMAL_FORCE
+from gears.pair.pair import GearPair
+from gears.tooth.errors import GeometryError
 
 SHARED = 2.0
 """Contact ratio from which no pair of teeth bears alone."""

@@ -8,8 +8,8 @@ from base import Faults, Limit, quantity, record
 from base.units import factor
 from gears.closed_form.record import STANDARD
 from gears.closed_form.tooth_stiffness import iso6336
-from gears.errors import GeometryError
-from gears.pair import GearPair
+from gears.pair.pair import GearPair
+from gears.tooth.errors import GeometryError
 
 FACE_STIFFNESS = 0.85
 """c_gamma_beta over c_gamma_alpha."""

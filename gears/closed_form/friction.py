@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from base import Faults, Limit
-from gears.errors import GeometryError
-from gears.pair import GearPair
+from gears.pair.pair import GearPair
+from gears.tooth.errors import GeometryError
 
 _LIMITS = {
     "torque": Limit.above(0.0, unit="N m", remedy="of the pinion"),

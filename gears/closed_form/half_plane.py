@@ -10,8 +10,8 @@ from base import Array
 from gears.closed_form.contact import contact_compliances
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
-from gears.pair import GearPair
-from gears.path import PathOfContact
+from gears.pair.pair import GearPair
+from gears.pair.path import PathOfContact
 
 
 def tooth_compliance(tooth: LoadedTooth, face_width: float) -> Array:

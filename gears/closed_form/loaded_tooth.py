@@ -10,12 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from base import Array, Faults, RangeWarning
-from gears.bisection import bisect
-from gears.errors import GeometryError
-from gears.material import Material
-from gears.pair import GearPair
-from gears.path import PathOfContact
-from gears.profile import ToothProfile
+from gears.pair.pair import GearPair
+from gears.pair.path import PathOfContact
+from gears.tooth.bisection import bisect
+from gears.tooth.errors import GeometryError
+from gears.tooth.material import Material
+from gears.tooth.profile import ToothProfile
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 

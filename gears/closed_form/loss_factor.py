@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from base import Faults
-from gears.errors import GeometryError
-from gears.pair import GearPair
+from gears.pair.pair import GearPair
+from gears.tooth.errors import GeometryError
 
 
 def ohlendorf_loss_factor(pair: GearPair) -> float:

@@ -7,12 +7,12 @@ import warnings
 
 from base import Faults, RangeWarning, described, part, quantity, record
 from gears.closed_form.record import STANDARD
-from gears.errors import GeometryError
-from gears.hertz import NORMAL_FORCE
-from gears.involute import involute_function
-from gears.pair import GearPair
-from gears.profile import ToothProfile
-from gears.rack import BasicRack
+from gears.pair.hertz import NORMAL_FORCE
+from gears.pair.pair import GearPair
+from gears.tooth.errors import GeometryError
+from gears.tooth.involute import involute_function
+from gears.tooth.profile import ToothProfile
+from gears.tooth.rack import BasicRack
 
 _SLOPE = math.pi / 3.0
 """The critical section touches the fillets at 30 degrees to the tooth's centre line: T = pi/2 - pi/6."""

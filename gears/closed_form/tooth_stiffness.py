@@ -8,10 +8,10 @@ import warnings
 from base import RangeWarning, described, quantity, record
 from base.units import factor
 from gears.closed_form.record import STANDARD
-from gears.errors import GeometryError
-from gears.hertz import NORMAL_FORCE
-from gears.pair import GearPair
-from gears.profile import ToothProfile
+from gears.pair.hertz import NORMAL_FORCE
+from gears.pair.pair import GearPair
+from gears.tooth.errors import GeometryError
+from gears.tooth.profile import ToothProfile
 
 CORRECTION = 0.8
 """C_M, what measurements found of the theoretical stiffness of a solid disc."""

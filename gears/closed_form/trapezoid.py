@@ -12,9 +12,9 @@ from base import Array, RangeWarning
 from gears.closed_form.contact import constant_contact_compliance
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
-from gears.pair import GearPair
-from gears.path import PathOfContact
-from gears.profile import ToothProfile
+from gears.pair.pair import GearPair
+from gears.pair.path import PathOfContact
+from gears.tooth.profile import ToothProfile
 
 
 @dataclass(frozen=True)

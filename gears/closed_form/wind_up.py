@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from gears.blank import Zone
+from gears.tooth.blank import Zone
 
 
 def ring_wind_up(root_radius: float, bore_radius: float, base_radius: float, shear_modulus: float) -> float:
@@ -103,7 +103,7 @@ def body_wind_up(zones: Sequence[Zone], base_radius: float, shear_modulus: float
 
     Examples
     --------
-    >>> from gears.blank import Zone
+    >>> from gears.tooth.blank import Zone
     >>> body_wind_up((Zone(30e-3, 33.5e-3, 1.0), Zone(16.75e-3, 30e-3, 0.3)), 33.83e-3, shear_modulus=79.2e9)
     9.656...e-12
     """
@@ -136,7 +136,7 @@ def inertial_wind_up(
 
     Examples
     --------
-    >>> from gears.blank import Zone
+    >>> from gears.tooth.blank import Zone
     >>> solid = (Zone(16.75e-3, 33.5e-3, 1.0),)
     >>> inertial_wind_up(solid, 33.83e-3, 79.2e9) / body_wind_up(solid, 33.83e-3, 79.2e9)
     0.0933...

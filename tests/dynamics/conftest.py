@@ -85,7 +85,7 @@ def article():
 @pytest.fixture(scope="session", autouse=True)
 def every_orbit_keeps_the_determinant():
     """Whatever orbit a test finds, det of its Jacobian is exp(-4 pi zeta n/omega), relative to the products in it."""
-    from dynamics import shooting
+    from dynamics.orbits import shooting
 
     assemble = shooting.make_orbit
 

@@ -7,7 +7,7 @@ import pytest
 
 from base import InputError
 from dynamics import basin_boundary, basins, find_orbits, manifold
-from dynamics.boundary import share_interval
+from dynamics.attraction.boundary import share_interval
 from tests.validation.article_motion import lubricated
 
 OSC = lubricated(0.6)

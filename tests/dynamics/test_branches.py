@@ -20,7 +20,7 @@ from dynamics import (
     period_map,
     sweep,
 )
-from dynamics.flow import turning_points
+from dynamics.flow.flow import turning_points
 from tests.validation.article_motion import lubricated, starved
 
 
@@ -58,7 +58,7 @@ def test_special_points_are_what_they_are_called(scan):
     for p in branch.points:
         here = osc.with_parameter("frequency", p.parameter)
         image = period_map(here, p.state)
-        # rounding of the map, which its derivative stretches, as in dynamics.corrector
+        # rounding of the map, which its derivative stretches, as in dynamics.branches.corrector
         rounding = 1.5e-14 * max(1.0, float(np.max(np.abs(image.jacobian))))
         assert np.max(np.abs(image.state - p.state)) < rounding
         det, trace = here_determinant(here), np.trace(image.jacobian)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit
-from dynamics.step_rules import HIDDEN, hides
+from dynamics.branches.step_rules import HIDDEN, hides
 from tests.dynamics.test_drives import same_as
 
 # period doublings at .51265 and .52297, between which the multiplier reaches -1.036

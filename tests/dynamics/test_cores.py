@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from base import threads
-from dynamics import FourierStiffness, GearOscillator, basins, sweep, sweeps
-from dynamics.up_and_down import up_and_down
+from dynamics import FourierStiffness, GearOscillator, basins, sweep
+from dynamics.motion import sweeps
+from dynamics.motion.up_and_down import up_and_down
 
 
 def oscillator(frequency: float) -> GearOscillator:

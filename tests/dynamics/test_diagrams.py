@@ -20,7 +20,7 @@ from dynamics import (
     period_map,
     sweep,
 )
-from dynamics.sensitivity import map_derivatives
+from dynamics.branches.sensitivity import map_derivatives
 from tests.validation import article_motion
 
 

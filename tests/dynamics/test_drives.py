@@ -12,8 +12,8 @@ from scipy.linalg import expm
 import dynamics
 from base import InputError
 from dynamics import DriveOscillator, FourierStiffness, GearOscillator, find_orbit, period_map, trajectory
-from dynamics.drives.coordinates import coordinates_of
-from dynamics.drives.flow import drive_flow
+from dynamics.flow.drive_flow import drive_flow
+from dynamics.model.drive_coordinates import coordinates_of
 
 SERIES = FourierStiffness(1.0, (0.18, 0.05), (0.3, 1.0))
 ERROR, PHASE = (0.2, 0.03), (0.4, 1.0)

@@ -21,10 +21,10 @@ from dynamics import (
     sweep,
     trajectory,
 )
-from dynamics.flow import carried, tables
-from dynamics.manifolds import reversed_tables
-from dynamics.sensitivity import map_derivatives
-from dynamics.stepwise.flow import StepwiseFlow
+from dynamics.attraction.manifolds import reversed_tables
+from dynamics.branches.sensitivity import map_derivatives
+from dynamics.flow.flow import carried, tables
+from dynamics.flow.stepwise_flow import StepwiseFlow
 
 SERIES = FourierStiffness(1.0, (0.3, 0.1), (0.4, -1.1))
 ERROR, PHASE = (0.2, -0.05, 0.02, 0.0, 0.008), (0.0, 1.0, -2.0, 0.0, 0.5)

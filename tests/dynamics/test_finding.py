@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator, find_orbits, period_map
-from dynamics.flow import tables
-from dynamics.states import apart
+from dynamics.flow.flow import tables
+from dynamics.model.states import apart
 
 # eight orbits with all sums of indices right, and others of period 3 in pairs of opposite index
 PAIRS = GearOscillator(

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 import dynamics
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, period_map, trajectory
-from dynamics.flow import DEGREE, tables, turning_points
+from dynamics.flow.flow import DEGREE, tables, turning_points
 
 EPS = np.finfo(float).eps
 unit = st.floats(-1.0, 1.0)

@@ -11,9 +11,9 @@ import pytest
 import dynamics
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, find_orbit, period_map, trajectory
-from dynamics.flow import carried, tables
-from dynamics.manifolds import reversed_tables
-from dynamics.sensitivity import map_derivatives
+from dynamics.attraction.manifolds import reversed_tables
+from dynamics.branches.sensitivity import map_derivatives
+from dynamics.flow.flow import carried, tables
 from tests.dynamics.conftest import step_by_step
 
 STATE = np.array([0.5, 0.2])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import dynamics
-import dynamics.run_ups
+import dynamics.motion.run_ups
 from dynamics import find_orbit, run_up
 from dynamics.inverse import Event, Ranged, identify
 from tests.dynamics.conftest import step_by_step
@@ -47,7 +47,7 @@ def test_a_run_up_with_the_same_damping_out_of_contact_has_the_same_digits():
 
 
 def test_a_train_runs_up_with_it_as_the_pair_does(monkeypatch):
-    monkeypatch.setattr(dynamics.run_ups, "HELD", 1)
+    monkeypatch.setattr(dynamics.motion.run_ups, "HELD", 1)
     osc = oscillator()
     drive = same_as(osc)
     slow = drive.with_parameter("frequency", BOUNDS[0])

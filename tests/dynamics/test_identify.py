@@ -12,6 +12,7 @@ import pytest
 
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, find_orbits
+from dynamics.branches.tracking import marked
 from dynamics.inverse import Event, OneOf, Ranged, identify
 from dynamics.inverse.catalogue import CONTACT, DOUBLED, EVERY, Catalogue, Tally
 from dynamics.inverse.events import MAX_TRIALS, Problem, checked
@@ -20,7 +21,6 @@ from dynamics.inverse.refinement import Fit, fit
 from dynamics.inverse.rounding import rounded
 from dynamics.inverse.scan import anchored, ranked, scan
 from dynamics.inverse.scoring import directions, left_out, unseen
-from dynamics.tracking import marked
 from tests.validation.article_motion import starved
 
 ZETA, KAPPA, FORCE = "damping_ratio", "stiffness.amplitudes[0]", "mean_force"

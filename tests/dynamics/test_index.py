@@ -7,7 +7,7 @@ import dataclasses
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator, find_orbits
-from dynamics.index import index_at_infinity, winding
+from dynamics.orbits.index import index_at_infinity, winding
 
 
 def oscillator(frequency: float, kappa: float, **changes) -> GearOscillator:

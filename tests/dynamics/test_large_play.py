@@ -13,7 +13,7 @@ from dynamics import (
     doubled_orbit,
     find_orbit,
 )
-from dynamics.sizes import size_of
+from dynamics.branches.sizes import size_of
 from tests.dynamics.test_drives import same_as
 
 

@@ -15,9 +15,9 @@ from dynamics import (
     manifold,
     period_map,
 )
-from dynamics.branch import stretches
-from dynamics.flow import carried, tables
-from dynamics.manifolds import reversed_tables
+from dynamics.attraction.manifolds import reversed_tables
+from dynamics.branches.branch import stretches
+from dynamics.flow.flow import carried, tables
 from tests.validation.article_motion import lubricated, starved
 
 

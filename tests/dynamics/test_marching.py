@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator, continue_branch, doubled_orbit, find_orbit
-from dynamics.arclength import _Walker
-from dynamics.crossings import ExactBranch
-from dynamics.marching import BLOCK, alike
+from dynamics.branches.arclength import _Walker
+from dynamics.branches.crossings import ExactBranch
+from dynamics.branches.marching import BLOCK, alike
 
 OSCILLATOR = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.5, half_backlash=0.2)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dynamics.multiple_shooting import newton_step
+from dynamics.orbits.multiple_shooting import newton_step
 
 
 @pytest.mark.parametrize(("count", "size"), [(1, 3), (2, 2), (7, 4), (40, 12)])

@@ -17,9 +17,9 @@ from dynamics import (
     period_map,
     sweep,
 )
-from dynamics.grazing import contact_orbit
-from dynamics.shooting import floquet_multipliers, is_stable
-from dynamics.sweeps import repeat_after
+from dynamics.branches.grazing import contact_orbit
+from dynamics.motion.sweeps import repeat_after
+from dynamics.orbits.shooting import floquet_multipliers, is_stable
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 import dynamics
 from base import InputError, quantities
 from dynamics import FourierStiffness, GearOscillator, PowerContact, SmoothOscillator
-from dynamics.flows import flow_of
+from dynamics.flow.flows import flow_of
 
 SERIES = FourierStiffness(1.0, (0.18,), (0.0,))
 EXACT = GearOscillator(SERIES, 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)

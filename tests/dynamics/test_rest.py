@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator
-from dynamics.multiple_shooting import _balanced
+from dynamics.orbits.multiple_shooting import _balanced
 
 PLAIN = GearOscillator(FourierStiffness(1.0, (0.2,), (0.0,)), 0.05, 0.1, 0.0, 0.8, half_backlash=0.5)
 

@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics import FourierStiffness, GearOscillator, sweep, sweeps
-from dynamics.flow import tables
-from dynamics.flows import flow_of
+from dynamics import FourierStiffness, GearOscillator, sweep
+from dynamics.flow.flow import tables
+from dynamics.flow.flows import flow_of
+from dynamics.flow.retabling import Retabling
 from dynamics.kernels import tables as kernels
-from dynamics.retabling import Retabling
+from dynamics.motion import sweeps
 
 OSCILLATOR = GearOscillator(
     FourierStiffness(1.0, (0.18, 0.05), (0.0, 1.0)), 0.05, 0.1, (0.2, 0.05), 0.6, 0.2, (0.3, 0.7)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import dynamics
-from dynamics.returns import branch_returns, returns
+from dynamics.attraction.returns import branch_returns, returns
 
 OSCILLATOR = dynamics.GearOscillator(
     stiffness=dynamics.FourierStiffness(mean=1.0, amplitudes=(0.18,), phases=(0.0,)),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, special_sensitivities
-from dynamics.motions import force_range
+from dynamics.flow.motions import force_range
 
 OSC = GearOscillator(FourierStiffness(1.0, (0.18, 0.02), (0.1, -0.4)), 0.05, 0.1, 0.2, 0.5, 0.2, 0.05)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-import dynamics.run_ups
+import dynamics.motion.run_ups
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, find_orbit, run_up
 from tests.dynamics.test_drives import chain, same_as
@@ -53,7 +53,7 @@ def test_a_ramp_is_that_of_the_equation_with_a_varying_frequency():
 
 def test_a_train_of_one_freedom_runs_up_as_the_pair(monkeypatch):
     """Frequency by frequency the same motion: impulses of the error's rate are the train's own; q is X and e."""
-    monkeypatch.setattr(dynamics.run_ups, "HELD", 1)
+    monkeypatch.setattr(dynamics.motion.run_ups, "HELD", 1)
     gear = GearOscillator(
         FourierStiffness(1.0, (0.18,), (0.3,)), 0.05, 0.1, (0.2, 0.03), 0.6, 0.2, (0.4, 1.0)
     )
@@ -167,19 +167,19 @@ def test_errors_are_told_block_by_block():
     coarse[3] = 2.0
     above = np.zeros((6, 3))
     above[5] = 0.3
-    by_rms, by_peak, greatest = dynamics.run_ups._errors(fine, coarse, above)
+    by_rms, by_peak, greatest = dynamics.motion.run_ups._errors(fine, coarse, above)
     assert by_rms == pytest.approx([1e-7, 1e-7, 1e-7, 2 / 3, 1e-7, 1e-7], rel=1e-6)
     assert by_peak == pytest.approx([1e-7, 1e-7, 1e-7, 2 / 3, 1e-7, 0.05], rel=1e-6)
     assert greatest == pytest.approx(1e-7, rel=1e-6)
     coarse[2] = np.nan
-    assert dynamics.run_ups._errors(fine, coarse, above)[0][2] == np.inf
+    assert dynamics.motion.run_ups._errors(fine, coarse, above)[0][2] == np.inf
 
 
 def test_errors_cover_blocks_and_peaks(monkeypatch):
     """Peaks against sixteen times the samples; a median of the root mean squares alone was 1e-8 here."""
     start = find_orbit(lubricated(0.68), (1.0, 0.5)).state
     found = run_up(lubricated(0.6), (0.68, 0.5), 400, state=start)
-    monkeypatch.setattr(dynamics.run_ups, "SAMPLES", 1024)
+    monkeypatch.setattr(dynamics.motion.run_ups, "SAMPLES", 1024)
     true = run_up(lubricated(0.6), (0.68, 0.5), 400, state=start)
     for name in ("peak", "force_peak"):
         off = np.abs(getattr(found, name) / getattr(true, name) - 1.0)

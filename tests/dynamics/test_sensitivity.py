@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, period_map
-from dynamics.flow import turning_points
-from dynamics.sensitivity import map_derivatives
+from dynamics.branches.sensitivity import map_derivatives
+from dynamics.flow.flow import turning_points
 
 STATE = np.array([0.5, 0.2])
 

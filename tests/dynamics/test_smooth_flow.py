@@ -25,8 +25,8 @@ from dynamics import (
     period_map,
     trajectory,
 )
+from dynamics.branches.sensitivity import map_derivatives
 from dynamics.kernels.stepwise import tableau
-from dynamics.sensitivity import map_derivatives
 
 SERIES = FourierStiffness(1.0, (0.3, 0.1), (0.4, -1.1))
 

@@ -20,12 +20,12 @@ from dynamics import (
     Surface,
     TabulatedContact,
 )
-from dynamics.arclength import follow
-from dynamics.branch import MEETS
-from dynamics.branch_problem import MapPoint, Steps
-from dynamics.flow import turning_points
-from dynamics.sensitivity import map_derivatives
-from dynamics.stepwise.problem import PeriodMap
+from dynamics.branches.arclength import follow
+from dynamics.branches.branch import MEETS
+from dynamics.branches.branch_problem import MapPoint, Steps
+from dynamics.branches.sensitivity import map_derivatives
+from dynamics.branches.stepwise_problem import PeriodMap
+from dynamics.flow.flow import turning_points
 
 KAPPA = FourierStiffness(1.0, (0.18,), (0.0,))
 

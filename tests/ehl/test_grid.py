@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ehl.discrete import make_grid
-from ehl.grid import default_domain, face_weights, graded_nodes, hat_weights
+from ehl.discrete.discrete import make_grid
+from ehl.discrete.grid import default_domain, face_weights, graded_nodes, hat_weights
 
 
 @given(st.floats(1e-7, 1e12), st.integers(16, 140))

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from ehl.meniscus import MeniscusSearch
+from ehl.solving.meniscus import MeniscusSearch
 
 ROOT = math.log(3e-5)
 MOST = 40

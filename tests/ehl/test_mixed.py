@@ -8,13 +8,13 @@ from scipy.integrate import quad
 
 from base import InputError, RangeWarning
 from ehl import LineContact, Lubricant, Meniscus, OilLayer, Roughness, solve, solve_mixed
-from ehl.asperities import height_integral, plane_distance
-from ehl.levels import figures
-from ehl.load_share import central_asperity_pressure, odds_of
-from ehl.options import Options
-from ehl.regressions import moes_central
-from ehl.response import by_share
-from ehl.solver import solve_checked
+from ehl.discrete.asperities import height_integral, plane_distance
+from ehl.discrete.regressions import moes_central
+from ehl.films.solver import solve_checked
+from ehl.solving.levels import figures
+from ehl.solving.load_share import central_asperity_pressure, odds_of
+from ehl.solving.options import Options
+from ehl.solving.response import by_share
 from tests.validation.article import PITCH
 
 STIFF = Roughness(2e-7, 2.5e10, 1e-5, "greenwood-williamson")
@@ -314,8 +314,8 @@ def test_trials_warn_of_no_films_that_nothing_shows(monkeypatch):
         trials.append(moes_central(eased) / eased.radius)
         return solve_checked(eased, *arguments)
 
-    monkeypatch.setattr("ehl.mixed.solve_checked", noted)
-    monkeypatch.setattr("ehl.mixed._Search.likely_odds", lambda self, near: odds_of(1 - 2e-6))
+    monkeypatch.setattr("ehl.films.mixed.solve_checked", noted)
+    monkeypatch.setattr("ehl.films.mixed._Search.likely_odds", lambda self, near: odds_of(1 - 2e-6))
     with warnings.catch_warnings():
         warnings.simplefilter("error", RangeWarning)
         found = solve_mixed(contact, STIFF, tolerance=0.05, start=start)

@@ -12,7 +12,7 @@ import pytest
 
 from base import InputError, RangeWarning
 from ehl import LineContact, Lubricant, OilLayer, Roughness, solve_mixed, solve_mixed_thermal, solve_thermal
-from ehl.load_share import central_asperity_pressure
+from ehl.solving.load_share import central_asperity_pressure
 
 OIL = Lubricant(0.02, 17e-9, 860.0, temperature=363.15, eyring_stress=5e6)
 SLIDING = LineContact(2e5, 2.5, 6e-3, 2.26e11, OIL, sliding=1.0)

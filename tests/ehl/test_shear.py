@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy import special
 
-from ehl.across import lobatto
-from ehl.bodies import Solid, surface_heating
-from ehl.heat_kernels import heat_across
-from ehl.shear_kernels import eyring, flow_across, gradient
+from ehl.discrete.across import lobatto
+from ehl.discrete.bodies import Solid, surface_heating
+from ehl.kernels.heat_kernels import heat_across
+from ehl.kernels.shear_kernels import eyring, flow_across, gradient
 
 ZETA, WEIGHTS, DERIVE, STIFFNESS, SUM_UP = lobatto()
 FLAT = np.full(ZETA.size, 3.0)

@@ -6,7 +6,7 @@ import pytest
 
 from base import InputError
 from ehl import LineContact, solve
-from ehl.grid import graded_nodes
+from ehl.discrete.grid import graded_nodes
 from tests.ehl.films import quiet
 from tests.validation.article import PITCH
 

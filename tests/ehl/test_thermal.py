@@ -8,7 +8,7 @@ import pytest
 
 from base import InputError, RangeWarning
 from ehl import STEEL, LineContact, Lubricant, Solid, solve, solve_thermal
-from ehl.thermal_search import Search
+from ehl.films.thermal_search import Search
 from tests.ehl.films import sound
 from tests.hard.random_contacts import refused
 

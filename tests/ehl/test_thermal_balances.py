@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ehl import Solid, ThermalFilm, solve_thermal
-from ehl.heat_kernels import compression_response
+from ehl.kernels.heat_kernels import compression_response
 from tests.ehl.test_thermal import OIL, SLIDING
 
 pytestmark = pytest.mark.filterwarnings("ignore:Hertz pressure", "ignore:mean shear stress")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fem
-from fem.flamant import hertz_indentation
+from fem.elasticity.flamant import hertz_indentation
 
 
 @pytest.fixture(scope="session")

@@ -12,19 +12,19 @@ from scipy.sparse.linalg import spsolve
 
 import fem
 from base import InputError
-from fem.back_compliance import back_compliance
-from fem.clear_flanks import stays_clear
-from fem.edge_tables import EdgeTables
-from fem.elasticity import PlaneElasticity, stiffness_matrix
-from fem.flank_samples import sample_places
-from fem.line_load import flank_points, line_loads
-from fem.loaded_flanks import loaded_flanks
-from fem.opposite_flanks import both_sides, share_with_opposite
-from fem.ring import ring_of
-from fem.setting import Setting
-from fem.sharing import one_sided, solve
+from fem.contact.clear_flanks import stays_clear
+from fem.contact.loaded_flanks import loaded_flanks
+from fem.contact.opposite_flanks import both_sides, share_with_opposite
+from fem.contact.sharing import one_sided, solve
+from fem.elasticity.elasticity import PlaneElasticity, stiffness_matrix
+from fem.elasticity.flank_samples import sample_places
+from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.ring import ring_of
+from fem.influence.back_compliance import back_compliance
+from fem.laws.edge_tables import EdgeTables
+from fem.laws.setting import Setting
 from gears import Alignment, Gear, GearDeviations, GearPair, PitchDeviations, TipRelief
-from gears.plane import turned
+from gears.tooth.plane import turned
 from meshes import gear_mesh, mesh_sector
 
 

@@ -9,8 +9,8 @@ import pytest
 
 import fem
 from base import InputError
-from fem.cut_off import FAR, cut_off
-from fem.tip_geometry import unloaded_gap
+from fem.laws.cut_off import FAR, cut_off
+from fem.laws.tip_geometry import unloaded_gap
 from gears import Gear, GearPair, TipRelief
 
 

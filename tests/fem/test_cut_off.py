@@ -9,14 +9,14 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import fem
-from fem.cut_off import FADE, FAR, cut_off
-from fem.elasticity import PlaneElasticity
-from fem.flamant import hertz_half_width, hertz_indentation
-from fem.setting import Setting
-from fem.sharing import solve
-from fem.strip_contact import flat_kernel, from_the_corner, smoothed
-from fem.tip_geometry import lever_ratio, opening, unloaded_gap
-from fem.tip_strips import sharp_layout
+from fem.contact.sharing import solve
+from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.flamant import hertz_half_width, hertz_indentation
+from fem.influence.strip_contact import flat_kernel, from_the_corner, smoothed
+from fem.influence.tip_strips import sharp_layout
+from fem.laws.cut_off import FADE, FAR, cut_off
+from fem.laws.setting import Setting
+from fem.laws.tip_geometry import lever_ratio, opening, unloaded_gap
 from gears import Gear, GearPair, Material
 
 LAW = PlaneElasticity("strain", 206e9, 0.3)
@@ -84,7 +84,7 @@ def test_nothing_steps_with_a_plastic_wheel(plastic):
 
 
 def test_without_the_strips_inside_it_would_step(article_pair, article_bodies, monkeypatch):
-    monkeypatch.setattr(sys.modules["fem.loaded_flanks"], "cut_offs", lambda *_: ())
+    monkeypatch.setattr(sys.modules["fem.contact.loaded_flanks"], "cut_offs", lambda *_: ())
     approach, _, _ = solved(article_pair, article_bodies, 600.0, [-1e-6, 1e-6])
     assert abs(approach[1] / approach[0] - 1) > 4 * STEP
 
@@ -103,7 +103,7 @@ def test_curves_are_smooth_where_the_flanks_law_takes_over(article_pair, article
 
 def test_the_cycle_moves_little(article_pair, article_bodies, monkeypatch):
     with_strips = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
-    monkeypatch.setattr(sys.modules["fem.loaded_flanks"], "cut_offs", lambda *_: ())
+    monkeypatch.setattr(sys.modules["fem.contact.loaded_flanks"], "cut_offs", lambda *_: ())
     without = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
     for name in ("stiffness", "secant_stiffness"):
         mean, before = getattr(with_strips, name).mean(), getattr(without, name).mean()

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import fem
-from fem.line_load import flank_points, line_loads
-from fem.ring import mesh_and_factor
+from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.ring import mesh_and_factor
 from gears import Gear, GearPair, Material
 from meshes import Sizes
 

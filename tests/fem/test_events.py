@@ -10,7 +10,7 @@ import pytest
 import fem
 from base import SolverError
 from gears import Gear, GearDeviations, GearPair, Material, PitchDeviations, TipRelief
-from gears.mesh_figures import CURVES
+from gears.sharing.mesh_figures import CURVES
 
 MANY = 1600
 
@@ -110,7 +110,7 @@ def test_events_are_where_the_active_set_changes(article_pair, article_bodies):
         at = division.events.position[here]
         assert cycle.position[row] < at < cycle.position[row + 1]
         # a hair before and after, the force is there on one side only
-        both = fem.sharing.solve(
+        both = fem.contact.sharing.solve(
             cycle.problem.given.at(np.array([at - 1e-7, at + 1e-7])),
             article_bodies,
             np.array([cycle.force]),
@@ -206,7 +206,7 @@ def test_third_order_energies_wait_until_they_are_asked_for(article_pair):
 
 def test_laws_of_tip_edges_are_computed_once(article_pair, article_bodies, monkeypatch):
     """For each place within a base pitch, whatever the pitch and the torque, on both meshes of an estimate."""
-    from fem import edge_tables
+    from fem.laws import edge_tables
 
     asked, laws = [], edge_tables.edge_laws
 

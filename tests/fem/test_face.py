@@ -9,10 +9,10 @@ import pytest
 
 from base import InputError
 from fem import Compliance, compliance, mesh_cycle
-from fem.cell_matrix import cell_matrix
-from fem.face_compliance import pair_ends, pair_waves
-from fem.face_setting import FaceSetting
-from fem.gear_face import FlankWaves
+from fem.contact.cell_matrix import cell_matrix
+from fem.influence.gear_face import FlankWaves
+from fem.pair.face_compliance import pair_ends, pair_waves
+from fem.pair.face_setting import FaceSetting
 from gears import Alignment, Gear, GearPair, Lead, LeadTrace
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)

@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem import Compliance, compliance, face_share, mesh_cycle
-from fem.face_errors import LEFT, cell_errors, greatest_error, half_as_many
-from fem.face_setting import FREE_ENDS, WALLS, FaceSetting
+from fem import Compliance, compliance, mesh_cycle
+from fem.contact import face_share
+from fem.contact.face_errors import LEFT, cell_errors, greatest_error, half_as_many
+from fem.pair.face_setting import FREE_ENDS, WALLS, FaceSetting
 from gears import Alignment, Gear, GearPair, Lead
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)

@@ -11,13 +11,13 @@ from scipy.spatial import cKDTree
 
 from base import InputError
 from fem import Compliance, MeshCycle, compliance, field_blocks, mesh_cycle
-from fem.face_ends import end_fields
-from fem.face_fields import face_fields
-from fem.face_waves import gear_prisms, on_flank
-from fem.fields import draw_gears, loaded_fields
-from fem.flank_samples import sample_places
-from fem.gear_face import END_PLACES, ENDS_SIZES, flank_ends, section_of
-from fem.vtk import write_vtk_series
+from fem.elasticity.flank_samples import sample_places
+from fem.fields.face_fields import face_fields
+from fem.fields.face_waves import gear_prisms, on_flank
+from fem.fields.fields import draw_gears, loaded_fields
+from fem.fields.vtk import write_vtk_series
+from fem.influence.face_ends import end_fields
+from fem.influence.gear_face import END_PLACES, ENDS_SIZES, flank_ends, section_of
 from gears import Alignment, Gear, GearPair
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
@@ -107,7 +107,7 @@ def test_an_even_load_moves_the_solid_as_in_the_plane(bodies, prisms):
 )
 def test_free_ends_move_the_solid_as_they_move_the_contact(bodies, monkeypatch, width, cells):
     """What they add along the normal at the loaded line is, on the same section, the contact's own compliance."""
-    monkeypatch.setattr("fem.face_ends.PLACES", END_PLACES)
+    monkeypatch.setattr("fem.influence.face_ends.PLACES", END_PLACES)
     meshed = bodies.meshed[0]
     edges = np.linspace(-0.5, 0.5, cells + 1) * width
     middles = 0.5 * (edges[1:] + edges[:-1])

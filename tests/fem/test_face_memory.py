@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import base.memory
-import fem.face_memory
+import fem.pair.face_memory
 from base import InputError, free_memory
 from fem import compliance, mesh_cycle
-from fem.face_memory import memory_of_cells, memory_of_ends
-from fem.free_ends import half_face, unknowns_along
+from fem.elasticity.free_ends import half_face, unknowns_along
+from fem.pair.face_memory import memory_of_cells, memory_of_ends
 from gears import Alignment, Gear, GearPair
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3)
@@ -20,7 +20,7 @@ PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3)
 
 def test_a_remedy_is_named_that_fits(monkeypatch):
     bodies = compliance(PAIR, tolerance=0.05)
-    monkeypatch.setattr(fem.face_memory, "free_memory", lambda: 0.6e9)
+    monkeypatch.setattr(fem.pair.face_memory, "free_memory", lambda: 0.6e9)
     asked = {"positions": 40, "compliance": bodies, "alignment": Alignment(20e-6), "face_model": "walls"}
     with pytest.raises(
         InputError, match=r"cells = 512: must not take more memory than is free, 0.6 GB"
@@ -37,7 +37,7 @@ def test_a_remedy_is_named_that_fits(monkeypatch):
 def test_free_ends_of_a_long_face_are_refused_between_walls_they_are_not(monkeypatch):
     long = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=40.0)
     bodies = compliance(long, tolerance=0.05)
-    monkeypatch.setattr(fem.face_memory, "free_memory", lambda: 2e9)
+    monkeypatch.setattr(fem.pair.face_memory, "free_memory", lambda: 2e9)
     with pytest.raises(InputError, match=r"face_model = 'free-ends'.*2e\+04 modules"):
         mesh_cycle(long, 1e5, 4, bodies, cells=8)
     assert mesh_cycle(long, 1e5, 4, bodies, cells=8, face_model="walls").converged
@@ -61,8 +61,8 @@ def test_positions_put_together_in_parts_are_those_of_all(monkeypatch):
         "face_model": "walls",
     }
     whole = mesh_cycle(PAIR, 100.0, **given)
-    monkeypatch.setattr("fem.cell_matrix.MOST_AT_ONCE", 3000)
-    monkeypatch.setattr("fem.cell_matrix.MOST_KEPT", 0)
+    monkeypatch.setattr("fem.contact.cell_matrix.MOST_AT_ONCE", 3000)
+    monkeypatch.setattr("fem.contact.cell_matrix.MOST_KEPT", 0)
     np.testing.assert_allclose(mesh_cycle(PAIR, 100.0, **given).line_load, whole.line_load, rtol=1e-10)
 
 

@@ -11,19 +11,19 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 import fem
-from fem.elasticity import PlaneElasticity, physical_gradients
-from fem.face_fillets import face_fillets, over_face
-from fem.face_setting import FaceSetting
-from fem.fillet_strain import fillet_strains, von_mises
-from fem.fillet_waves import _stress, solid_of
-from fem.gear_face import between_waves, solved_waves
-from fem.line_load import flank_points
-from fem.pair_fillets import fillets
-from fem.prism import Face, prism, section
-from fem.root_peaks import LOADED, OTHER
-from fem.solved_gear import Gears
-from fem.stress_over_face import CellLoads, StressOverFace
-from fem.tooth_root import root_stress
+from fem.elasticity.elasticity import PlaneElasticity, physical_gradients
+from fem.elasticity.fillet_strain import fillet_strains, von_mises
+from fem.elasticity.line_load import flank_points
+from fem.elasticity.prism import Face, prism, section
+from fem.influence.fillet_waves import _stress, solid_of
+from fem.influence.gear_face import between_waves, solved_waves
+from fem.influence.solved_gear import Gears
+from fem.pair.face_setting import FaceSetting
+from fem.pair.pair_fillets import fillets
+from fem.stress.face_fillets import face_fillets, over_face
+from fem.stress.root_peaks import LOADED, OTHER
+from fem.stress.stress_over_face import CellLoads, StressOverFace
+from fem.stress.tooth_root import root_stress
 from gears import Alignment, Gear, GearPair, Lead
 from meshes.triangle import shape
 
@@ -261,7 +261,7 @@ def test_a_wide_gear_is_stressed_beyond_the_face_in_contact(bodies, roots):
 
 
 def test_free_ends_are_those_of_each_gear_and_its_own_face(roots, monkeypatch):
-    module = importlib.import_module("fem.face_fillets")
+    module = importlib.import_module("fem.stress.face_fillets")
     monkeypatch.setattr(module, "_ends", lambda loaded, width, gears: (loaded.shape, width))
     pair = replace(PAIR, wheel=replace(PAIR.wheel, face_width=PAIR.face_width + 3e-3))
     ends = face_fillets(roots, pair).ends

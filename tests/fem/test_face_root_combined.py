@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fem
-from fem.face_fillets import face_fillets, over_face
+from fem.stress.face_fillets import face_fillets, over_face
 from gears import Alignment, Bearing, Gear, GearPair, Material, Shaft, ShaftSegment
 
 STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)

@@ -9,15 +9,15 @@ import pytest
 
 from base import InputError
 from fem import Compliance, MeshCycle, compliance, mesh_cycle
-from fem.cell_laws import CellLaws
-from fem.cell_matrix import cell_coupling
-from fem.edge_tables import EdgeTables
-from fem.face_setting import face_setting
-from fem.loaded_flanks import loaded_flanks
-from fem.setting import Setting
-from fem.sharing import solve
+from fem.contact.cell_laws import CellLaws
+from fem.contact.cell_matrix import cell_coupling
+from fem.contact.loaded_flanks import loaded_flanks
+from fem.contact.sharing import solve
+from fem.laws.edge_tables import EdgeTables
+from fem.laws.setting import Setting
+from fem.pair.face_setting import face_setting
 from gears import Alignment, Bearing, Gear, GearPair, Material, Shaft, ShaftSegment
-from gears.shaft_face import shaft_over_face
+from gears.pair.shaft_face import shaft_over_face
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
 TORQUE = 100.0

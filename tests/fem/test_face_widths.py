@@ -9,8 +9,8 @@ import pytest
 
 from base import InputError
 from fem import Compliance, compliance, mesh_cycle
-from fem.cell_matrix import cell_matrix
-from fem.face_setting import FaceSetting
+from fem.contact.cell_matrix import cell_matrix
+from fem.pair.face_setting import FaceSetting
 from gears import Alignment, Bearing, Gear, GearPair, Heat, Lead, Shaft, ShaftSegment, warm_pair
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)

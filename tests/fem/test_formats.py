@@ -6,11 +6,11 @@ import meshio
 import numpy as np
 import pytest
 
-import fem.elasticity
+import fem.elasticity.elasticity
 from base import InputError
-from fem.export import FORMATS as ALL
-from fem.export import write_mesh
-from fem.loaded_gears import LoadedGear, placed_gears
+from fem.fields.export import FORMATS as ALL
+from fem.fields.export import write_mesh
+from fem.fields.loaded_gears import LoadedGear, placed_gears
 from meshes import gear_mesh, mesh_sector
 from meshes.annulus import GearMesh
 from meshes.exchange import FORMATS
@@ -27,7 +27,7 @@ def some_teeth(article_pair) -> GearMesh:
 def gear(some_teeth) -> LoadedGear:
     forces = np.zeros_like(some_teeth.points)
     forces[7] = 3.0, -4.0
-    law = fem.elasticity.PlaneElasticity("strain", 2e11, 0.3)
+    law = fem.elasticity.elasticity.PlaneElasticity("strain", 2e11, 0.3)
     return LoadedGear("pinion", some_teeth, np.zeros(2), law, 0.04, forces)
 
 

@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 
 import fem
-from fem.cell_matrix import cell_coupling
-from fem.edge_tables import EdgeTables
-from fem.face_setting import face_setting
-from fem.gear_face import ENDS_SIZES, section_of
-from fem.line_load import flank_points
-from fem.loaded_flanks import loaded_flanks
-from fem.moving_contact import contact_moves, moving_pairs
-from fem.moving_corners import moved_flanks
-from fem.moving_coupling import other_pairs, tooth_smoothing
-from fem.moving_face import moving_cells
-from fem.overhang import cosines
-from fem.prism import Face, prism
-from fem.setting import Setting
+from fem.contact.cell_matrix import cell_coupling
+from fem.contact.loaded_flanks import loaded_flanks
+from fem.contact.moving_contact import contact_moves, moving_pairs
+from fem.contact.moving_corners import moved_flanks
+from fem.contact.moving_coupling import other_pairs, tooth_smoothing
+from fem.contact.moving_face import moving_cells
+from fem.elasticity.line_load import flank_points
+from fem.elasticity.prism import Face, prism
+from fem.influence.gear_face import ENDS_SIZES, section_of
+from fem.laws.edge_tables import EdgeTables
+from fem.laws.setting import Setting
+from fem.pair.face_setting import face_setting
+from fem.pair.overhang import cosines
 from gears import Alignment, Bearing, Gear, GearPair, Lead, Material, Shaft, ShaftSegment
 
 STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
@@ -228,7 +228,7 @@ def test_flanks_move_along_themselves_as_they_tilt(bodies):
         along = motion.tangential(place * PLASTIC.module) * unit
         follows = 1.0 + (waved - still) / along
         step = 1e-3
-        waves = fem.face_compliance.waves_of(meshed, fem.solved_gear.Gears())
+        waves = fem.pair.face_compliance.waves_of(meshed, fem.influence.solved_gear.Gears())
         slope = flexible.own_slope(place * PLASTIC.module) * unit * PLASTIC.module
         ahead, behind = (waves.own_at(place + by, np.array([0.5]))[:, 0] for by in (step, -step))
         np.testing.assert_allclose(follows, 1.0 + (ahead - behind) / (2 * step) / slope, atol=off)

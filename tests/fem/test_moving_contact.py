@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 import fem
-from fem import flamant, third_order
-from fem.contact_candidates import contact_candidates
-from fem.elasticity import PlaneElasticity
-from fem.flank_motion import flank_motion
-from fem.local_law import PairLaws
-from fem.moving_contact import contact_moves, contacts_move, model_error, moved_share, moving_pairs
-from fem.ring import ring_of
-from fem.setting import Setting
-from fem.third_order import densities, half_plane, hertz_rotation
+from fem.contact.moving_contact import contact_moves, contacts_move, model_error, moved_share, moving_pairs
+from fem.elasticity import flamant, third_order
+from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.ring import ring_of
+from fem.elasticity.third_order import densities, half_plane, hertz_rotation
+from fem.influence.flank_motion import flank_motion
+from fem.laws.contact_candidates import contact_candidates
+from fem.laws.local_law import PairLaws
+from fem.laws.setting import Setting
 from gears import Gear, GearPair, Material, share_load
 from meshes import Sizes, mesh_sector
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 import fem
-from fem.cut_off import cut_off
-from fem.edge_tables import EdgeTables
-from fem.local_law import Table
-from fem.place_surface import up_to
-from fem.setting import Setting
-from fem.sharing import solve
-from fem.tip_contact import edge_laws
-from fem.tip_geometry import lever_ratio
+from fem.contact.sharing import solve
+from fem.laws.cut_off import cut_off
+from fem.laws.edge_tables import EdgeTables
+from fem.laws.local_law import Table
+from fem.laws.place_surface import up_to
+from fem.laws.setting import Setting
+from fem.laws.tip_contact import edge_laws
+from fem.laws.tip_geometry import lever_ratio
 from gears import Gear, GearPair, Material
 
 STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
@@ -158,7 +158,7 @@ def test_the_lever_of_an_edge_is_in_its_gap(plastic):
     z = np.linspace(0.05, 0.3, 5) * pair.module
     gap = [tables.surfaces[0].gap(z + s) for s in (-1e-7, 1e-7)]
     place = pair.points.E + z
-    _, where = fem.tip_geometry.unloaded_gap(
+    _, where = fem.laws.tip_geometry.unloaded_gap(
         pair.base_radii[::-1], pair.line_of_action, pair.line_of_action - place, np.array([pair.points.E])
     )
     np.testing.assert_allclose(

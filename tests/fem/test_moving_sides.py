@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import fem
-from fem.clear_flanks import ROLLED
-from fem.contact_candidates import REACHES
-from fem.edge_tables import EdgeTables
-from fem.loaded_flanks import loaded_flanks
-from fem.moving_sides import moved_side, moving_sides
-from fem.setting import Setting
-from fem.sharing import solve
+from fem.contact.clear_flanks import ROLLED
+from fem.contact.loaded_flanks import loaded_flanks
+from fem.contact.moving_sides import moved_side, moving_sides
+from fem.contact.sharing import solve
+from fem.laws.contact_candidates import REACHES
+from fem.laws.edge_tables import EdgeTables
+from fem.laws.setting import Setting
 from gears import Gear, GearPair, Material
 
 STEEL, POM = Material(206e9, 0.3, 7850.0), Material(2.8e9, 0.36, 1410.0)

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import fem
-from fem.contact_candidates import REACHES
-from fem.edge_tables import EdgeTables
-from fem.loaded_flanks import loaded_flanks
-from fem.opposite_flanks import both_sides
-from fem.setting import Setting
+from fem.contact.loaded_flanks import loaded_flanks
+from fem.contact.opposite_flanks import both_sides
+from fem.laws.contact_candidates import REACHES
+from fem.laws.edge_tables import EdgeTables
+from fem.laws.setting import Setting
 from gears import Gear, GearPair
 
 FORCE = 1e4
@@ -43,7 +43,7 @@ def energy_over_loads(pair: GearPair, reach: float) -> np.ndarray:
     return np.array(smallest)
 
 
-@pytest.mark.filterwarnings("ignore::gears.errors.GeometryWarning")
+@pytest.mark.filterwarnings("ignore::gears.tooth.errors.GeometryWarning")
 @pytest.mark.parametrize("seed", range(6))
 def test_no_loads_on_both_sides_gain_energy(seed):
     """Weak hubs turn by far more than the teeth bend, by all contacts, tip edges too, in the same proportion."""

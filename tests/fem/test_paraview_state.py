@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 import fem
-from fem.fields import loaded_fields
-from fem.paraview_state import STATE, fillet_stress
-from fem.vtk import write_vtk_series
+from fem.fields.fields import loaded_fields
+from fem.fields.paraview_state import STATE, fillet_stress
+from fem.fields.vtk import write_vtk_series
 
 ROWS = [5, 20, 38]
 

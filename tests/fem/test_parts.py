@@ -9,7 +9,7 @@ import pytest
 
 import fem
 from base import InputError
-from fem.support import Support
+from fem.elasticity.support import Support
 from gears import BasicRack, Gear, GearPair, Material
 
 STEEL, BRONZE = Material(206e9, 0.3, 7850.0), Material(110e9, 0.34, 8800.0)

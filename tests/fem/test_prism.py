@@ -9,9 +9,9 @@ import pytest
 from numpy.polynomial import legendre
 
 from base import Array
-from fem.elasticity import PlaneElasticity, physical_gradients
-from fem.line_load import FlankPoints, flank_points
-from fem.prism import Face, Section, prism, section
+from fem.elasticity.elasticity import PlaneElasticity, physical_gradients
+from fem.elasticity.line_load import FlankPoints, flank_points
+from fem.elasticity.prism import Face, Section, prism, section
 from gears import Gear, GearPair
 from meshes import SectorMesh, Sizes, mesh_sector
 from meshes.sector import refined

@@ -9,8 +9,8 @@ import pytest
 
 import fem
 from base import InputError
-from fem.references import turns
-from fem.support import Support
+from fem.elasticity.support import Support
+from fem.pair.references import turns
 from gears import Gear, GearPair, Material, share_load
 from gears.closed_form import inertial_share
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem.relieved_flanks import SPAN, ends_of_flanks, gentle, touch
-from fem.setting import Setting
-from fem.sharing import solve
-from fem.tip_geometry import gap_at, lever_ratio
+from fem.contact.sharing import solve
+from fem.laws.relieved_flanks import SPAN, ends_of_flanks, gentle, touch
+from fem.laws.setting import Setting
+from fem.laws.tip_geometry import gap_at, lever_ratio
 from gears import Gear, GearPair, TipRelief
 
 STEP = 5e-4

@@ -8,14 +8,14 @@ from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
 from base import InputError
-from fem.chain import ring_of_links
-from fem.edge_work import edge_points
-from fem.elasticity import PlaneElasticity, stiffness_matrix
-from fem.flamant import hertz_indentation
-from fem.line_load import flank_points, line_loads
-from fem.ring import ring_of
+from fem.elasticity.chain import ring_of_links
+from fem.elasticity.edge_work import edge_points
+from fem.elasticity.elasticity import PlaneElasticity, stiffness_matrix
+from fem.elasticity.flamant import hertz_indentation
+from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.ring import ring_of
 from gears import Blank, Gear, GearPair
-from gears.plane import turned
+from gears.tooth.plane import turned
 from meshes import Sizes, gear_mesh, mesh_sector
 
 LAW = PlaneElasticity("strain", 206e9, 0.3)

@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fem.root_peaks import LOADED, OTHER, RootNodes
-from gears.arcs import Arc, Arcs
+from fem.stress.root_peaks import LOADED, OTHER, RootNodes
+from gears.sharing.arcs import Arc, Arcs
 
 LINE = SimpleNamespace(arc=np.linspace(0.0, 1e-3, 81))
 CORNER = 0.35

@@ -11,13 +11,13 @@ from scipy.sparse.linalg import spsolve
 
 import fem
 from base import InputError
-from fem.elasticity import PlaneElasticity, stiffness_matrix
-from fem.fillet import GAUSS, edge_strain_matrix, fillet_line, fillet_stress_matrix, local_cubic
-from fem.fillet_influence import fillet_influence
-from fem.line_load import flank_points
-from fem.pair_fillets import fillets
-from fem.ring import ring_of
-from fem.tooth_root import root_stress
+from fem.elasticity.elasticity import PlaneElasticity, stiffness_matrix
+from fem.elasticity.fillet import GAUSS, edge_strain_matrix, fillet_line, fillet_stress_matrix, local_cubic
+from fem.elasticity.line_load import flank_points
+from fem.elasticity.ring import ring_of
+from fem.influence.fillet_influence import fillet_influence
+from fem.pair.pair_fillets import fillets
+from fem.stress.tooth_root import root_stress
 from gears import BasicRack, Gear, GearPair, closed_form
 from meshes import Sizes, gear_mesh, mesh_sector
 from tests.fem.conftest import edge_load, quadratic_ring

@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 
 import fem
-from fem.elasticity import PlaneElasticity
-from fem.fillet_influence import fillet_influence
-from fem.flank_samples import sample_places, sampled
-from fem.gear_compliance import gear_compliance
-from fem.gear_shape import MeshedShape, shapes
-from fem.memo import Memo
-from fem.ring import mesh_and_factor, ring_of
-from fem.solved_gear import MOST_RECORDS, Gears
-from fem.support import FIXED, Support, held_profiles
-from fem.tip_strips import tip_strips
+from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.flank_samples import sample_places, sampled
+from fem.elasticity.ring import mesh_and_factor, ring_of
+from fem.elasticity.support import FIXED, Support, held_profiles
+from fem.influence.fillet_influence import fillet_influence
+from fem.influence.gear_compliance import gear_compliance
+from fem.influence.gear_shape import MeshedShape, shapes
+from fem.influence.memo import Memo
+from fem.influence.solved_gear import MOST_RECORDS, Gears
+from fem.influence.tip_strips import tip_strips
 from gears import BasicRack, Blank, Gear, GearPair, Lead, Material, TipRelief
 from meshes import Sizes, mesh_sector
 

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import fem
-from fem.elasticity import PlaneElasticity
-from fem.line_load import flank_points
-from fem.local_law import Table
-from fem.ring import mesh_and_factor, ring_of
-from fem.strip_contact import flat_kernel, flat_kernels, from_the_corner, from_the_nearest
-from fem.tip_contact import edge_laws
-from fem.tip_geometry import lever_ratio, opening, unloaded_gap
-from fem.tip_strips import tip_strips
-from gears.plane import mirrored, turned
+from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.line_load import flank_points
+from fem.elasticity.ring import mesh_and_factor, ring_of
+from fem.influence.strip_contact import flat_kernel, flat_kernels, from_the_corner, from_the_nearest
+from fem.influence.tip_strips import tip_strips
+from fem.laws.local_law import Table
+from fem.laws.tip_contact import edge_laws
+from fem.laws.tip_geometry import lever_ratio, opening, unloaded_gap
+from gears.tooth.plane import mirrored, turned
 from meshes import Sizes, mesh_sector
 from tests.fem.test_ring import whole_annulus
 
@@ -229,7 +229,7 @@ def test_at_A_the_law_meets_hertz(article_pair, article_bodies):
 def test_finer_strips_change_little(article_pair, article_bodies, monkeypatch):
     import sys
 
-    tip = sys.modules["fem.tip_strips"]
+    tip = sys.modules["fem.influence.tip_strips"]
     rings = mesh_and_factor(article_pair, "strain", Sizes(), 1)
     place = np.array([article_pair.points.C - article_pair.base_pitch])
     approach = []

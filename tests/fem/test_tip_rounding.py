@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import fem
-from fem.local_law import Table
-from fem.tip_contact import edge_laws, nearest_gap
-from fem.tip_geometry import chamfer_gap, corner_angle, tip_round, unloaded_gap
-from fem.wedge import corner_logarithm
+from fem.elasticity.wedge import corner_logarithm
+from fem.laws.local_law import Table
+from fem.laws.tip_contact import edge_laws, nearest_gap
+from fem.laws.tip_geometry import chamfer_gap, corner_angle, tip_round, unloaded_gap
 from gears import Gear, GearPair
 from meshes import Sizes, mesh_sector
 
@@ -70,7 +70,7 @@ def test_a_small_contact_on_the_arc_is_hertz(article_pair, article_bodies):
     flank = (law.where[0] - place[0]) / article_pair.base_radii[0]
     distance = one.start - radius * (flank - turn)
     strips = article_bodies.tips[1]
-    from fem.strip_contact import flat_kernel
+    from fem.influence.strip_contact import flat_kernel
 
     angle = np.full((1, len(strips.rho)), flank - turn)
     leaning = strips.leaning(angle)[0] - strips.hub_windup * strips.lever(angle[0]) ** 2

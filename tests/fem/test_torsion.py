@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import fem
-from fem.breakdown import deflection_parts
-from fem.references import turns
-from fem.support import FIXED
-from fem.torsion import _added, step_wind_up
+from fem.cycle.breakdown import deflection_parts
+from fem.elasticity.support import FIXED
+from fem.elasticity.torsion import _added, step_wind_up
+from fem.pair.references import turns
 from gears import Blank, Gear, GearPair
-from gears.blank import Zone
+from gears.tooth.blank import Zone
 
 WIDTH, G = 0.02, 206e9 / 2.6
 

@@ -9,7 +9,7 @@ import pytest
 from scipy.special import k0
 
 from fem import Compliance, compliance, mesh_cycle
-from fem.wide_contact import beyond_logarithm
+from fem.pair.wide_contact import beyond_logarithm
 from gears import Alignment, Gear, GearPair, Lead
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)

@@ -209,7 +209,7 @@ def test_a_fit_that_a_record_has_cached_does_not_keep_it_from_being_kept():
 
 
 def test_a_record_without_fields_comes_back():
-    from ehl.rheology import DowsonHigginson
+    from ehl.oil.rheology import DowsonHigginson
 
     assert read(written({"law": DowsonHigginson()}, PACKAGES), PACKAGES) == {"law": DowsonHigginson()}
 

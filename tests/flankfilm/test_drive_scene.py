@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import dynamics
-import dynamics.run_ups
+import dynamics.motion.run_ups
 import fem
 from base import InputError
 from flankfilm import figures
@@ -70,7 +70,7 @@ def test_a_rigid_train_moves_as_the_pair_does(monkeypatch):
     The run-up too, where the train changes its frequency as often as the pair does; sweeps leave 1e-6 of a motion,
     and of its swing more.
     """
-    monkeypatch.setattr(dynamics.run_ups, "HELD", 1)
+    monkeypatch.setattr(dynamics.motion.run_ups, "HELD", 1)
     extra = MOVING.replace('"sweep"', ", ".join(f'"{want}"' for want in EVERY)).replace(
         "[dynamics]", "[dynamics]\nextra_inertia_kg_m2 = { pinion = 0.002, wheel = 0.003 }"
     )

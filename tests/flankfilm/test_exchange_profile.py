@@ -13,7 +13,7 @@ from flankfilm.cli import app
 from flankfilm.exchange.profile_files import write_drawing, write_points
 from flankfilm.guarded import guarded
 from gears import Gear, GearPair
-from gears.contour import contour
+from gears.tooth.contour import contour
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PROFILE = GearPair(

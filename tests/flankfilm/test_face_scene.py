@@ -95,7 +95,7 @@ def test_faults_of_keys_come_together_in_their_units():
 
 
 def test_a_face_that_takes_more_memory_than_is_free_is_refused_beforehand(monkeypatch):
-    monkeypatch.setattr("fem.face_memory.free_memory", lambda: 0.6e9)
+    monkeypatch.setattr("fem.pair.face_memory.free_memory", lambda: 0.6e9)
     found = faults(ALIGNED.replace("cells = 32", "cells = 512"))
     assert "more memory than is free, 0.6 GB: at 120 positions" in found["alignment.cells"]
     assert "Take 166 cells or free memory" in found["alignment.cells"]

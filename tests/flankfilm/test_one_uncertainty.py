@@ -16,7 +16,7 @@ import pytest
 import flankfilm as ff
 from base.results import figures
 from fem import FaceLoads, RootStress
-from fem.gear_root import GearRootStress
+from fem.stress.gear_root import GearRootStress
 from flankfilm.coupling import MeshCycle, MeshLosses, MeshSeries, PairOscillator
 from flankfilm.coupling.drive_sweep import DriveSweep
 from flankfilm.output.model_errors import MODEL_ERRORS

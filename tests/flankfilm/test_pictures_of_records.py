@@ -97,7 +97,7 @@ def test_a_mesh_cycle_shows_values_errors_and_the_curves_of_the_record():
 def test_one_without_a_picture_says_which_have_one():
     sizes = dimensions(PAIR)
     assert not has_picture(sizes)
-    with pytest.raises(InputError, match=r"has no picture. These have one: .*ehl\.film\.Film"):
+    with pytest.raises(InputError, match=r"has no picture. These have one: .*ehl\.films\.film\.Film"):
         sizes.plot()
     with pytest.raises(InputError, match=r"float\.plot"):
         plot(3.0)

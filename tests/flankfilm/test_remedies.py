@@ -421,9 +421,9 @@ def test_bounds_of_keys_are_accepted_as_they_are_printed(key, limit):
 
 
 ROOMS = (
-    "gears/guards.py",
-    "gears/blank.py",
-    "gears/heat.py",
+    "gears/pair/guards.py",
+    "gears/tooth/blank.py",
+    "gears/pair/heat.py",
     "flankfilm/beforehand.py",
     "flankfilm/build_face.py",
     "flankfilm/slow_motion.py",

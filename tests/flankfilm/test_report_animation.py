@@ -15,7 +15,7 @@ from PIL import Image
 
 import fem
 from base import InputError, SolverError
-from fem.vtk import write_vtk_series
+from fem.fields.vtk import write_vtk_series
 from flankfilm.cache import Cache
 from flankfilm.figures import Frame, animate_cycle, animation, tooth_picture
 from flankfilm.manifest import conclude

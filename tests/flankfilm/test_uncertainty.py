@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from base import quantity, record
-from ehl import regimes
+from ehl.discrete import regimes
 from flankfilm.coupling.extreme_errors import of_greatest, of_least
 from flankfilm.output.uncertainty import Uncertainty, met, uncertainty
 from flankfilm.output.variables import of_record, with_tolerance

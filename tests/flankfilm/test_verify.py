@@ -12,8 +12,8 @@ from flankfilm.scene import parse_scene, read_scene
 from flankfilm.verification.run import unknown_over_face, verify_scene
 from flankfilm.verification.tables import face_table, write_verification
 from gears import BasicRack, Gear, GearPair, closed_form
-from gears.events import Sampled, arcs_between_events
-from gears.mesh_figures import CURVES, MeshArcs
+from gears.sharing.events import Sampled, arcs_between_events
+from gears.sharing.mesh_figures import CURVES, MeshArcs
 from tests.flankfilm.program import EXAMPLES, flankfilm
 from tests.flankfilm.test_face_scene import SCENE
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from numpy.polynomial import chebyshev
 
-from gears.arc_series import lobatto
-from gears.arcs import Arc, Arcs, graded
-from gears.events import Sampled, arcs_alike, arcs_between_events
+from gears.sharing.arc_series import lobatto
+from gears.sharing.arcs import Arc, Arcs, graded
+from gears.sharing.events import Sampled, arcs_alike, arcs_between_events
 
 STEP, BACK, CUSP = 0.137, 0.62, 0.41
 NAMES = ("step", "cusp")

@@ -11,9 +11,9 @@ import pytest
 
 from base import RangeWarning
 from gears import STEEL, Blank, Gear, GearPair, GeometryError, closed_form
-from gears.blank import Zone
 from gears.closed_form.root_stress import rim_factor
 from gears.closed_form.tooth_stiffness import blank_factor
+from gears.tooth.blank import Zone
 
 M, WIDTH = 3e-3, 30e-3
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import minimize
 
 from gears import LoadSharingError
-from gears.both_flanks import share_between
+from gears.sharing.both_flanks import share_between
 
 
 class Nothing:

@@ -25,7 +25,7 @@ from gears import (
 )
 from gears.closed_form.loaded_tooth import loaded_teeth
 from gears.closed_form.trapezoid import dimensions
-from gears.hertz import depth_compliance
+from gears.pair.hertz import depth_compliance
 
 FORCE = 17736.3
 MODELS = {
@@ -76,7 +76,7 @@ def test_integrals_over_the_true_profile(gear):
     """The quadrature in the curves' parameters against one in the height, by the tooth's boundary."""
     pair = GearPair(Gear(60), Gear(61), 2e-3, 0.02)
     from gears.closed_form.loaded_tooth import LoadedTooth
-    from gears.profile import generate
+    from gears.tooth.profile import generate
 
     profile = generate(gear, 2e-3, BasicRack())
     assert profile is not None

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gears import BasicRack, Gear, GearPair, GeometryError, TipRelief
-from gears.contour import chords, contour
+from gears.tooth.contour import chords, contour
 
 PAIRS = {
     "plain": GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=0.04),

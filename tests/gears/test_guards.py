@@ -238,7 +238,7 @@ def test_error_pickles():
     assert pickle.loads(pickle.dumps(caught.value)).faults == caught.value.faults
 
 
-@pytest.mark.filterwarnings("ignore::gears.errors.GeometryWarning")
+@pytest.mark.filterwarnings("ignore::gears.tooth.errors.GeometryWarning")
 @settings(deadline=None, max_examples=300)
 @given(
     st.integers(5, 200),

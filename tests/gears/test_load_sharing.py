@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gears import LoadSharingError
-from gears.independent_pairs import independent_pairs
-from gears.load_sharing import share_load
+from gears.sharing.independent_pairs import independent_pairs
+from gears.sharing.load_sharing import share_load
 
 
 class Spring:

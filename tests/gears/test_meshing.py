@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from gears import Gear, GearPair, GeometryError, TipRelief, check_meshing, outline
-from gears.profile import ToothProfile
+from gears.tooth.profile import ToothProfile
 
 PAIRS = {
     "article": (Gear(36), Gear(40), None),

@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from gears import BasicRack, Gear, TipRelief
-from gears.profile import generate
+from gears.tooth.profile import generate
 
 RACK = BasicRack()
 teeth = st.integers(5, 10_000)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gears import Bearing, Material, Shaft, ShaftSegment
-from gears.shaft_face import shaft_over_face
+from gears.pair.shaft_face import shaft_over_face
 
 STEEL = Material(206e9, 0.3, 7850.0)
 LENGTH, DIAMETER, WIDTH, FORCE = 0.4, 0.03, 0.04, 1e4

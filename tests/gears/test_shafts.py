@@ -10,7 +10,7 @@ from scipy.linalg import eigh
 
 from base import InputError
 from gears import STEEL, Bearing, Shaft, ShaftSegment
-from gears.beams import bending, halved, reduced, rotary, shaft_nodes, torsion
+from gears.pair.beams import bending, halved, reduced, rotary, shaft_nodes, torsion
 
 E, G, RHO = STEEL.youngs_modulus, STEEL.shear_modulus, STEEL.density
 KAPPA = 6 * 1.3 / (7 + 6 * 0.3)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, period_map, trajectory
-from dynamics.flow import tables
-from dynamics.grazing import contact_orbit
+from dynamics.branches.grazing import contact_orbit
+from dynamics.flow.flow import tables
 from tests.validation.article_motion import lubricated
 
 

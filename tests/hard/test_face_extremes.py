@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import fem
-import fem.free_ends
-import fem.gear_face
+import fem.elasticity.free_ends
+import fem.influence.gear_face
 from base import InputError, RangeWarning
 from gears import Alignment, Gear, GearPair, Lead, Material, TipRelief
 
@@ -120,9 +120,9 @@ def test_what_free_ends_leave_uncertain_is_told(bodies, monkeypatch):
     """Against pieces of half the length at the end and elements of 0.7 of it there."""
     found = _cycle(bodies, across=20e-6, face_model="free-ends")
     fem.forget_gears()
-    half = partial(fem.free_ends.half_face, last=0.5 * fem.free_ends.LAST)
-    monkeypatch.setattr(fem.gear_face, "half_face", half)
-    monkeypatch.setattr(fem.gear_face, "ENDS_SIZES", fem.gear_face.ENDS_SIZES.scaled(0.7))
+    half = partial(fem.elasticity.free_ends.half_face, last=0.5 * fem.elasticity.free_ends.LAST)
+    monkeypatch.setattr(fem.influence.gear_face, "half_face", half)
+    monkeypatch.setattr(fem.influence.gear_face, "ENDS_SIZES", fem.influence.gear_face.ENDS_SIZES.scaled(0.7))
     finer = _cycle(bodies, across=20e-6, face_model="free-ends")
     fem.forget_gears()
     factors = [one.face.greatest_face_load_factor for one in (found, finer)]

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import fem
-from fem.line_load import flank_points, line_loads
-from fem.support import Support
+from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.support import Support
 from gears import BasicRack, Gear, GearPair, TipRelief
 from meshes import mesh_sector
 from tests.fem.conftest import true_error

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import dynamics
 from dynamics import FourierStiffness, GearOscillator, find_orbit, period_map, trajectory
-from dynamics.sensitivity import map_derivatives
+from dynamics.branches.sensitivity import map_derivatives
 from tests.dynamics.conftest import step_by_step
 
 STIFFNESS = FourierStiffness(1.0, (0.3, 0.1), (0.0, 0.7))

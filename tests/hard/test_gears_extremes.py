@@ -17,8 +17,8 @@ from gears import (
     closed_form,
     share_load,
 )
-from gears.profile import generate
-from gears.rack import ISO_53_A, BasicRack
+from gears.tooth.profile import generate
+from gears.tooth.rack import ISO_53_A, BasicRack
 
 
 def test_17_teeth_undercut_by_a_hair():

@@ -14,7 +14,12 @@ from tests.planted.faults import faults_at, named, sample, sites, written_since
 
 ROOT = Path(__file__).parents[2]
 SEED = 11
-AMONG = ("base/units.py", "gears/involute.py", "gears/bisection.py", "gears/closed_form/dynamic_factor.py")
+AMONG = (
+    "base/units.py",
+    "gears/tooth/involute.py",
+    "gears/tooth/bisection.py",
+    "gears/closed_form/dynamic_factor.py",
+)
 TESTS = ("tests/base", "tests/gears/test_dynamic_factor.py", "tests/gears/test_profile.py")
 
 

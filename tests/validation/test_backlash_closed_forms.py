@@ -10,8 +10,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from dynamics import FourierStiffness, GearOscillator, contact_grazing, period_map, trajectory
-from dynamics.flow import tables
-from dynamics.grazing import contact_orbit
+from dynamics.branches.grazing import contact_orbit
+from dynamics.flow.flow import tables
 
 
 @settings(max_examples=40, deadline=None)

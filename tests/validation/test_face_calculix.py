@@ -8,7 +8,7 @@ the section's plane strain as in three dimensions, so that
     u(z) = c q(z) + more(z),
 
 with c the displacement by unit line load of the same plane mesh, leaves what the face adds: ``more``, which is what
-``fem.cell_matrix`` gives to a contact.
+``fem.contact.cell_matrix`` gives to a contact.
 
 Skipped where ccx is not installed (Debian: apt-get install calculix-ccx), unless FLANKFILM_REQUIRE_CCX=1.
 """
@@ -25,10 +25,10 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse.linalg import splu
 
 from fem import compliance
-from fem.cell_matrix import cell_matrix
-from fem.elasticity import PlaneElasticity, stiffness_matrix
-from fem.face_errors import ENDS_ERROR
-from fem.face_setting import FaceSetting
+from fem.contact.cell_matrix import cell_matrix
+from fem.contact.face_errors import ENDS_ERROR
+from fem.elasticity.elasticity import PlaneElasticity, stiffness_matrix
+from fem.pair.face_setting import FaceSetting
 from gears import STEEL, Gear, GearPair
 from meshes import Sizes, gear_mesh, mesh_sector
 from meshes.abaqus import number

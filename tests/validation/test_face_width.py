@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from fem import compliance, mesh_cycle
-from fem.gear_face import flank_ends
+from fem.influence.gear_face import flank_ends
 from gears import Alignment, Gear, GearPair, Material
 
 STEEL = Material(206e9, 0.3, 7850.0)

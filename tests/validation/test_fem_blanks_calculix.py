@@ -16,11 +16,11 @@ import numpy as np
 import pytest
 
 import fem
-from fem.elasticity import PlaneElasticity, reduced_modulus
-from fem.export import write_abaqus
-from fem.flamant import hertz_half_width, hertz_indentation
-from fem.line_load import flank_points
-from fem.loaded_gears import FlankForce, LoadedGear, nodal_forces
+from fem.elasticity.elasticity import PlaneElasticity, reduced_modulus
+from fem.elasticity.flamant import hertz_half_width, hertz_indentation
+from fem.elasticity.line_load import flank_points
+from fem.fields.export import write_abaqus
+from fem.fields.loaded_gears import FlankForce, LoadedGear, nodal_forces
 from gears import Blank, Gear, GearPair
 from meshes import Sizes, gear_mesh, mesh_sector
 from tests.validation.test_fem_calculix import CCX, pytestmark  # noqa: F401

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 import fem
-from fem.local_law import Table
-from fem.ring import mesh_and_factor
+from fem.elasticity.ring import mesh_and_factor
+from fem.laws.local_law import Table
 from meshes import Sizes
 from tests.validation.article import PER_MM_UM
 
@@ -33,11 +33,11 @@ def at_pitch_point(pair, cycle):
 def test_strips_as_wide_as_elements_press_as_elements_do(article_pair, monkeypatch):
     bodies = fem.compliance(article_pair)
     rings = mesh_and_factor(article_pair, "strain", Sizes(), 1)
-    tip = importlib.import_module("fem.tip_strips")
+    tip = importlib.import_module("fem.influence.tip_strips")
     # no contact is narrower than the strip at the corner: its law does not go on to nothing
     through = Table.through
     monkeypatch.setattr(
-        importlib.import_module("fem.tip_contact"), "begun", lambda force, approach: (force, approach)
+        importlib.import_module("fem.laws.tip_contact"), "begun", lambda force, approach: (force, approach)
     )
     monkeypatch.setattr(Table, "through", lambda force, approach, _: through(force, approach, smooth=False))
     stiffness, force = [], []

@@ -15,11 +15,11 @@ from scipy.sparse.linalg import splu
 from skfem import Basis, ElementTriP2
 
 import fem
-from fem.elasticity import PlaneElasticity, curved_mesh, stiffness_matrix
-from fem.line_load import flank_points
-from fem.references import REFERENCES
+from fem.elasticity.elasticity import PlaneElasticity, curved_mesh, stiffness_matrix
+from fem.elasticity.line_load import flank_points
+from fem.pair.references import REFERENCES
 from gears import STEEL, BasicRack, Gear, GearPair, closed_form
-from gears.profile import generate
+from gears.tooth.profile import generate
 from meshes import Sizes, mesh_sector
 from tests.fem.conftest import edge_load, quadratic_ring
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fem.pair_fillets import fillets
+from fem.pair.pair_fillets import fillets
 from gears import Gear, GearPair, closed_form
 
 

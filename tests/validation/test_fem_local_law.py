@@ -2,7 +2,8 @@
 
 One pair of true involutes; 81 strips of pressure over 3.2 half-widths, each along the pinion's normal, with exact gaps
 between both involutes. Every strip sees every other one by the half-plane and by the regular field of finite
-elements (``fem.line_load``), so that the pressure is no ellipse and goes where it wants. docs/validation/local_law.md
+elements (``fem.elasticity.line_load``), so that the pressure is no ellipse and goes where it wants.
+docs/validation/local_law.md
 """
 
 from __future__ import annotations
@@ -14,14 +15,14 @@ import numpy as np
 import pytest
 
 import fem
-from fem.contact_candidates import contact_candidates
-from fem.elasticity import PlaneElasticity
-from fem.flamant import hertz_half_width, hertz_indentation
-from fem.line_load import flank_points, line_loads
-from fem.moving_contact import contact_moves, model_error
-from fem.ring import ring_of
-from fem.setting import Setting
-from fem.strip_contact import flat_kernel
+from fem.contact.moving_contact import contact_moves, model_error
+from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.flamant import hertz_half_width, hertz_indentation
+from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.ring import ring_of
+from fem.influence.strip_contact import flat_kernel
+from fem.laws.contact_candidates import contact_candidates
+from fem.laws.setting import Setting
 from gears import Gear, GearPair, Material
 from meshes import Sizes, mesh_sector
 

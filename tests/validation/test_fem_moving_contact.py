@@ -16,10 +16,10 @@ import numpy as np
 import pytest
 
 import fem
-from fem.contact_candidates import contact_candidates
-from fem.local_law import PairLaws
-from fem.moving_contact import contact_moves, model_error, moved_share, moving_pairs
-from fem.setting import Setting
+from fem.contact.moving_contact import contact_moves, model_error, moved_share, moving_pairs
+from fem.laws.contact_candidates import contact_candidates
+from fem.laws.local_law import PairLaws
+from fem.laws.setting import Setting
 from gears import Gear, GearPair, Material, share_load
 
 STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)

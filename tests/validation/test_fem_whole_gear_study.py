@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fem import flamant
-from fem.elasticity import PlaneElasticity
-from fem.line_load import flank_points, line_loads
-from fem.ring import ring_of
+from fem.elasticity import flamant
+from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.ring import ring_of
 from gears import Gear, GearPair
 from meshes import mesh_sector
 from meshes.triangle import shape

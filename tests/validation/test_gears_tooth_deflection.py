@@ -18,7 +18,7 @@ import pytest
 from gears import STEEL, BasicRack, Gear, closed_form
 from gears.closed_form.half_plane import body_compliance, tooth_compliance
 from gears.closed_form.loaded_tooth import LoadedTooth
-from gears.profile import generate
+from gears.tooth.profile import generate
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,8 @@ import pytest
 
 import flankfilm as ff
 from base import RangeWarning
-from ehl import Roughness, film_ratio
+from ehl import Roughness
+from ehl.discrete import film_ratio
 from flankfilm.coupling import LoadedTeeth, MeshLosses
 from gears import TipRelief
 from gears.closed_form import ohlendorf_loss_factor, schlenk_friction

@@ -15,8 +15,8 @@ import pytest
 from flankfilm.build import gear_pair
 from flankfilm.scene import parse_scene
 from gears import BasicRack, Gear, GearPair, GeometryError, Material, check_meshing, closed_form, dimensions
-from gears.hertz import peak_pressure
-from gears.profile import generate
+from gears.pair.hertz import peak_pressure
+from gears.tooth.profile import generate
 
 TORQUE = 130.0
 MODULE = 4.5e-3

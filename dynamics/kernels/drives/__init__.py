@@ -1,9 +1,9 @@
 """Compiled kernels of the exact flow in several freedoms: plain arrays in and out; nothing here checks its input.
 
 Everything is measured in cells, as in `dynamics.kernels`, but time runs from 0 to 1 in each and motions are expanded
-about where they enter it. The coordinates w are those of `dynamics.drives.coordinates`: the first of them is y, which
-alone feels the mesh; m is their number. A state in the kernels is (y - region D, w_2, .., w_m) and its speeds. Arrays
-that travel together:
+about where they enter it. The coordinates w are those of `dynamics.model.drive_coordinates`: the first of them is y,
+which alone feels the mesh; m is their number. A state in the kernels is (y - region D, w_2, .., w_m) and its speeds.
+Arrays that travel together:
 
 - `par`, (9,): places as in `dynamics.kernels`; frequency, D, sides, and the force of y alone are used.
 - `systems`, (3, m, m): the stiffness of all but the mesh times h^2; the damping times h in contact and in the dead

@@ -12,7 +12,7 @@ import pytest
 import ehl
 import fem
 from base import InputError, SolverError
-from fem.local_law import film_yielding
+from fem.laws.local_law import film_yielding
 from flankfilm import coupling
 from flankfilm.coupling import (
     FilmModel,

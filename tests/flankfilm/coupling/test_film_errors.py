@@ -14,7 +14,7 @@ from flankfilm.coupling.film_law import FilmLaw, HeldMeniscus
 from flankfilm.coupling.films import FilmModel, PlacedMeniscus
 from flankfilm.coupling.lubricated import BETWEEN, lubricate
 from gears import Gear, GearPair
-from gears.mesh_figures import MeshArcs
+from gears.sharing.mesh_figures import MeshArcs
 
 PAIR = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
 OIL = ehl.Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)

@@ -11,7 +11,7 @@ import ehl
 import flankfilm as ff
 from base import SolverError
 from ehl import Lubricant, Roughness
-from ehl.options import PressureWarning
+from ehl.solving.options import PressureWarning
 from flankfilm.coupling import MeshLosses, PlacedMeniscus
 from gears import Gear, GearPair
 from gears.closed_form import ohlendorf_loss_factor

@@ -12,8 +12,8 @@ import xarray as xr
 import fem
 import flankfilm as ff
 from base import InputError
-from fem.breakdown import deflection_parts
-from fem.references import turns
+from fem.cycle.breakdown import deflection_parts
+from fem.pair.references import turns
 from flankfilm.cache import Cache
 from flankfilm.coupling import MeshCycle, mesh_series, stiffness_references
 from flankfilm.coupling.references import MEANINGS

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator, contact_grazing, sweep, trajectory
-from dynamics.motions import force_range
+from dynamics.flow.motions import force_range
 from flankfilm.coupling import first_loss
 from flankfilm.coupling.resonance import vibration, vibrations
 from flankfilm.coupling.swept_truncation import grazing_errors

@@ -29,11 +29,11 @@ from typing import Any
 import numpy as np
 
 import fem
-import fem.free_ends
-import fem.gear_face
+import fem.elasticity.free_ends
+import fem.influence.gear_face
 from base import FlankfilmError
 from gears import Alignment, GearPair, Lead, Material
-from gears.arcs import Arcs
+from gears.sharing.arcs import Arcs
 from tests.hard.random_pairs import random_pair
 from tests.seeds import SEED
 
@@ -77,7 +77,10 @@ def drawn(rng: np.random.Generator) -> tuple[GearPair, float, Alignment]:
 @contextmanager
 def twice_as_fine() -> Iterator[None]:
     """Twice the waves and places; pieces at free ends of half the length, elements there of 0.7 of it."""
-    face, half = fem.gear_face, partial(fem.free_ends.half_face, last=0.5 * fem.free_ends.LAST)
+    face, half = (
+        fem.influence.gear_face,
+        partial(fem.elasticity.free_ends.half_face, last=0.5 * fem.elasticity.free_ends.LAST),
+    )
     before = face.WAVES, face.PLACES, face.ENDS_SIZES, face.half_face
     face.WAVES, face.PLACES, face.ENDS_SIZES = 2 * before[0], 2 * before[1], before[2].scaled(0.7)
     setattr(face, "half_face", half)  # noqa: B010

@@ -16,12 +16,12 @@ import numpy as np
 
 import fem
 from base import Array
-from fem import moving_cells, moving_face
-from fem.edge_tables import EdgeTables
-from fem.face_errors import face_load_factors
-from fem.face_setting import face_setting
-from fem.setting import Setting
-from fem.sharing import Solution, solve
+from fem.contact import moving_cells, moving_face
+from fem.contact.face_errors import face_load_factors
+from fem.contact.sharing import Solution, solve
+from fem.laws.edge_tables import EdgeTables
+from fem.laws.setting import Setting
+from fem.pair.face_setting import face_setting
 from gears import Alignment, Gear, GearPair, Lead, Material
 
 STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)

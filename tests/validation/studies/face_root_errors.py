@@ -25,9 +25,9 @@ from typing import Any
 import numpy as np
 
 import fem
-import fem.fillet_ends as ends
-import fem.fillet_waves as waves
-import fem.pair_fillets as plane
+import fem.influence.fillet_ends as ends
+import fem.influence.fillet_waves as waves
+import fem.pair.pair_fillets as plane
 from base import FlankfilmError
 from tests.seeds import SEED
 from tests.validation.studies import face_errors

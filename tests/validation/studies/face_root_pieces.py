@@ -11,9 +11,9 @@ import numpy as np
 from face_three_dimensions import CELLS, FULL, PAIR
 
 import fem
-import fem.fillet_ends as ends
-from fem.face_fillets import face_fillets, over_face
-from fem.face_setting import FaceSetting
+import fem.influence.fillet_ends as ends
+from fem.pair.face_setting import FaceSetting
+from fem.stress.face_fillets import face_fillets, over_face
 
 FROM_END = np.array([0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 10.0])
 """Places [modules]."""

@@ -4,9 +4,9 @@ Run with ``python tests/validation/studies/face_root_three_dimensions.py`` (65 s
 
 The solid is that of ``face_three_dimensions``, with edges of 0.05 modules on the loaded fillet. Its displacement under
 the line loads that `fem.mesh_cycle` finds with a pair at C gives the stress by Hooke's law in three dimensions at the
-edges' Gauss points, all nine slopes by the elements' own functions: nothing of ``fem.fillet_strain``,
-``fem.fillet_waves`` or ``fem.fillet_ends`` is used, and no surface is taken to be free. Compared is the greatest
-tension along the fillet at places of the face.
+edges' Gauss points, all nine slopes by the elements' own functions: nothing of ``fem.elasticity.fillet_strain``,
+``fem.influence.fillet_waves`` or ``fem.influence.fillet_ends`` is used, and no surface is taken to be free. Compared is
+the greatest tension along the fillet at places of the face.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from face_three_dimensions import CELLS, FULL, PAIR, Solid, means, near_C, piece
 from two_gear_meshes import MIRROR, Focus
 
 import fem
-from fem.face_fillets import face_fillets, over_face
+from fem.stress.face_fillets import face_fillets, over_face
 from gears import Alignment, Lead
 
 FILLET = 0.05

@@ -3,10 +3,10 @@
 Run with ``python tests/validation/studies/face_three_dimensions.py FILE`` (both gears: four minutes of processor time,
 2.1 GB; what was solved is kept in FILE.npz and used again). ``--pressure``: half-width of the strip of pressure [mm].
 
-Nothing of ``fem.prism``, ``fem.free_ends`` or ``fem.gear_face`` is used. The annulus of either gear is meshed whole,
-with edges of 0.05 mm at the pitch point, and extruded: second-order triangles times second-order pieces of half the
-face, 0.15 mm long at the free end, half as long again from one to the next, and at most 2 mm. With c the elasticity
-tensor, d_z on the section the identity, and Z the products along the face,
+Nothing of ``fem.elasticity.prism``, ``fem.elasticity.free_ends`` or ``fem.influence.gear_face`` is used. The annulus of
+either gear is meshed whole, with edges of 0.05 mm at the pitch point, and extruded: second-order triangles times
+second-order pieces of half the face, 0.15 mm long at the free end, half as long again from one to the next, and at most
+2 mm. With c the elasticity tensor, d_z on the section the identity, and Z the products along the face,
 
     K_ac = sum over j, l of c_ajcl S_jl (x) Z_jl,   S_jl = Int d_j N d_l N,
 

@@ -19,8 +19,8 @@ from fem_moving_contact import PLASTIC, reactions
 from fem_two_gears_calculix import deck
 
 import fem
-from fem.setting import Setting
-from fem.sharing import solve
+from fem.contact.sharing import solve
+from fem.laws.setting import Setting
 from meshes.annulus import turned
 
 TORQUES = (5.0, 20.0)

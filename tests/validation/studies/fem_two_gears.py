@@ -2,8 +2,8 @@
 
 Run with ``python tests/validation/studies/fem_two_gears.py`` (three minutes; ``--quick``: the pitch point alone).
 
-Nothing of ``fem.compliance``, ``fem.tip_contact`` or ``fem.contact`` is used, only the stiffness matrix of curved
-second-order triangles. Both annuli are meshed whole, with edges of a few micrometres at the contacts and at the
+Nothing of ``fem.compliance``, ``fem.laws.tip_contact`` or ``fem.cycle.contact`` is used, only the stiffness matrix of
+curved second-order triangles. Both annuli are meshed whole, with edges of a few micrometres at the contacts and at the
 tip corners, which may be sharp or rounded. Where teeth i of both gears may touch, one pressure p_j acts on each
 element edge of the tooth whose tip is near (the mortar side); the other flank is the exact involute, whose
 distance from a point is known in closed form: the normals of an involute touch its base circle. With the gaps
@@ -28,9 +28,9 @@ from scipy.sparse.linalg import splu
 from two_gear_meshes import MIRROR, Focus, sector
 
 import fem
-from fem.elasticity import PlaneElasticity, stiffness_matrix
+from fem.elasticity.elasticity import PlaneElasticity, stiffness_matrix
 from gears import Gear, GearPair
-from gears.plane import turned
+from gears.tooth.plane import turned
 from meshes import Sizes, gear_mesh
 
 PAIR = GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04)

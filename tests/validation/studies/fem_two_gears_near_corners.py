@@ -17,10 +17,10 @@ import numpy as np
 from fem_moving_contact import PLASTIC
 
 import fem
-from fem import moving_contact
-from fem.edge_tables import EdgeTables
-from fem.setting import Setting
-from fem.sharing import solve
+from fem.contact import moving_contact
+from fem.contact.sharing import solve
+from fem.laws.edge_tables import EdgeTables
+from fem.laws.setting import Setting
 from gears import TipRelief
 
 RELIEFS = (TipRelief(10e-6, 2e-3, "linear"), TipRelief(20e-6, 3e-3, "parabolic"))

@@ -22,13 +22,13 @@ from dataclasses import replace
 import numpy as np
 
 import fem
-import fem.pair_compliance
-import gears.events
+import fem.pair.pair_compliance
+import gears.sharing.events
 from base import InputError, SolverError
-from fem.pair_fillets import fillets
-from fem.tooth_root import root_stress
+from fem.pair.pair_fillets import fillets
+from fem.stress.tooth_root import root_stress
 from gears import LoadSharingError, Material, TipRelief
-from gears.mesh_figures import MeshArcs
+from gears.sharing.mesh_figures import MeshArcs
 from tests.hard.random_pairs import random_pair
 
 STEEL, PLASTIC = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
@@ -132,12 +132,12 @@ def root_ratios(pair, usual, best) -> dict[str, float]:
 @contextmanager
 def long_series() -> Iterator[None]:
     """So many loads along the flanks and nodes on the arcs that their errors are none."""
-    before = fem.pair_compliance.SAMPLES, gears.events.DEGREES
-    fem.pair_compliance.SAMPLES, gears.events.DEGREES = (64,), (8, 16, 32, 64, 128)
+    before = fem.pair.pair_compliance.SAMPLES, gears.sharing.events.DEGREES
+    fem.pair.pair_compliance.SAMPLES, gears.sharing.events.DEGREES = (64,), (8, 16, 32, 64, 128)
     try:
         yield
     finally:
-        fem.pair_compliance.SAMPLES, gears.events.DEGREES = before
+        fem.pair.pair_compliance.SAMPLES, gears.sharing.events.DEGREES = before
 
 
 def one(pair, torque, options, roots: bool) -> tuple[str, dict[str, float]]:

@@ -25,7 +25,7 @@ from base import InputError, SolverError
 from flankfilm.coupling import LoadedTeeth, lubricated, resolution_of
 from flankfilm.coupling.lubricated import lubricate
 from gears import LoadSharingError
-from gears.mesh_figures import MeshArcs
+from gears.sharing.mesh_figures import MeshArcs
 from tests.validation.studies import figure_errors
 
 TOLERANCE = 5e-3

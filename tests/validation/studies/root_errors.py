@@ -14,8 +14,8 @@ import numpy as np
 
 import fem
 from base import InputError
-from fem.pair_fillets import fillets
-from fem.tooth_root import root_stress
+from fem.pair.pair_fillets import fillets
+from fem.stress.tooth_root import root_stress
 from tests.validation.studies import figure_errors
 
 FINEST = 0.01

@@ -1,0 +1,149 @@
+"""Branches of a drive train: its period map with derivatives by state and one parameter, and its multipliers."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from base import Array, InputError
+from dynamics.branches.branch_problem import MapPoint
+from dynamics.branches.stepwise_problem import PeriodMap
+from dynamics.flow.drive_flow import DriveFlow, tabulated
+from dynamics.model.drive_oscillator import DriveOscillator
+from dynamics.model.protocol import MapResult
+from dynamics.orbits.shooting import multipliers_of
+
+# of the parameter's range: differences, whose error only slows Newton's method down; the shorter ones beside impacts
+ASIDE = (3e-6, 3e-8, 1e-9)
+
+
+@dataclass(frozen=True, eq=False)
+class DrivePoint(MapPoint):
+    """A state of a drive train and its image: special points by all its multipliers."""
+
+    @cached_property
+    def multipliers(self) -> npt.NDArray[np.complex128] | Array:
+        """Floquet multipliers."""
+        return multipliers_of(self.jacobian, self.determinant)
+
+    @cached_property
+    def fold(self) -> float:
+        """Product of (1 - multiplier): zero at a saddle node."""
+        return float(np.linalg.det(np.eye(self.size) - self.jacobian))
+
+    @cached_property
+    def flip(self) -> float:
+        """Product of (1 + multiplier): zero at a period doubling."""
+        return float(np.linalg.det(np.eye(self.size) + self.jacobian))
+
+    @cached_property
+    def torus(self) -> float:
+        """Product of (1 - product) of all pairs of multipliers: zero at a Neimark-Sacker point."""
+        first, second = np.triu_indices(self.size, 1)
+        return float(np.prod(1.0 - self.multipliers[first] * self.multipliers[second]).real)
+
+    @property
+    def turning(self) -> bool:
+        """Whether the multipliers whose product is nearest to 1 are a pair."""
+        first, second = np.triu_indices(self.size, 1)
+        at = int(np.argmin(np.abs(1.0 - self.multipliers[first] * self.multipliers[second])))
+        return bool(self.multipliers[first[at]].imag != 0.0)
+
+    def tangent(self, along: Array) -> Array:
+        """Unit vector along the branch of one parameter, turned to the side of `along`."""
+        normal = np.linalg.svd(self.derivative - np.eye(self.size, len(self.u)))[2][-1]
+        return np.asarray(normal if normal @ along >= 0.0 else -normal)
+
+
+@dataclass(frozen=True, eq=False)
+class DriveProblem(PeriodMap):
+    """Periodic orbits of a drive train; attributes as in `BranchProblem`.
+
+    Attributes
+    ----------
+    refinement : int
+        Factor on the number of cells.
+    """
+
+    oscillator: DriveOscillator
+    refinement: int = 1
+
+    maps = 3
+
+    def evaluate(self, u: Array) -> DrivePoint | None:
+        """Image of the unknowns; None if the parameter is not allowed there or the motion is lost."""
+        try:
+            here: DriveOscillator = self.at(u)
+        except InputError:  # the continuation tries a smaller step
+            return None
+        state = u[: self.size] * self.scale
+        flow = self._flow(here)
+        image = flow.follow(state, self.periods)
+        slope = self._slope(u, image, flow)
+        if image.message or slope is None:
+            return None
+        turns = flow.sampled(state, self.periods, 0)[1]
+        extrema = turns[:, :3]
+        extrema[:, 0] = np.mod(extrema[:, 0] / (here.period * self.periods), 1.0)
+        levels = np.array([1.0] if here.one_sided else [1.0, -1.0]) * here.half_backlash
+        counts = (int(image.counts[:, 0].sum()), int(image.counts[:, 1].sum()))
+        return DrivePoint(
+            u.copy(), self.values(u), here.period, image.state / self.scale,
+            np.column_stack([image.jacobian, slope / self.scale]), math.exp(image.log_determinant), counts, levels,
+            extrema,
+        )  # fmt: skip
+
+    def states(self, point: MapPoint) -> Array:
+        """States over the scale after each period."""
+        flow = self._flow(self.at(point.u))
+        image = flow.follow(point.u[: self.size] * self.scale, self.periods, derivatives=False)
+        return image.states / self.scale
+
+    def refined(self) -> DriveProblem:
+        """The same with half the cells."""
+        return replace(self, refinement=2 * self.refinement)
+
+    def _flow(self, here: DriveOscillator) -> DriveFlow:
+        return tabulated(here, math.ceil(here.cells) * self.refinement)
+
+    def _slope(self, u: Array, image: MapResult, flow: DriveFlow) -> Array | None:
+        """Derivative of the image by the parameter, over its range.
+
+        A central difference; to one side where the other is not allowed. Where impacts on the way are others, or lie
+        in another period, the map has a corner: such a side is left out, too, and tried nearer if both are.
+        """
+        state = u[: self.size] * self.scale
+        course = self._course(flow.oscillator, state, image)
+        central: list[tuple[float, Array]] = []
+        for aside in ASIDE:
+            sides, alike = [], []
+            for way in (aside, -aside):
+                beside = u.copy()
+                beside[-1] += way
+                try:
+                    there = self.at(beside)
+                except InputError:  # the end of what the parameter may be
+                    continue
+                moved = tabulated(there, flow.cells).follow(state, self.periods, derivatives=False)
+                sides.append((way, moved.state))
+                if self._course(there, state, moved) == course:
+                    alike.append(sides[-1])
+            central = central or sides
+            if alike or not sides:
+                central = alike
+                break
+        if not central:
+            return None
+        (ahead, high), (back, low) = [*central, (0.0, image.state)][:2]
+        return np.asarray((high - low) / (ahead - back))
+
+    def _course(self, here: DriveOscillator, state: Array, image: MapResult) -> list[int]:
+        """Impacts of a motion and the flanks that it begins and ends on, 1, 0 or -1."""
+        ends = np.array([0.0, self.periods * here.period])
+        y = here.contact_motion(ends, np.stack([state, image.state]))[0]
+        sides = np.sign(here.deflection(y)).astype(int)
+        return [*image.counts.sum(axis=0).tolist(), *sides.tolist()]

@@ -1,0 +1,202 @@
+"""Where the orbit that never leaves contact first touches the limit of the backlash."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import warnings
+
+import numpy as np
+import numpy.typing as npt
+
+from base import Array, Cost, Faults, InputError, RangeWarning, Stopwatch, quantity, record
+from dynamics.branches.branch import SpecialPoint
+from dynamics.flow.flow import tables, turning_points
+from dynamics.flow.motions import period_map
+from dynamics.model.arrays import AsArray
+from dynamics.model.limits import ordered
+from dynamics.model.oscillator import GearOscillator
+from dynamics.model.protocol import EPS, exact_only
+from dynamics.orbits.shooting import floquet_multipliers
+
+
+@record
+class ContactOrbit:
+    """Periodic solution of the equation with f(X) = X - side D everywhere, that is, without backlash."""
+
+    headline = ("clearance", "tau", "acceleration")
+
+    state: Array = quantity("1", "X and V at tau = 0", "state")
+    multipliers: npt.NDArray[np.complex128] | Array = quantity("1", "Floquet multipliers", "multiplier")
+    clearance: float = quantity(
+        "1",
+        "how far the orbit stays from the limit, min(side X) - D; it exists with the backlash if not negative",
+    )
+    tau: float = quantity("1", "time of the point nearest to the limit")
+    acceleration: float = quantity("1", "X'' there")
+
+
+@record
+class ContactGrazing(AsArray):
+    """Parameter values at which the orbit that never leaves contact touches the limit."""
+
+    headline = ("message",)
+
+    points: tuple[SpecialPoint, ...] = quantity("", "grazings in the order of the parameter")
+    values: Array = quantity("1", "parameter values of the scan", "value")
+    clearance: Array = quantity(
+        "1", "how far the orbit stays from the limit in the scan; negative where it would cross", "value"
+    )
+    error: float = quantity("1", "largest estimated relative error of a point")
+    cost: Cost
+    converged: bool = quantity("1", "whether every change of sign ended in a point")
+    message: str
+
+    def columns(self) -> Array:
+        """Parameter values of the points."""
+        return np.array([p.parameter for p in self.points])
+
+
+class ResonanceError(InputError):
+    """The linear equation has no bounded periodic solution: a multiplier is one."""
+
+
+def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1) -> ContactOrbit:
+    """Periodic solution that feels no backlash: a linear problem, solved without iteration.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator.
+    side : int
+        1 for the driving flanks (X > D), -1 for the others.
+    refinement : int
+        Factor on the number of cells.
+
+    Raises
+    ------
+    ResonanceError
+        If there is none, because a Floquet multiplier of the linear equation is one.
+    InputError
+        If an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> contact_orbit(osc).clearance > 0.0  # it does not feel the backlash
+    True
+    """
+    if side not in (1, -1):
+        raise InputError.at("side", side, "must be 1 or -1", "1 is the driving side")
+    linear = dataclasses.replace(oscillator, half_backlash=0.0, one_sided=False)
+    table = tables(linear, refinement)
+    image = period_map(table, np.zeros(2))
+    matrix = np.eye(2) - image.jacobian
+    stretch = max(1.0, float(np.max(np.abs(image.jacobian))))
+    if not np.all(np.isfinite(matrix)) or np.linalg.norm(matrix, -2) < 64.0 * EPS * stretch:
+        allowed = "must have a linear equation without resonance"
+        raise ResonanceError.at("oscillator", "multiplier 1", allowed, "change the frequency")
+    state = np.linalg.solve(matrix, image.state)
+    # one refinement, against rounding
+    state += np.linalg.solve(matrix, period_map(table, state).state - state)
+    turns = turning_points(table, state)
+    at = int(np.argmin(side * turns[:, 1])) if len(turns) else -1
+    tau, nearest, acceleration = turns[at, :3] if len(turns) else (0.0, state[0], 0.0)
+    if side * state[0] < side * nearest:  # nearest at tau = 0 itself, where the motion begins and ends
+        tau, nearest = 0.0, state[0]
+        acceleration = float(linear.force(0.0) - linear.stiffness(0.0) * state[0])
+    return ContactOrbit(
+        state=state + np.array([side * oscillator.half_backlash, 0.0]),
+        multipliers=floquet_multipliers(float(np.trace(image.jacobian)), math.exp(image.log_determinant)),
+        clearance=float(side * nearest),
+        tau=float(tau),
+        acceleration=float(acceleration),
+    )
+
+
+@exact_only
+def contact_grazing(
+    oscillator: GearOscillator,
+    parameter: str = "frequency",
+    bounds: tuple[float, float] = (0.3, 2.0),
+    *,
+    points: int = 200,
+    side: int = 1,
+) -> ContactGrazing:
+    """Find where the orbit that never leaves contact grazes the limit of the backlash.
+
+    The clearance of the linear orbit is a smooth function of the parameter on both sides of the grazing, so
+    that its roots are found to rounding. They do not depend on the backlash.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator; its value of the parameter is not used.
+    parameter : str
+        As in `GearOscillator.with_parameter`.
+    bounds : tuple of float
+        Range of the parameter.
+    points : int
+        Values of the scan that brackets the roots; two roots between neighbours are missed.
+    side : int
+        1 for X = D, -1 for X = -D.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, contact_grazing
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> found = contact_grazing(osc, "frequency", (0.6, 0.7), points=20)
+    >>> round(found.points[0].parameter, 6)
+    0.633534
+    """
+    from scipy.optimize import brentq
+
+    watch = Stopwatch()
+    with Faults() as faults:
+        n = faults.whole("points", points, 2, 10**6, "200 resolves an ordinary range")
+        low, high = ordered(faults, "bounds", bounds)
+    evaluations = 0
+
+    def clearance(value: float, refinement: int = 1) -> float:
+        nonlocal evaluations
+        evaluations += 1
+        here = oscillator.with_parameter(parameter, value)
+        try:
+            return contact_orbit(here, side, refinement).clearance
+        except ResonanceError:
+            return math.nan
+
+    grid = np.linspace(low, high, n)
+    gap = np.array([clearance(float(value)) for value in grid])
+    scale = max(float(np.max(np.abs(gap[np.isfinite(gap)]), initial=0.0)), 1e-300)
+    found: list[SpecialPoint] = []
+    poles = 0
+    for i in range(n - 1):
+        if not gap[i] * gap[i + 1] < 0.0:  # also past a resonance, where there is no clearance
+            continue
+        root = float(brentq(clearance, grid[i], grid[i + 1], xtol=1e-300, rtol=4.0 * EPS, maxiter=200))
+        here = oscillator.with_parameter(parameter, root)
+        orbit = contact_orbit(here, side)
+        if abs(orbit.clearance) > 1e-6 * max(abs(gap[i]), abs(gap[i + 1])):
+            poles += 1  # a resonance: the orbit changes side through infinity
+            continue
+        slope = (gap[i + 1] - gap[i]) / (grid[i + 1] - grid[i])
+        error = max(abs(clearance(root, 2) / slope / root) if root else 0.0, EPS)
+        found.append(
+            SpecialPoint(
+                "grazing", root, orbit.state, orbit.multipliers, "1-0-0", error, 1, side, orbit.tau,
+                orbit.acceleration, float(here.stiffness(here.frequency * orbit.tau)),
+            )
+        )  # fmt: skip
+    if not found and scale <= 64.0 * EPS:
+        warnings.warn("the contact orbit lies on the limit throughout: no load", RangeWarning, stacklevel=2)
+    message = f"{len(found)} grazings" + (f"; {poles} resonances in the range" if poles else "")
+    cost = Cost(watch.seconds, 2, evaluations, 3 * evaluations)
+    error = max((p.error for p in found), default=math.nan)
+    return ContactGrazing(tuple(found), grid, gap, error, cost, True, message)

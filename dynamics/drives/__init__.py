@@ -1,1 +1,0 @@
-"""Oscillators of several freedoms with one mesh: their equation, coordinates, exact flow and branches."""

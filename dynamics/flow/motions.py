@@ -1,0 +1,265 @@
+"""Motions of any oscillator by themselves: period map and sampled motion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
+from dynamics.flow.flows import flow_of
+from dynamics.model.arrays import AsArray
+from dynamics.model.limits import PERIODS, POINTS, TRANSIENT
+from dynamics.model.protocol import Flow, MapResult, Oscillator, PeriodicOscillator, periodic_only
+from dynamics.model.states import checked_state
+
+
+@record
+class Trajectory(AsArray):
+    """Motion at equal times, and its impacts."""
+
+    headline = ("points_per_period",)
+
+    tau: Array = quantity("1", "dimensionless time from 0, both ends included", "sample")
+    x: Array = quantity("1", "displacement X; in several freedoms y, which the backlash limits", "sample")
+    v: Array = quantity("1", "speed dX/dtau", "sample")
+    states: Array = quantity("1", "displacements and speeds: X and V, or all of them", "sample coordinate")
+    points_per_period: int = quantity("1", "samples per excitation period")
+    events: Array = quantity(
+        "1",
+        "time, X (+-D), speed and region entered (1, 0, -1) at every crossing of the backlash's limits",
+        "event column",
+    )
+    extrema: Array = quantity("1", "time, X and acceleration at every extremum of X", "extremum column")
+    error: float = quantity(
+        "1",
+        "difference to the motion on a finer flow, largest over the samples, over the largest size of X and of V",
+    )
+    cost: Cost
+
+    converged = True  # a motion that cannot be followed raises
+    message = ""
+
+    def columns(self) -> Array:
+        """Columns tau, then those of the state."""
+        return np.column_stack([self.tau, self.states])
+
+    @property
+    def poincare(self) -> Array:
+        """States at tau = 0 mod the excitation period, shape (periods + 1, dimension)."""
+        return self.states[:: self.points_per_period]
+
+
+def period_map(
+    oscillator: Oscillator | Flow,
+    state: npt.ArrayLike,
+    periods: int = 1,
+    skip: int = 0,
+    *,
+    parameters: tuple[str, ...] = (),
+    extrema: bool = False,
+    tolerance: float | None = None,
+) -> MapResult:
+    """Follow a state at tau = 0 over whole excitation periods.
+
+    Parameters
+    ----------
+    oscillator : Oscillator or Flow
+        The oscillator; its flow (`dynamics.flow.flows.flow_of`) made once saves the cost of that in repeated calls, and
+        the error estimate.
+    state : array_like, shape (dimension,)
+        State at tau = 0: X and V, or displacements and speeds.
+    periods : int
+        Number of periods kept.
+    skip : int
+        Periods followed before those; the derivatives cover them too.
+    parameters : tuple of str
+        Parameters to differentiate by, stepwise flow alone; `map_derivatives` serves the exact one.
+    extrema : bool
+        Whether extrema of X are among the events, stepwise flow alone; the exact one has `turning_points`.
+    tolerance : float, optional
+        Of a step, or of one period's map where the flow is exact.
+
+    Returns
+    -------
+    MapResult
+        States, Jacobian and counts of impacts.
+
+    Raises
+    ------
+    InputError
+        If the state is not finite or an argument out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.0, 0.6, half_backlash=0.2)
+    >>> period_map(oscillator, (0.3, 0.0)).state.round(12) + 0.0
+    array([0.3, 0. ])
+    """
+    watch = Stopwatch()
+    flow = oscillator if isinstance(oscillator, Flow) else flow_of(oscillator, tolerance, parameters, extrema)
+    at = checked_state(state, size=flow.dimension)
+    if isinstance(oscillator, Flow) and periods > 0 <= skip:  # else the checks would cost as much as a period
+        return oscillator.follow(at, periods, skip)
+    with Faults() as faults:
+        n = faults.whole("periods", periods, *PERIODS)
+        n_skip = faults.whole("skip", skip, *TRANSIENT)
+    if isinstance(oscillator, Flow):
+        return oscillator.follow(at, n, n_skip)
+    here, there = flow.follow(at, n, n_skip), flow.finer().follow(at, n, n_skip, derivatives=False)
+    size = max(float(np.max(np.abs(here.states))), oscillator.floor)
+    error = float(np.max(np.abs(here.state - there.state))) / size
+    cost = replace(here.cost + there.cost, seconds=watch.seconds)
+    return replace(here, error=error, cost=cost)
+
+
+def trajectory(
+    oscillator: Oscillator,
+    state: npt.ArrayLike,
+    periods: int = 1,
+    points_per_period: int = 200,
+    *,
+    tolerance: float | None = None,
+) -> Trajectory:
+    """Sample the motion from a state at tau = 0; for phase portraits and Poincare points.
+
+    Parameters
+    ----------
+    oscillator : Oscillator
+        The oscillator.
+    state : array_like, shape (dimension,)
+        State at tau = 0: X and V, or displacements and speeds.
+    periods : int
+        Excitation periods.
+    points_per_period : int
+        Samples per period; on the exact flow more of them are not more accurate, and a step of the other ends at each.
+    tolerance : float, optional
+        As of `period_map`.
+
+    Returns
+    -------
+    Trajectory
+        The samples, impacts (crossings of the first two surfaces of a law) and extrema.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or the motion cannot be followed.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> trajectory(oscillator, (0.5, 0.2), periods=2, points_per_period=50).x.shape
+    (101,)
+    """
+    watch = Stopwatch()
+    with Faults() as faults:
+        n = faults.whole("periods", periods, *PERIODS)
+        points = faults.whole("points_per_period", points_per_period, *POINTS)
+    flow = flow_of(oscillator, tolerance)
+    at = checked_state(state, size=flow.dimension)
+    samples, turns, events = flow.sampled(at, n, points)
+    finer, _, _ = flow.finer().sampled(at, n, points)
+    tau = np.arange(n * points + 1, dtype=np.float64) * (oscillator.period / points)
+    x, v = oscillator.contact_motion(tau, samples)
+    return Trajectory(
+        tau=tau,
+        x=x,
+        v=v,
+        states=samples,
+        points_per_period=points,
+        events=events,
+        extrema=turns[:, :3],
+        error=float(np.max(np.abs(samples - finer)) / max(np.max(np.abs(samples)), np.finfo(float).tiny)),
+        cost=Cost(watch.seconds, periods=2 * n),
+    )
+
+
+@record
+class ForceRange:
+    """Minimum and maximum force of a motion, over the mean force."""
+
+    headline = ("least", "greatest")
+
+    least: float = quantity("1", "minimum of K(tau) f(X) / F_m; negative where the back flanks touch")
+    greatest: float = quantity("1", "maximum of K(tau) f(X) / F_m")
+    error: float = quantity("1", "change of the two with half as many samples, the larger one")
+
+
+def mesh_force(oscillator: PeriodicOscillator, motion: Trajectory) -> Array:
+    """Force k(tau) f(X) of the mesh at the samples of a motion, in the unit of the mean force.
+
+    Raises
+    ------
+    InputError
+        If the oscillator has a force that is not piecewise linear.
+    """
+    if not isinstance(oscillator, PeriodicOscillator):
+        name, allowed = (
+            type(oscillator).__name__,
+            "must be a GearOscillator or a DriveOscillator in mesh_force",
+        )
+        raise InputError.at(
+            "oscillator", name, allowed, "restoring_force gives the force of a SmoothOscillator"
+        )
+    return oscillator.contact_force(oscillator.frequency * motion.tau, motion.x)
+
+
+def share_below(clearance: Array) -> float:
+    """Part of the time in which a curve is below zero, straight between its samples."""
+    low, high = np.minimum(clearance[:-1], clearance[1:]), np.maximum(clearance[:-1], clearance[1:])
+    crossing = np.divide(-low, high - low, out=np.zeros_like(low), where=high > low)
+    return float(np.mean(np.where(high <= 0.0, 1.0, np.where(low >= 0.0, 0.0, crossing))))
+
+
+@periodic_only
+def force_range(
+    oscillator: PeriodicOscillator,
+    state: npt.ArrayLike,
+    periods: int = 1,
+    samples: int = 400,
+    *,
+    load: float | None = None,
+) -> ForceRange:
+    """Minimum and maximum force of a motion.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator or DriveOscillator
+        The oscillator.
+    state : array_like, shape (dimension,)
+        State at tau = 0.
+    periods : int
+        Excitation periods.
+    samples : int
+        Samples per period, even; the force is taken there, on the exact motion.
+    load : float, optional
+        Mean force of the mesh, not zero. Left out: that of a `GearOscillator`.
+
+    Raises
+    ------
+    InputError
+        If there is no mean force, or an argument is out of range.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, find_orbit
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> found = force_range(osc, find_orbit(osc, (0.35, 0.0)).state)
+    >>> round(found.least, 3), round(found.greatest, 3)
+    (0.182, 2.277)
+    """
+    with Faults() as faults:
+        number = faults.whole("samples", samples, 4, 10**6, "400 is ample")
+        mean = getattr(oscillator, "mean_force", 0.0) if load is None else load
+        if np.ndim(mean) or mean == 0.0:
+            faults.add(
+                "load" if np.ndim(mean) else "mean_force", mean, "must be one number, not zero", "give a load"
+            )
+    force = mesh_force(oscillator, trajectory(oscillator, state, periods, number)) / mean
+    low, high, coarse = float(np.min(force)), float(np.max(force)), force[::2]
+    error = max(abs(float(np.min(coarse)) - low), abs(float(np.max(coarse)) - high))
+    return ForceRange(low, high, error)

@@ -1,0 +1,95 @@
+"""The unloaded transmission error as what drives the motion: one harmonic of the mesh, or any number of them."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterable, Sequence
+from typing import TypeAlias
+
+import numpy as np
+
+from base import Array, Faults
+from dynamics.model.limits import OSCILLATOR
+from dynamics.model.stiffness import MAX_ORDER, numbers
+
+Harmonics: TypeAlias = float | tuple[float, ...]
+"""A number for the first harmonic alone, or one number for each of several."""
+
+AMPLITUDE, PHASE = "error_amplitude", "error_phase"
+
+
+def checked_error(faults: Faults, amplitude: object, phase: object) -> tuple[Harmonics, Harmonics]:
+    """Amplitudes and phases of the error as numbers, or as tuples if there are two or more; faults are noted.
+
+    Parameters
+    ----------
+    faults : Faults
+        Notes what is no finite number, and phases that are not one for each amplitude.
+    amplitude, phase : float or sequence of float
+        One phase of 0 serves any number of amplitudes.
+    """
+    sizes, phases = (
+        _numbers(faults, name, given) for name, given in ((AMPLITUDE, amplitude), (PHASE, phase))
+    )
+    if phases == (0.0,) and not _several(phase):
+        phases = phases * len(sizes)
+    if len(phases) != len(sizes):
+        allowed = f"must be {len(sizes)} phases, one per amplitude"
+        faults.add(PHASE, f"{len(phases)} phases", allowed, "give amplitudes and phases of equal length")
+    if not 1 <= len(sizes) <= MAX_ORDER:
+        allowed = f"must be 1 to {MAX_ORDER} harmonics"
+        faults.add(
+            AMPLITUDE, f"{len(sizes)} harmonics", allowed, "give 0 for no error, or leave out the highest"
+        )
+    return (sizes[0], phases[0]) if len(sizes) == len(phases) == 1 else (sizes, phases)
+
+
+def _several(given: object) -> bool:
+    return isinstance(given, Sequence | np.ndarray) and not isinstance(given, str) and np.ndim(given) == 1
+
+
+def _numbers(faults: Faults, name: str, given: object) -> tuple[float, ...]:
+    if not isinstance(given, Sequence | np.ndarray) or not _several(given):
+        return (faults.number(name, given, OSCILLATOR[name]),)
+    return numbers(faults, name, given)
+
+
+def as_series(amplitude: Harmonics, phase: Harmonics) -> Array:
+    """Amplitudes and phases [rad] of the harmonics 1, 2, ..., shape (2, harmonics)."""
+    return np.array([np.atleast_1d(amplitude), np.atleast_1d(phase)], dtype=np.float64)
+
+
+@functools.lru_cache(maxsize=64)
+def error_names(harmonics: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names of the amplitudes and of the phases: without a number where there is one harmonic."""
+    if harmonics == 1:
+        return (AMPLITUDE,), (PHASE,)
+    amplitudes, phases = (tuple(f"{name}[{j}]" for j in range(harmonics)) for name in (AMPLITUDE, PHASE))
+    return amplitudes, phases
+
+
+def push(series: Array, angle: Array) -> Array:
+    r"""Force of the error over :math:`\omega^2`: :math:`\sum_j j^2 \varepsilon_j \cos(j \omega\tau + \varphi_j)`.
+
+    Parameters
+    ----------
+    series : (2, harmonics) array
+        Amplitudes and phases [rad].
+    angle : array
+        :math:`\omega\tau` [rad].
+    """
+    total = np.zeros(np.shape(angle))
+    for n, (amplitude, phase) in enumerate(series.T.tolist(), start=1):
+        total = total + n**2 * amplitude * np.cos(n * angle + phase)
+    return total
+
+
+def highest_harmonic(order: int, errors: Iterable[float]) -> int:
+    """Highest harmonic of stiffness and error that is there, at least 1; `errors` are amplitudes from the second on."""
+    return max(order, 1, *(i + 2 for i, size in enumerate(errors) if size != 0.0))
+
+
+def largest(series: Array) -> float:
+    """Most that an error of such amplitudes can be."""
+    return float(math.fsum(np.abs(series[0])))

@@ -1,0 +1,320 @@
+"""A film under a load that changes with time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from base import (
+    Array,
+    Cost,
+    Stopwatch,
+    described,
+    part,
+    quantity,
+    record,
+    unclocked,
+)
+from base.results import ITSELF, WORST
+from ehl.discrete.contact import LineContact
+from ehl.discrete.supply import Meniscus
+from ehl.films.film import Film, unsolved
+from ehl.films.outcome import GRID_FACTOR
+from ehl.films.solver import solve
+from ehl.solving.course import Course, JumpError, Shot
+from ehl.solving.over_time import OverTime, at_time, checked, jump_fault
+from ehl.solving.stepping import Laying
+
+_FIRST_NODES = 129
+_MOST_NODES = 513
+_ROUNDS = 6
+_TIME_SHARE = 0.4  # of the tolerance, for the steps of time
+_STEPS = 25.0  # of time in one transit, at first
+_FIRST_ALLOWED = 2e-5  # local error of a step at first, whatever the tolerance
+
+
+@record
+class TransientFilm:
+    """A film over time, per metre of face; figures are NaN where `converged` is False."""
+
+    headline = ("lowest", "lowest_time")
+
+    contact: LineContact = part("the contact at the first time")
+    time: Array = quantity("s", "time", "time")
+    load: Array = quantity("N/m", "load", "time", shown="N/mm")
+    least: Array = quantity("m", "minimum film thickness", "time", shown="um", error="error")
+    central: Array = quantity("m", "film thickness at x = 0", "time", shown="um", error="error")
+    separation: Array = quantity(
+        "m",
+        "film separation: approach of the dry contact less that with the film",
+        "time",
+        shown="um",
+        error="error",
+    )
+    greatest_pressure: Array = quantity("Pa", "maximum pressure", "time", shown="GPa", error="pressure_error")
+    x: Array = quantity("m", "places, which follow the contact", "time node", shown="um")
+    pressure: Array = quantity("Pa", "pressure", "time node", shown="GPa")
+    thickness: Array = quantity("m", "film thickness", "time node", shown="um")
+    no_error = "not estimated in single places; the central and the minimum film have one"
+    cost: Cost
+    converged: bool
+    message: str
+    lowest: float = unsolved("m", "minimum film of all steps of time", shown="um", error="error")
+    lowest_time: float = unsolved("s", "time of it")
+    grid_error: float = unsolved(
+        "1", "largest change of central and minimum film and separation between two grids", no_error=ITSELF
+    )
+    time_error: float = unsolved(
+        "1",
+        "local errors of the steps of time, added over the time that oil takes through the contact",
+        no_error=ITSELF,
+    )
+    pressure_error: float = unsolved(
+        "1",
+        "change of the maximum pressure between two grids, for each halving that the spike's cells need",
+        no_error=ITSELF,
+    )
+    balance: float = unsolved(
+        "1",
+        "largest net flux into a node, its change of content counted, over the flux, of all steps",
+        no_error=ITSELF,
+    )
+
+    @described("1", no_error=ITSELF)
+    def error(self) -> float:
+        """Estimated relative error of the films, by grid and by steps of time together."""
+        return self.grid_error + self.time_error
+
+
+def solve_transient(
+    contact: LineContact,
+    load: OverTime,
+    time: ArrayLike,
+    *,
+    entrainment: OverTime | None = None,
+    radius: OverTime | None = None,
+    tolerance: float = 0.01,
+    nodes: int | None = None,
+    step: float | None = None,
+    supply: Meniscus | None = None,
+) -> TransientFilm:
+    """Solve the isothermal line contact under a load, speed and radius that change with time.
+
+    Reynolds' equation ``d/dx[rho h^3/(12 eta) dp/dx] = u d(rho h)/dx + d(rho h)/dt`` with the gap and the load of every
+    moment, from the steady film at the first time on; backwards in time with second order, by steps of an estimated
+    error, on nodes that follow the contact.
+
+    Parameters
+    ----------
+    contact : LineContact
+        Oil, modulus, and whatever does not change; its load is not used.
+    load : callable or array_like
+        w over time [N/m]: a function of seconds, or values at the times, linear between them.
+    time : array_like (n,)
+        Times [s], increasing, at which the film is given.
+    entrainment, radius : callable or array_like, optional
+        u [m/s] and R [m] over time; the contact's unless given.
+    tolerance : float
+        Wanted relative error of central and minimum film at every time.
+    nodes : int, optional
+        Solve on this many nodes instead and report the error that this leaves.
+    step : float, optional
+        Longest step of time [s], all of one length between two of the times; by the tolerance unless given.
+    supply : Meniscus, optional
+        Place from which the gap is full; flooded unless given.
+
+    Returns
+    -------
+    TransientFilm
+        With ``converged=False``, NaN figures and a remedy in ``message`` if no film was found at some time. A film
+        whose error is above the tolerance on 513 nodes keeps its figures; ``error`` and ``message`` say so.
+
+    Raises
+    ------
+    InputError
+        With every fault of the arguments. For a load that jumps: in no time no oil leaves the gap, which would carry
+        the jump as a flat punch as wide as the oil reaches; ramp it over the time in which load sharing shifts it. For
+        an entrainment that turns round: inlet and outlet would change places.
+
+    Notes
+    -----
+    Method and limits: docs/theory/ehl.md, "Time".
+
+    Examples
+    --------
+    A load that rises by a fifth within the time b/u:
+
+    >>> from ehl import Lubricant
+    >>> oil = Lubricant(viscosity=0.06, pressure_viscosity=22.6e-9, density=910.0)
+    >>> contact = LineContact(load=1e5, entrainment=1.0, radius=0.015, reduced_modulus=2.2e11, lubricant=oil)
+    >>> unit = contact.half_width / contact.entrainment
+    >>> film = solve_transient(contact, lambda t: 1e5 * (1 + 0.2 * min(t / unit, 1)), [0, unit, 4 * unit], nodes=65)
+    >>> film.converged, [f"{1e6 * h:.2f}" for h in film.least]
+    (True, ['0.45', '0.44', '0.44'])
+    """
+    functions, times = checked(contact, load, time, entrainment, radius, tolerance, nodes, step, supply)
+    with unclocked():
+        import ehl.kernels.kernels  # noqa: F401  numba
+    watch = Stopwatch()
+
+    def contact_at(at: float) -> LineContact:
+        return at_time(contact, functions, at)
+
+    run = _Run(contact_at, times, tolerance, step, supply, watch)
+    try:
+        return run.solved(nodes)
+    except JumpError as jump:
+        raise jump_fault(contact_at, float(jump.args[0])) from None
+
+
+class _Run:
+    """Solves on two grids, finer ones and shorter steps until the tolerance is met."""
+
+    def __init__(
+        self,
+        contact_at: Callable[[float], LineContact],
+        times: Array,
+        tolerance: float,
+        step: float | None,
+        supply: Meniscus | None,
+        watch: Stopwatch,
+    ) -> None:
+        self.contact_at, self.times, self.tolerance = contact_at, times, tolerance
+        self.step, self.supply, self.watch = step, supply, watch
+        self.allowed = max(_TIME_SHARE * tolerance / _STEPS, _FIRST_ALLOWED)
+        self.iterations = self.nodes = self.rejected = 0
+
+    def solved(self, nodes: int | None) -> TransientFilm:
+        """Return the film, or the reason why there is none."""
+        n, reason = nodes or _FIRST_NODES, ""
+        nearest: tuple[tuple[Course, Course], float, float] | None = None
+        for _ in range(_ROUNDS):
+            first = solve(self.contact_at(float(self.times[0])), nodes=n, supply=self.supply)
+            if not first.converged:
+                return self.failed(first, f"the steady film of the first time: {first.message}")
+            pair = self.pair(first)
+            if isinstance(pair, str):
+                self.allowed *= 0.25
+                reason = pair
+                continue
+            grid, steps = _grid_error(*pair) + first.errors.inlet, pair[0].error
+            reason = f"error {grid + steps:.2g} left on {n} nodes with {len(pair[0].shots) - 1} steps of time"
+            if nodes is not None or self.step is not None or grid + steps <= self.tolerance:
+                return self.film(pair, grid, steps)
+            if nearest is None or grid + steps < nearest[1] + nearest[2]:
+                nearest = pair, grid, steps
+            if steps > _TIME_SHARE * self.tolerance:
+                self.allowed *= 0.7 * (_TIME_SHARE * self.tolerance / steps) ** 1.5
+            while grid > (1.0 - _TIME_SHARE) * self.tolerance and n <= _MOST_NODES:
+                n, grid = 2 * n - 1, 0.3 * grid  # of second order, with a margin
+            if n > _MOST_NODES:
+                break
+        if nearest is not None and nearest[1] + nearest[2] < WORST:
+            off = nearest[1] + nearest[2]
+            message = f"converged; the error of {off:.2g} is above the tolerance of {self.tolerance:.2g}"
+            return replace(self.film(*nearest), message=message)
+        return self.failed(
+            first, f"{reason}: allow a larger tolerance, or let load and speed change more slowly"
+        )
+
+    def pair(self, first: Film) -> tuple[Course, Course] | str:
+        """Follow the film on the coarser grid, and on the finer one through the same instants."""
+        assert first.state is not None
+        coarse, fine = (
+            Course.begin(
+                float(self.times[0]),
+                level,
+                self.contact_at,
+                Laying(level.contact, level.plan, level.grid.nodes.size, self.supply),
+            )
+            for level in (first.state.coarse, first.state.fine)
+        )
+        self.nodes = max(self.nodes, fine.laying.nodes)
+        if self.step is None:
+            done = coarse.to(self.times[1:], self.allowed) and fine.through(coarse.times[1:])
+        else:
+            pieces = [
+                np.linspace(a, b, max(1, math.ceil((b - a) / self.step - 1e-9)) + 1)[1:]
+                for a, b in zip(self.times[:-1], self.times[1:], strict=True)
+            ]
+            instants = np.concatenate([*pieces, np.zeros(0)])
+            done = coarse.through(instants) and fine.through(instants)
+        for one in (coarse, fine):
+            self.iterations += one.iterations
+            self.rejected += one.rejected
+        return (coarse, fine) if done else coarse.message or fine.message
+
+    def cost(self, steps: int) -> Cost:
+        """Return what was spent."""
+        counts = {"steps": steps, "rejected": self.rejected}
+        return Cost(self.watch.seconds, unknowns=self.nodes - 1, iterations=self.iterations, counts=counts)
+
+    def film(self, pair: tuple[Course, Course], grid: float, steps: float) -> TransientFilm:
+        """Return the film in SI."""
+        fine = pair[1]
+        shown = [_shot(fine, at) for at in self.times.tolist()]
+        lowest = min(fine.shots, key=lambda shot: shot.figures.minimum_thickness)
+        tops = [np.array([shot.pressure.max() for shot in one.shots]) for one in pair]
+        # a spike narrower than its cells grows by about as much with every halving of them
+        growth = np.abs(tops[0] / tops[1] - 1.0) * (1.0 + np.array([shot.halvings for shot in fine.shots]))
+        return TransientFilm(
+            contact=fine.shots[0].contact,
+            time=self.times,
+            load=np.array([one.contact.load for one in shown]),
+            least=np.array([one.figures.minimum_thickness for one in shown]),
+            central=np.array([one.figures.central_thickness for one in shown]),
+            separation=np.array([one.figures.separation for one in shown]),
+            greatest_pressure=np.array([one.pressure.max() for one in shown]),
+            x=np.array([one.x for one in shown]),
+            pressure=np.array([one.pressure for one in shown]),
+            thickness=np.array([one.thickness for one in shown]),
+            cost=self.cost(len(fine.shots) - 1),
+            converged=True,
+            message="converged",
+            lowest=lowest.figures.minimum_thickness,
+            lowest_time=lowest.time,
+            grid_error=grid,
+            time_error=steps,
+            pressure_error=float(np.max(growth)),
+            balance=max(one.balance for one in fine.shots),
+        )
+
+    def failed(self, first: Film, reason: str) -> TransientFilm:
+        """Return no figures."""
+        blank = np.full(self.times.size, math.nan)
+        curves = np.full((self.times.size, first.x.size), math.nan)
+        load = np.array([self.contact_at(at).load for at in self.times.tolist()])
+        return TransientFilm(
+            contact=first.contact,
+            time=self.times,
+            load=load,
+            least=blank,
+            central=blank,
+            separation=blank,
+            greatest_pressure=blank,
+            x=curves,
+            pressure=curves,
+            thickness=curves,
+            cost=self.cost(0),
+            converged=False,
+            message=reason,
+        )
+
+
+def _grid_error(coarse: Course, fine: Course) -> float:
+    """Largest estimated error of the finer of two grids, of all moments."""
+    names = ("central_thickness", "minimum_thickness", "separation")
+    worst = 0.0
+    for before, after in zip(coarse.shots, fine.shots, strict=True):
+        changes = [getattr(before.figures, name) / getattr(after.figures, name) - 1.0 for name in names]
+        worst = max(worst, GRID_FACTOR * math.fsum(abs(float(one)) for one in changes))
+    return worst
+
+
+def _shot(course: Course, time: float) -> Shot:
+    """Shot of one of the times."""
+    return course.shots[int(np.argmin(np.abs(course.times - time)))]

@@ -1,0 +1,1 @@
+"""Compiled kernels of the film, of its heat and of its shear: plain arrays in and out."""

@@ -1,0 +1,1 @@
+"""The lubricant: viscosity and density under pressure and temperature, grades, measured tables."""

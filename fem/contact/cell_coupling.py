@@ -1,0 +1,136 @@
+"""Compliance between cells of the face, position by position: among cells that may touch, by Cholesky's method."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from base import Array, Booleans, Integers
+from gears.sharing.load_coupling import Coupling
+
+__all__ = ["CellCoupling", "solve_symmetric"]
+
+
+START = 0.1
+"""Part of an even share of the force with which a cell is taken in."""
+
+
+class CellCoupling(Coupling):
+    """Compliance between the cells of all pairs that may touch at each position.
+
+    Attributes
+    ----------
+    cells : tuple of (m,) arrays of int
+        Of the pairs that may touch at each position, among all n.
+    blocks : tuple of (m, m) arrays
+        Their compliance [m/N].
+    unknowns : int
+        n, pairs times cells.
+    """
+
+    apart = True
+
+    def __init__(self, cells: tuple[Integers, ...], blocks: tuple[Array, ...], unknowns: int) -> None:
+        self.cells, self.blocks, self.unknowns = cells, blocks, unknowns
+        self.start = START / unknowns
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """(positions, n, n)."""
+        return len(self.blocks), self.unknowns, self.unknowns
+
+    @cached_property
+    def finite(self) -> bool:
+        """Whether all numbers are finite."""
+        return all(bool(np.all(np.isfinite(block))) for block in self.blocks)
+
+    @property
+    def diagonal(self) -> Array:
+        """Deflection of each cell by its own unit force (positions, n) [m/N]; 1 where it cannot touch."""
+        found = np.ones((len(self.blocks), self.unknowns))
+        for row, cells, block in zip(found, self.cells, self.blocks, strict=True):
+            row[cells] = np.diagonal(block)
+        return found
+
+    @cached_property
+    def shortest(self) -> Array:
+        """What each cell yields by its own unit force more than its neighbour does (positions, n) [m/N]."""
+        found = np.ones((len(self.blocks), self.unknowns))
+        for row, cells, block in zip(found, self.cells, self.blocks, strict=True):
+            by_next = np.diagonal(block, 1)
+            less = np.maximum(np.append(by_next, by_next[-1]), np.append(by_next[0], by_next))
+            row[cells] = np.diagonal(block) - less
+        return found
+
+    def applied(self, forces: Array, wanted: Booleans, known: Array) -> Array:
+        """As of ``gears.sharing.load_coupling.Coupling``; 0 where cells cannot touch."""
+        found, positions = known.copy(), len(self.blocks)
+        flat, pressed = found.reshape(-1, self.unknowns), forces.reshape(-1, self.unknowns)
+        for at in np.flatnonzero(wanted).tolist():
+            cells, block = self.cells[at % positions], self.blocks[at % positions]
+            flat[at, cells] = block @ pressed[at].take(cells)
+        return found
+
+    def solved(
+        self, slope: Array, residual: Array, active: Booleans, wanted: Booleans
+    ) -> tuple[Array, Array, float]:
+        """As of ``gears.sharing.load_coupling.Coupling``."""
+        unit, response = np.zeros((2, *residual.shape))
+        positions, size = len(self.blocks), self.unknowns
+        one, other, stiff, rest, bearing = (
+            whole.reshape(-1, size) for whole in (unit, response, slope, residual, active)
+        )
+        for at in np.flatnonzero(wanted).tolist():
+            cells, block = self.cells[at % positions], self.blocks[at % positions]
+            bears = bearing[at].take(cells).nonzero()[0]
+            chosen = cells[bears]
+            # rows and then columns are copied much faster than both at once
+            jacobian = block.take(bears, axis=0).take(bears, axis=1)
+            jacobian.ravel()[:: len(bears) + 1] += stiff[at].take(chosen)
+            sides = np.empty((2, len(bears)))
+            sides[0], sides[1] = 1.0, rest[at].take(chosen)
+            one[at, chosen], other[at, chosen] = solve_symmetric(jacobian, sides)
+        return unit, response, 1.0
+
+    def plus(self, more: Array, levers: Array) -> CellCoupling:
+        """With a further compliance that couples cells by their place on the face, whatever their pair.
+
+        Parameters
+        ----------
+        more : (cells, cells) array
+            Displacement along the line of action by forces [m/N].
+        levers : (positions, pairs) array
+            kappa of the forces kappa F that are asked for.
+        """
+        n, blocks = len(more), []
+        for chosen, block, lever in zip(self.cells, self.blocks, levers, strict=True):
+            each = lever[chosen[::n] // n]
+            k = len(each)
+            found = block.reshape(k, n, k, n) + more[:, None] / (each[:, None] * each)[:, None, :, None]
+            blocks.append(found.reshape(k * n, k * n))
+        return CellCoupling(self.cells, tuple(blocks), self.unknowns)
+
+    def definite(self, slope: Array, active: Booleans, wanted: Booleans) -> bool:
+        """Whether cells that bear yield to every change of their forces, with slopes of their laws (..., n) [m/N].
+
+        Positions that are not wanted (...) are not looked at. Forces of others are one solution of many.
+        """
+        from scipy.linalg.lapack import dpotrf
+
+        for at in zip(*np.nonzero(wanted), strict=True):
+            cells, block = self.cells[at[-1]], self.blocks[at[-1]]
+            bears = np.flatnonzero(active[at][cells])
+            jacobian = block.take(bears, axis=0).take(bears, axis=1)
+            jacobian.ravel()[:: len(bears) + 1] += slope[at][cells[bears]]
+            if dpotrf(jacobian.T, lower=True)[1]:
+                return False
+        return True
+
+
+def solve_symmetric(matrix: Array, sides: Array) -> Array:
+    """Solve for rows of sides by Cholesky's method; where cells are narrow the matrix may be indefinite."""
+    from scipy.linalg.lapack import dposv
+
+    _, found, failed = dposv(matrix.T, sides.T, lower=True)
+    return np.asarray(np.linalg.solve(matrix, sides.T).T if failed else found.T)

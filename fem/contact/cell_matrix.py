@@ -1,0 +1,114 @@
+"""Compliance between the cells of the face of all pairs in contact, kept for loads and alignments that follow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Booleans
+from fem.contact.cell_coupling import CellCoupling
+from fem.influence.solved_gear import Gears
+from fem.pair.face_compliance import pair_ends, pair_waves
+from fem.pair.face_setting import FREE_ENDS, SLICES, FaceSetting
+from fem.pair.overhang import cosines, overhang
+
+if TYPE_CHECKING:
+    from fem.laws.contact_candidates import ContactCandidates
+    from fem.pair.bodies import Compliance
+
+__all__ = ["cell_coupling", "cell_matrix", "in_blocks"]
+
+MOST_KEPT = 8_000_000
+"""Numbers of a compliance up to which it is kept."""
+
+MOST_AT_ONCE = 4_000_000
+"""Numbers of the compliance of all candidates, of which those that cannot touch are left out again."""
+
+
+def cell_coupling(
+    face: FaceSetting, bodies: Compliance, where: ContactCandidates, kappa: Array, matrix: Array
+) -> CellCoupling:
+    """Compliance of the bodies between cells of pairs that may touch, arguments as of ``cell_matrix``."""
+    size = int(np.sum((where.touchable.sum(axis=-1) * face.cells) ** 2))
+
+    def cut() -> CellCoupling:
+        def some(of: slice) -> Array:
+            return cell_matrix(face, bodies, where.rho[:, of], kappa[of], matrix[of])
+
+        return in_blocks(some, where.touchable, face.cells)
+
+    if size > MOST_KEPT:
+        return cut()
+    laws = (bodies.pinion.law.plane_modulus, bodies.wheel.law.plane_modulus)
+    arrays = (where.rho, where.touchable, kappa, matrix)
+    pair = bodies.pair
+    size_of = (pair.module, pair.face_width, pair.face_widths, pair.face_offsets, bodies.reach)
+    key = (bodies.meshed, laws, size_of, face.coupled, *(one.tobytes() for one in arrays))
+    return Gears().over_face("cells", key, cut)
+
+
+def in_blocks(some: Callable[[slice], Array], touchable: Booleans, cells: int) -> CellCoupling:
+    """What stands between the cells of pairs that may touch.
+
+    Parameters
+    ----------
+    some : callable
+        Matrices (k, n, n) between the cells of all pairs at k of the positions, as a slice.
+    touchable : (positions, pairs) boolean array
+    cells : int
+    """
+    own, (positions, pairs) = np.arange(cells), touchable.shape
+    chosen = tuple((np.flatnonzero(row)[:, None] * cells + own).ravel() for row in touchable)
+    blocks: list[Array] = []
+    step = max(1, MOST_AT_ONCE // (pairs * cells) ** 2)
+    for first in range(0, positions, step):
+        of = slice(first, first + step)
+        blocks += (
+            one.take(at, axis=0).take(at, axis=1) for one, at in zip(some(of), chosen[of], strict=True)
+        )
+    return CellCoupling(chosen, tuple(blocks), pairs * cells)
+
+
+def cell_matrix(
+    face: FaceSetting,
+    bodies: Compliance,
+    rho: Array,
+    kappa: Array,
+    matrix: Array,
+    gears: Sequence[int] = (0, 1),
+) -> Array:
+    """Compliance of the bodies between cells of all pairs (positions, pairs cells, pairs cells) [m/N].
+
+    Parameters
+    ----------
+    face : FaceSetting
+    bodies : Compliance
+    rho : (2, positions, pairs) array
+        Curvature radii [m].
+    kappa : (positions, pairs) array
+        Levers of the normals about the pinion's axis over its base radius.
+    matrix : (positions, pairs, pairs) array
+        The plane's compliance of forces kappa F [m/N].
+    gears : sequence of int
+        That yield beside that: 0 is the pinion, 1 the wheel.
+    """
+    cells, (positions, pairs), pair = face.cells, kappa.shape, bodies.pair
+    modes, levers = cosines(cells), kappa[..., :, None] * kappa[..., None, :]
+    by_mode = np.repeat(matrix[..., None], cells, axis=-1)
+    if face.model != SLICES:
+        by_mode[..., 1:] += pair_waves(bodies, rho, cells, face.strip, gears) / levers[..., None]
+    found = np.einsum("mc,pijm,md->picjd", modes, cells * by_mode, modes, optimize=True)
+    if face.model != SLICES:
+        for gear in gears:
+            if pair.face_widths[gear] != pair.face_width:
+                found += overhang(bodies, gear, rho[gear], face) / levers[:, :, None, :, None]
+    if face.model == FREE_ENDS:
+        edges = face.edges(pair)
+        first, second = (edges - offset for offset in pair.face_offsets)
+        found += (
+            pair_ends(bodies, rho, (first, second), pair.face_widths, gears) / levers[:, :, None, :, None]
+        )
+    size = pairs * cells
+    return np.asarray(found.reshape(positions, size, size))

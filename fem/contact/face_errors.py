@@ -1,0 +1,232 @@
+"""Errors by the cells of a face and by its free ends: what half as many cells change, and how loads bend."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import hypot, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, record
+from fem.pair.face_setting import FREE_ENDS, WALLS
+from gears.sharing.mesh_figures import Scatter
+
+if TYPE_CHECKING:
+    from fem.contact.cell_contact import CellContact, CellShare
+    from fem.pair.face_setting import FaceSetting
+    from gears import LoadShare
+
+__all__ = ["FEW_CELLS", "CellErrors", "cell_errors", "face_load_factors", "greatest_error", "half_as_many"]
+
+LEFT = 1.0 / sqrt(3.0)
+"""Part of what twice as many cells changed that is left of stiffness and deflection.
+
+Every doubling changes about half as much as the one before, with a sign by chance: (1/4 + 1/16 + ...)^(1/2).
+"""
+
+LEFT_OF_LOAD = 0.25
+"""Part that is left, in the second order, of what a maximum load changed by and a parabola did not foresee."""
+
+FEW_CELLS = 4
+"""Cells that a contact needs; with fewer the result says so."""
+
+ENDS_ERROR = 0.03
+"""Part of what free ends do that their coarse sections leave uncertain, beside three-dimensional elements.
+
+Of a displacement where the load stands 0.02. Of the root stress, by a separate section (``fem.influence.fillet_ends``)
+and with what free ends do at most within two modules, 0.005 to 0.015; at the end itself under the end cell alone 0.03.
+"""
+
+
+@record
+class CellErrors:
+    """Errors by the cells of every torque, relative.
+
+    Attributes
+    ----------
+    factor, line_load : (torques,) arrays
+        Of the maximum face-load factor and the maximum line load.
+    relative : (torques,) array
+        Of stiffness and deflection at a position, root mean square over positions.
+    ends : (torques,) array
+        Further one of both from what free ends leave uncertain, alike at all positions.
+    scatter : dict of (3, torques) arrays
+        As of ``gears.sharing.mesh_figures.FewerCells``.
+    shafts, tilt, matrix : (torques,) arrays
+        Of how far shafts give way, of their tilt, and of the mesh between bodies on them; 0 where they are rigid.
+    """
+
+    factor: Array
+    line_load: Array
+    relative: Array
+    ends: Array
+    scatter: Mapping[str, Array]
+    shafts: Array
+    tilt: Array
+    matrix: Array
+
+    def of(self, torque: int) -> dict[str, Scatter]:
+        """Scatter of a single torque."""
+        return {
+            name: Scatter(*(float(size) for size in each[:, torque])) for name, each in self.scatter.items()
+        }
+
+
+def half_as_many(face: FaceSetting) -> tuple[FaceSetting, float]:
+    """The face with half as many cells, and which part of what that changes is error."""
+    few = max(2 * (face.cells // 4), 2)  # two cells have no half: nobody asks for their error
+    return replace(face, cells=few), LEFT / (max(face.cells / few, 2.0) - 1)
+
+
+def cell_errors(over: CellContact, face: FaceSetting, fine: CellShare, coarse: CellShare) -> CellErrors:
+    """Estimate errors of cycles with cells by those with half as many."""
+    _, rest = half_as_many(face)
+    scatter, relative = {}, np.zeros(len(over.whole))
+    both = [_curves(over.whole, one.share) for one in (fine, coarse)]
+    for name, curve in both[0].items():
+        change = rest * (both[1][name] - curve)
+        if name != "secant_stiffness":
+            relative = np.maximum(relative, _size(change / curve))
+        if name == "transmission_error" and fine.shafts is not None and coarse.shafts is not None:
+            change = change + rest * (coarse.shafts.touch - fine.shafts.touch)
+        varying = change - change.mean(axis=(1, 2), keepdims=True)
+        size = _size(change)
+        scatter[name] = np.stack([size, _size(varying), size / np.sqrt(_stretches(change))])
+    each = [_load_errors(over, face, fine, coarse, torque) for torque in range(len(over.whole))]
+    factor, line_load, ends = np.array(each).T
+    return CellErrors(factor, line_load, relative, ends, scatter, *_shaft_errors(fine, coarse, rest))
+
+
+def _shaft_errors(fine: CellShare, coarse: CellShare, rest: float) -> Array:
+    """Errors of what shafts do, of their tilt and of the mesh on them (3, torques), of the largest over positions."""
+    if fine.shafts is None or coarse.shafts is None:
+        return np.zeros((3, len(fine.forces)))
+    one, other = fine.shafts, coarse.shafts
+    size = np.sqrt(_greatest(one.mesh[..., 0, 0]) * _greatest(one.mesh[..., 1, 1]))
+
+    def error(first: Array, second: Array, over: Array | None = None) -> Array:
+        change, most = rest * _greatest(second - first), _greatest(first) if over is None else over
+        return np.divide(change, most, out=np.zeros_like(most), where=most > 0.0)
+
+    return np.array(
+        [
+            error(one.deflection, other.deflection),
+            np.maximum(error(one.tilt, other.tilt), error(one.tilt_touch, other.tilt_touch)),
+            np.max(
+                [
+                    error(one.mesh[..., 0, 0], other.mesh[..., 0, 0]),
+                    error(one.mesh[..., 1, 0], other.mesh[..., 1, 0], size),
+                    error(one.mesh[..., 1, 1], other.mesh[..., 1, 1]),
+                ],
+                axis=0,
+            ),
+        ]
+    )
+
+
+def _greatest(values: Array) -> Array:
+    """Size over all but torques (torques,)."""
+    return np.asarray(np.abs(values).reshape(len(values), -1).max(axis=1))
+
+
+def _size(change: Array) -> Array:
+    """Root mean square over pitches and positions (torques,)."""
+    return np.asarray(np.sqrt(np.mean(change**2, axis=(1, 2))))
+
+
+def _stretches(change: Array) -> Array:
+    """Stretches of the mesh cycle in which a change (torques, pitches, positions) keeps its sign, at least one each.
+
+    What changes by chance from one to the next is off in the mean by its size over the root of their number.
+    """
+    signs = np.sign(change.reshape(len(change), -1))
+    return np.asarray(np.maximum(np.count_nonzero(signs != np.roll(signs, 1, axis=1), axis=1), 1))
+
+
+def _curves(whole: Array, share: LoadShare) -> dict[str, Array]:
+    """Curves of a cycle (torques, pitches, positions), deflection for transmission error."""
+    moved = share.transmission_error
+    return {"stiffness": share.stiffness, "transmission_error": moved, "secant_stiffness": whole / moved}
+
+
+def _load_errors(
+    over: CellContact, face: FaceSetting, fine: CellShare, coarse: CellShare, torque: int
+) -> tuple[float, float, float]:
+    """Errors of the maximum factor and line load, and that of stiffness and deflection by free ends."""
+    kappa = over.kappa[..., None]
+    loads, fewer = (one.left.shape[-1] * one.forces[torque] / kappa for one in (fine, coarse))
+    factors, half = face_load_factors(loads), face_load_factors(fewer)
+    greatest, greatest_half = loads.max(axis=(-2, -1)), fewer.max(axis=(-2, -1))
+    ends, found = 0.0, []
+    for values, few_values, over_mean in ((factors, half, True), (greatest, greatest_half, False)):
+        at, few_at = _place(values), _place(few_values)
+        error = greatest_error(_most_loaded(loads[at], over_mean), _most_loaded(fewer[few_at], over_mean))
+        if face.model == FREE_ENDS:
+            free, held = coarse.share, _between_walls(over, face, coarse, torque, at)
+            without = held.left.shape[-1] * held.forces[0] / kappa[at[1]]
+            value = face_load_factors(without) if over_mean else without.max(axis=(-2, -1))
+            error += ENDS_ERROR * abs(float(few_values[at]) - float(value[0, 0])) / float(values[at])
+            for name in ("stiffness", "transmission_error") if over_mean else ():
+                apart = getattr(held.share, name)[0, 0, 0] / getattr(free, name)[torque, *at]
+                ends = max(ends, ENDS_ERROR * abs(float(apart) - 1.0))
+        found.append(error)
+    return found[0], found[1], ends
+
+
+def _place(values: Array) -> tuple[int, int]:
+    """Pitch and position of the maximum value."""
+    pitch, position = np.unravel_index(int(np.argmax(values)), values.shape)
+    return int(pitch), int(position)
+
+
+def _between_walls(
+    over: CellContact, face: FaceSetting, coarse: CellShare, torque: int, at: tuple[int, int]
+) -> CellShare:
+    """Half as many cells at one position without what free ends do."""
+    few, _ = half_as_many(face)
+    start = coarse.forces[torque, *at][None, None, None]
+    return over.at(torque, *at).shared(replace(few, model=WALLS), start)
+
+
+def _most_loaded(loads: Array, over_mean: bool) -> Array:
+    """Line loads (cells,) of the pair that bears most, over their mean, or of that with the largest one."""
+    if over_mean:
+        most = loads[int(np.argmax(loads.sum(axis=-1)))]
+        return np.asarray(most / most.mean())
+    return np.asarray(loads[int(np.argmax(loads.max(axis=-1)))])
+
+
+def greatest_error(cells: Array, fewer: Array) -> float:
+    """Relative error of the largest of line loads (cells,), by those with half as many.
+
+    Within the face it is what the largest cell lacks to the top of a parabola through it and its neighbours, and a
+    part of what the last doubling changed beyond what the parabola there foresaw. At an end, and where few cells bear,
+    all that the doubling changed is left, in the first order, or what the parabola foresees, if more.
+    """
+    k, most = int(np.argmax(cells)), float(cells.max())
+    change = (most - float(fewer.max())) / max(len(cells) / len(fewer) - 1.0, 1.0)
+    if k in (0, len(cells) - 1) or np.count_nonzero(cells) < FEW_CELLS:
+        return max(abs(change), abs(_foreseen(cells))) / most
+    bend, slope = 2.0 * cells[k] - cells[k - 1] - cells[k + 1], cells[k + 1] - cells[k - 1]
+    lacking = bend / 24.0 + slope**2 / (8.0 * bend)
+    return float(hypot(lacking, LEFT_OF_LOAD * (change - _foreseen(fewer))) / most)
+
+
+def _foreseen(cells: Array) -> float:
+    """What halving the cells adds to the largest, by a parabola with the means of three."""
+    k, last = int(np.argmax(cells)), len(cells) - 1
+    if last < 2:
+        return 0.0
+    if k in (0, last):
+        first, second, third = cells[:3] if k == 0 else cells[:-4:-1]
+        return float(3.0 * first - 4.0 * second + third) / 8.0
+    return abs(float(cells[k + 1] - cells[k - 1])) / 8.0
+
+
+def face_load_factors(forces: Array) -> Array:
+    """Maximum force on a cell of the most loaded pair over that pair's mean (...) of forces (..., pairs, cells)."""
+    most = np.argmax(forces.sum(axis=-1), axis=-1)[..., None, None]
+    chosen = np.take_along_axis(forces, most, axis=-2)[..., 0, :]
+    return np.asarray(chosen.max(axis=-1) / chosen.mean(axis=-1))

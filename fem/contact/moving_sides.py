@@ -1,0 +1,311 @@
+"""Contacts that move where flanks on both sides of the teeth bear: one energy of both sides and of what couples them.
+
+The pinion turns by D, so that its loaded flanks roll on by D from their first touch. Its other flanks, seen in the
+mirror, roll on by D' = -(D + j), j the backlash between first touches of both sides. With the energy of each side by
+itself (``fem.contact.moving_contact``) and X, what loads on one side do to the other (``fem.contact.opposite_flanks``),
+at the places x_1 and x_1' of the pinion's flanks,
+
+    U* = U_front(F, D) + U_back(G, D') + F.X(D, D') G,      X = X_0 + D dX/dx_1 + D' dX/dx_1',
+
+    D = dU*/dF_i + gap_i,    -D = dU*/dG_k + j + gap_k,    T/r_b1 = sum l_i F_i - sum l_k G_k - dU*/dD :
+
+levers are shorter by half of dX/dD G on the loaded side, and longer by half of dX/dD F on the other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Booleans, record
+from fem.contact.loaded_flanks import LoadedFlanks, greatest_force, loaded_flanks
+from fem.contact.moving_contact import ContactMoves, MovingPairs, answers, contact_moves, moving_pairs
+from fem.contact.moving_corners import MovedFlanks, moved_flanks
+from fem.contact.moving_newton import Linearised, moved_forces
+from fem.contact.opposite_flanks import ROUNDING, BothSides, between, both_sides
+from gears import LoadShare
+
+if TYPE_CHECKING:
+    from fem.laws.edge_tables import EdgeTables
+    from fem.laws.local_law import Film
+    from fem.laws.setting import Setting
+    from fem.pair.bodies import Compliance
+
+__all__ = ["BothMoved", "MovedSide", "MovingSides", "both_moved", "moved_side", "moving_sides"]
+
+STEP = 1e-3
+"""Part of the module over which X is differentiated by the place."""
+
+
+@record
+class MovedSide:
+    """Flanks on one side whose contacts move.
+
+    Attributes
+    ----------
+    flanks : LoadedFlanks
+        Of contacts that stay.
+    pairs : MovingPairs
+    moves : ContactMoves
+    own : MovedFlanks or None
+        Of the corners.
+    kappa : (positions, pairs) array
+        Of the forces in ``pairs``.
+    """
+
+    flanks: LoadedFlanks
+    pairs: MovingPairs
+    moves: ContactMoves
+    own: MovedFlanks | None
+    kappa: Array
+
+    @property
+    def levers(self) -> Array:
+        """Of the tilted forces about the pinion's axis, over kappa r_b1 (positions, pairs)."""
+        return np.asarray(self.flanks.levers * self.flanks.kappa / self.kappa)
+
+
+def moved_side(
+    given: Setting, bodies: Compliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
+) -> MovedSide:
+    """Flanks of one side with contacts that move; arguments as for ``loaded_flanks``."""
+    where, kappa, levers = flanks.where, flanks.kappa, flanks.levers
+    moves, own = contact_moves(bodies, where, given.beyond_path), None
+    matrix, laws = flanks.matrix, flanks.laws
+    gaps = where.gap - where.gap.min(axis=-1, keepdims=True)
+    if given.beyond_path:
+        own = moved_flanks(given, bodies, flanks, greatest_force(bodies, where, force), tables)
+        matrix, laws, gaps, levers = own.matrix, own.laws, own.gaps, own.levers
+        kappa = np.ones_like(kappa) if own.surfaces else kappa
+    pairs = moving_pairs(matrix, laws, flanks.oil, gaps, levers, moves, own)
+    return MovedSide(flanks, pairs, moves, own, kappa)
+
+
+@record
+class MovingSides:
+    """Loaded flanks and those on the other side, one after the other (``fem.contact.moving_newton``).
+
+    Attributes
+    ----------
+    front, back : MovingPairs
+    play : (pitches, positions) array
+        Turn between the first touches of both sides [m].
+    cross : (positions, front pairs, back pairs) array
+        X [m/N].
+    rolls : (2, positions, front pairs, back pairs) array
+        Its derivatives by the places of the pinion's loaded and other flanks [1/N].
+    start : float
+        Part of the whole force with which a pair is taken in.
+    """
+
+    front: MovingPairs
+    back: MovingPairs
+    play: Array
+    cross: Array
+    rolls: Array
+    start: float = 1e-2
+
+    @property
+    def count(self) -> int:
+        """Pairs on the loaded side."""
+        return int(self.cross.shape[-2])
+
+    @property
+    def touchable(self) -> Booleans:
+        """As of ``MovingForces``."""
+        return np.concatenate([self.front.touchable, self.back.touchable], axis=-1)
+
+    def split(self, every: Array) -> tuple[Array, Array]:
+        """(..., front and back pairs) as those of either side."""
+        return every[..., : self.count], every[..., self.count :]
+
+    def behind(self, approach: Array) -> Array:
+        """D' by which the other flanks have rolled on [m]."""
+        return np.asarray(-(approach + self.play))
+
+    def _coupling(self, approach: Array) -> Array:
+        """X where the pinion has turned by D."""
+        turn, behind = approach[..., None, None], self.behind(approach)[..., None, None]
+        return np.asarray(self.cross + turn * self.rolls[0] + behind * self.rolls[1])
+
+    def crossed(self, loads: Array) -> tuple[Array, Array]:
+        """dX/dD G, and dX/dD' F, by which the levers on either side are shorter."""
+        front, back = self.split(loads)
+        turned = self.rolls[0] - self.rolls[1]
+        return (turned @ back[..., None])[..., 0], -(np.swapaxes(turned, -1, -2) @ front[..., None])[..., 0]
+
+    def linearised(self, loads: Array, approach: Array) -> Linearised:
+        """As of ``MovingForces``."""
+        front, back = self.split(loads)
+        here = self.front.linearised(front, approach)
+        there = self.back.linearised(back, self.behind(approach))
+        cross, (one, two) = self._coupling(approach), self.crossed(loads)
+        bent = (cross @ back[..., None])[..., 0], (np.swapaxes(cross, -1, -2) @ front[..., None])[..., 0]
+        return Linearised(
+            np.concatenate([here.residual + bent[0], there.residual + bent[1]], axis=-1),
+            np.concatenate([here.reach - one, two - there.reach], axis=-1),
+            np.concatenate([here.arms - one, two - there.arms], axis=-1),
+            here.carried - there.carried - np.sum(one * front, axis=-1),
+            here.stiff + there.stiff,
+            np.concatenate([here.own, there.own], axis=-1),
+        )
+
+    def solved(self, at: Linearised, approach: Array, active: Booleans) -> tuple[Array, Array]:
+        """As of ``MovingForces``."""
+        cross = self._coupling(approach)
+        upper = np.concatenate([self.front.bulk_at(approach), cross], axis=-1)
+        back = self.back.bulk_at(self.behind(approach))
+        lower = np.concatenate([np.swapaxes(cross, -1, -2), back], axis=-1)
+        return answers(np.concatenate([upper, lower], axis=-2), at, active)
+
+    def unloaded(self, loads: Array, approach: Array) -> Array:
+        """As of ``MovingForces``."""
+        front, back = self.split(loads)
+        cross = self._coupling(approach)
+        here = self.front.unloaded(front, approach) + (cross @ back[..., None])[..., 0]
+        there = self.back.unloaded(back, self.behind(approach))
+        return np.concatenate(
+            [here, there + (np.swapaxes(cross, -1, -2) @ front[..., None])[..., 0]], axis=-1
+        )
+
+
+def moving_sides(given: Setting, bodies: Compliance, front: MovedSide, back: MovedSide) -> MovingSides:
+    """Put both sides together; the setting is that of the loaded one."""
+    step, turn = STEP * given.pair.module, np.array([1.0, 0.0])[:, None, None]
+    levers = (front.flanks.kappa / front.kappa)[:, :, None] * (back.flanks.kappa / back.kappa)[:, None, :]
+
+    def coupling(first: float, second: float) -> Array:
+        here, there = (
+            replace(side.flanks, where=replace(side.flanks.where, rho=side.flanks.where.rho + by * turn))
+            for side, by in ((front, first), (back, second))
+        )
+        return np.asarray(between(given, bodies, here, there) * levers)
+
+    rolls = [
+        (coupling(*ahead) - coupling(*behind)) / (2 * step)
+        for ahead, behind in (((step, 0.0), (-step, 0.0)), ((0.0, step), (0.0, -step)))
+    ]
+    touches = (side.flanks.where.gap.min(axis=-1) for side in (front, back))
+    play = given.pair.backlash + sum(touches)
+    return MovingSides(front.pairs, back.pairs, play, coupling(0.0, 0.0), np.stack(rolls))
+
+
+def _between(
+    problem: MovingSides, stays: BothSides, force: Array, alone: LoadShare | None, apart: Booleans
+) -> LoadShare | None:
+    """Share forces (torques, 1 or pitches, 1 or positions) [N] among both sides.
+
+    Parameters
+    ----------
+    problem : MovingSides
+    stays : BothSides
+        The same contacts that stay: what is begun with where flanks on both sides bear.
+    force : (torques, pitches, positions) array
+        [N]
+    alone : LoadShare or None
+        Of the loaded side by itself, kept where it lets nothing overlap; None without a torque.
+    apart : (torques,) boolean array
+        Torques for which it is kept whatever it lets overlap.
+
+    Returns
+    -------
+    LoadShare or None
+        Of both sides; None where Newton's method does not settle.
+    """
+    clear, near = np.zeros(force.shape, dtype=bool), None
+    if alone is not None:
+        nothing = np.zeros((*force.shape, problem.cross.shape[-1]))
+        near = replace(
+            alone,
+            forces=np.concatenate([alone.forces, nothing], axis=-1),
+            pair_stiffness=np.concatenate([alone.pair_stiffness, nothing], axis=-1),
+        )
+        left = problem.unloaded(near.forces, near.transmission_error)[..., problem.count :]
+        clear = np.all(left >= -ROUNDING * np.abs(near.transmission_error)[..., None], axis=-1)
+        clear |= apart[:, None, None]
+        if clear.all():
+            return near
+        force = np.where(apart[:, None, None], np.min(force[~apart]), force)
+    begin = stays.share(force)
+    found = moved_forces(problem, force, begin.forces, begin.transmission_error)
+    if found is None and near is not None:
+        begin_alone = np.where(clear[..., None], begin.forces, near.forces)
+        approach = np.where(clear, begin.transmission_error, near.transmission_error)
+        found = moved_forces(problem, force, begin_alone, approach)
+    if found is None or near is None:
+        return found
+    pairs = clear[..., None]
+    return LoadShare(
+        np.where(pairs, near.forces, found.forces),
+        np.where(clear, near.transmission_error, found.transmission_error),
+        np.where(clear, near.stiffness, found.stiffness),
+        np.where(pairs, near.pair_stiffness, found.pair_stiffness),
+        near.iterations + found.iterations,
+    )
+
+
+@record
+class BothMoved:
+    """Flanks on both sides that move, solved.
+
+    Attributes
+    ----------
+    problem : MovingSides
+    front, back : MovedSide
+    share : LoadShare
+        Of both sides, one after the other; of contacts that stay where ``settled`` is False.
+    rest : (pitches, positions) array
+        D without torque, as of ``fem.contact.opposite_flanks.OppositeShare`` [m].
+    settled : bool
+    """
+
+    problem: MovingSides
+    front: MovedSide
+    back: MovedSide
+    share: LoadShare
+    rest: Array
+    settled: bool
+
+
+def both_moved(
+    given: Setting,
+    bodies: Compliance,
+    force: Array,
+    film: Film | None,
+    flanks: LoadedFlanks,
+    alone: tuple[LoadShare, MovedSide | None] | None,
+    apart: Booleans,
+    reach: float,
+    tables: EdgeTables,
+) -> BothMoved:
+    """Share forces (torques,) [N] among flanks on both sides that move.
+
+    Parameters
+    ----------
+    given, bodies, force, film, flanks, apart, reach, tables
+        As for ``fem.contact.opposite_flanks.share_with_opposite``.
+    alone : (LoadShare, MovedSide) or None
+        The loaded side by itself, solved; None without a torque.
+    """
+    most, whole = float(np.max(force)), force[:, None, None]
+    other = loaded_flanks(given.opposite, bodies, film, reach, most, tables)
+    stays = both_sides(given, bodies, flanks, other)
+    front = None if alone is None else alone[1]
+    front = moved_side(given, bodies, flanks, most, tables) if front is None else front
+    back = moved_side(given.opposite, bodies, other, most, tables)
+    problem = moving_sides(given, bodies, front, back)
+    pressed, rest = stays.pressed(), np.zeros(problem.play.shape)
+    asked = whole + 0.0 * pressed
+    share = _between(problem, stays, asked, None if alone is None else alone[0], apart)
+    if share is None:
+        return BothMoved(problem, front, back, stays.share(asked), rest, False)
+    settled = True
+    if pressed.any():
+        small = np.where(pressed, 0.0, max(float(np.min(force)), 1.0))[None]
+        begin = stays.share(small)
+        free = moved_forces(problem, small, begin.forces, begin.transmission_error)
+        settled = free is not None
+        rest = rest if free is None else np.where(pressed, free.transmission_error[0], 0.0)
+    return BothMoved(problem, front, back, share, rest, settled)

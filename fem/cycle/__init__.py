@@ -1,0 +1,4 @@
+"""The mesh cycle: deflection and stiffness over the positions, events between them, figures and errors.
+
+`mesh_cycle` stands here, with the record that it returns.
+"""

@@ -1,0 +1,265 @@
+"""The loaded contact as a function of position: arcs between the events of a mesh cycle, on both meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from base import Array, SolverError
+from fem.contact.face_errors import half_as_many
+from fem.contact.face_share import yielding_over_face
+from fem.contact.sharing import Solution, solve
+from fem.laws.edge_tables import EdgeTables
+from fem.laws.local_law import Film, film_yielding
+from fem.laws.relieved_flanks import ends_of_flanks, starts_of_relief
+from fem.laws.setting import Setting
+from fem.pair.bodies import Compliance
+from gears.sharing.arcs import Arcs
+from gears.sharing.events import Division, Sampled, Sampler, arcs_alike, arcs_between_events
+from gears.sharing.mesh_figures import CURVES, FewerCells, MeshArcs, Scatter
+
+__all__ = ["ContactProblem", "measured_less"]
+
+SAMPLING = 0.1
+"""Part of the tolerance that what the arcs leave out may be."""
+
+NAMES = (*CURVES, "moment_pinion", "moment_wheel", "slope_pinion", "slope_wheel")
+"""Curves on the arcs: those of every mesh cycle, N_g/F, and dN_g/dD of pinion and wheel (``fem.pair.references``)."""
+
+GRADING = 6.0
+"""Growth of the arcs away from a tip corner."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContactProblem:
+    """A loaded contact that can be solved at any position.
+
+    Attributes
+    ----------
+    given : Setting
+    bodies : Compliance
+    force : float
+        Torque over the pinion's base radius [N], negative where back flanks bear.
+    film : Film or None
+    tolerance : float
+        Relative, of the figures.
+    corners : (n,) array, optional
+        Positions within a base pitch at which the film's law has corners.
+    film_yields : bool
+        Whether the secant counts what the film yields (``fem.laws.local_law.film_yielding``).
+    turn : (2,) array, optional
+        Turn of pinion and wheel per force that is left out of the deflection (``fem.pair.references``) [m/N].
+    tables : EdgeTables, optional
+        Laws of the tip edges that are known already.
+    varied : tuple of (Film, float)
+        Other films, and how much of what they change is error.
+    scatter : mapping, optional
+        What cells of the face leave at positions, as of ``gears.sharing.mesh_figures.FewerCells``.
+    ends_error : float
+        Relative, of stiffness and deflection by free ends of the face.
+    """
+
+    given: Setting
+    bodies: Compliance
+    force: float
+    film: Film | None = None
+    tolerance: float = 1e-3
+    corners: Array | None = None
+    film_yields: bool = False
+    turn: Array | None = None
+    tables: EdgeTables | None = None
+    varied: tuple[tuple[Film, float], ...] = ()
+    scatter: Mapping[str, Scatter] | None = None
+    ends_error: float = 0.0
+
+    def less(self, turn: Array) -> ContactProblem:
+        """Leave a further turn of pinion and wheel per force (2,) [m/N] out of the deflection."""
+        return replace(self, turn=turn if self.turn is None else self.turn + turn)
+
+    def arcs(self) -> MeshArcs:
+        """Curves between events.
+
+        Raises
+        ------
+        base.SolverError
+            A contact somewhere on them has no solution.
+        """
+        fine = self.divided()
+        before = self.bodies.coarser  # with the tips that have been asked for
+        coarse = None if before is None else self._alike(before, fine)
+        others = [(replace(self, film=film), share) for film, share in self.varied]
+        varied = tuple((other._alike(self.bodies, fine), share) for other, share in others)
+        fewer = None
+        if self.given.face is not None and self.scatter is not None:
+            few, share = half_as_many(self.given.face)
+            problem = replace(self, given=replace(self.given, face=few))
+            fewer = FewerCells(problem._alike(self.bodies, fine), share, self.scatter)
+        return MeshArcs(fine, coarse, self.bodies.gain, self.ends_error, varied, fewer)
+
+    def divided(self) -> Division:
+        """Arcs and events on the mesh in use alone."""
+        return self._divided(self.bodies)
+
+    def _sampler(self, bodies: Compliance) -> Sampler:
+        known = self.tables
+        tables = EdgeTables(self.given, bodies) if known is None else known.serving(bodies)
+
+        def sample(position: Array) -> Sampled:
+            found = solve(self.given.at(position), bodies, np.array([abs(self.force)]), self.film, tables)
+            if why := found.refusal(0):
+                raise SolverError(f"between the positions of the mesh cycle {why}")
+            reserve = _reserve(found, abs(self.force), self.given)
+            return Sampled(self._curves(found), reserve, self._pairs(found))
+
+        return sample
+
+    def _alike(self, bodies: Compliance, known: Division) -> Arcs:
+        """Arcs with another mesh, whose events are close to those that are known, but for a very near miss."""
+        found = arcs_alike(self._sampler(bodies), NAMES, known, self.given.pitches)
+        return self._divided(bodies).arcs if found is None else found
+
+    def _divided(self, bodies: Compliance) -> Division:
+        """Arcs with a mesh."""
+        sample, tolerance = self._sampler(bodies), SAMPLING * self.tolerance
+        return arcs_between_events(sample, NAMES, self._corners(bodies), self.given.pitches, tolerance)
+
+    def _corners(self, bodies: Compliance) -> Array:
+        """Corners of the geometry, and places near the tips that part what the compliance does there.
+
+        Nearer to a tip corner than its fit goes, a flank's compliance stays the same; up to there it grows as a
+        logarithm, which arcs resolve that grow with the distance.
+        """
+        pair, (start, end) = self.given.pair, self.given.ends
+        clear = np.array(
+            [end - bodies.pinion.rho_range[1], pair.line_of_action - bodies.wheel.rho_range[1] - start]
+        )
+        places = []
+        for sign, first, at in ((-1.0, clear[0], end), (1.0, clear[1], start)):
+            if first > 0.0:
+                steps = first * GRADING ** np.arange(3)
+                places += (at + sign * steps[steps < 0.25 * pair.base_pitch]).tolist()
+        if self.given.removed is not None:
+            places += [*ends_of_flanks(self.given), *starts_of_relief(self.given)]
+        if self.given.moving_contact:  # beyond these ends the flanks' motion stays the same
+            pinion, wheel = bodies.motions
+            places += [*pinion.rho_range, *(pair.line_of_action - rho for rho in wheel.rho_range)]
+        more = (np.array(places) - pair.points.A) / pair.base_pitch % 1.0
+        film = np.zeros(0) if self.corners is None else self.corners
+        return self.given.seen(np.concatenate([self.given.corners, more, film]))
+
+    def _pairs(self, found: Solution) -> Array | None:
+        """Share, normal force, places and line loads of every pair (positions, pairs, kinds), as of `arcs.Arc`.
+
+        None without a torque to share.
+        """
+        if not self.force:
+            return None
+        forces = found.share.forces[0, 0] / found.kappa
+        rho = found.flank_rho(self.given.pair, 0)[:, 0]
+        whole = np.stack([found.torques(0)[0] / abs(self.force), forces, *rho], axis=-1)
+        if found.face is None:
+            return whole
+        cells = found.face.forces[0, 0] / found.kappa[..., None]
+        return np.concatenate([whole, cells * cells.shape[-1] / self.given.pair.face_width], axis=-1)
+
+    def _curves(self, found: Solution) -> Array:
+        """Transmission error, tangent and secant stiffness, moments and their slopes (7, positions)."""
+        share, where, turned = found.share, found.where, found.share.forces[0, 0]
+        size, deflection = abs(self.force), found.deflection(0)[0]
+        moved, tangent = found.turn(0)[0], share.stiffness[0, 0]
+        secant = size / deflection if size else tangent
+        if self.film is not None and self.film_yields:
+            rho1 = np.where(where.touchable & ~where.edge, np.clip(where.place, *self.given.ends), np.nan)
+            shares = turned * found.levers / size if size else turned / turned.sum(axis=-1, keepdims=True)
+            if found.face is None:
+                added = film_yielding(self.film, rho1, turned / found.kappa, shares)
+            else:
+                forces = found.face.forces[0, 0] / found.kappa[..., None]
+                added = yielding_over_face(self.film, rho1, forces, shares)
+            secant = size / (size / secant + added) if size else secant
+        if self.given.back:
+            moved = -(self.given.pair.backlash + moved)
+        lost, further = (one[:, 0] for one in found.lever_loss(0))
+        other, behind = found.opposite, [one[:, 0] for one in found.lever_loss_behind(0)]
+        moments = found.moments(turned, None if other is None else other.forces[0, 0], lost, behind[0])
+        moments = moments / size if size else np.zeros_like(moments)
+        slopes = found.moments(
+            share.pair_stiffness[0, 0],
+            None if other is None else other.pair_stiffness[0, 0],
+            further,
+            behind[1],
+        )
+        curves = np.stack([moved, tangent, secant, *moments, *slopes])
+        return curves if self.turn is None else _less(curves, self.force, self.turn, self.given.pair.tight)
+
+
+def measured_less(found: MeshArcs, force: float, turn: Array, pressed: bool = False) -> MeshArcs:
+    """Arcs with a turn of pinion and wheel per force (2,) [m/N] left out of the deflection (``fem.pair.references``).
+
+    Parameters
+    ----------
+    found : MeshArcs
+        By finite elements.
+    force : float
+        [N]
+    turn : (2,) array
+    pressed : bool
+        Whether the teeth are pressed together without a torque already.
+    """
+
+    def less(arcs: Arcs) -> Arcs:
+        every = tuple(replace(arc, values=_less(arc.values, force, turn, pressed)) for arc in arcs.arcs)
+        return replace(arcs, arcs=every)
+
+    before = None if found.before is None else less(found.before)
+    division = replace(found.division, arcs=less(found.division.arcs))
+    return replace(
+        found,
+        division=division,
+        before=before,
+        varied=tuple((less(arcs), share) for arcs, share in found.varied),
+        fewer=None if found.fewer is None else replace(found.fewer, arcs=less(found.fewer.arcs)),
+    )
+
+
+def _less(curves: Array, force: float, turn: Array, pressed: bool) -> Array:
+    """Curves (7, n) with a turn per force left out of the deflection."""
+    moved, tangent, secant = curves[:3]
+    moments, slopes = curves[3:5], curves[5:]
+    shift, slope = force * (turn @ moments), 1.0 - turn @ slopes
+    # of pressed flanks the secant starts where they rest, with moments about the wheel that are not zero
+    since = force * (turn @ (slopes / slopes[0])) if pressed else shift
+    secant = force / (force / secant - since) if force else secant / slope
+    return np.stack([moved - shift, tangent / slope, secant, *moments, *(slopes / slope)])
+
+
+def _reserve(found: Solution, force: float, given: Setting) -> Array:
+    """Reserves of contacts by force or gap, and of the nearest pair by its lead over the next one.
+
+    Which pair is nearest without load changes between pairs on the path only where flanks deviate.
+    """
+    size = float(np.mean(found.share.transmission_error))
+    loads, left = found.share.forces[0, 0], found.open[0, 0]
+    if given.both and found.opposite is not None:
+        # both sides may be pressed together without a torque, or with next to none
+        loads = np.concatenate([loads, found.opposite.forces[0, 0]], axis=-1)
+        left = np.concatenate([left, found.opposite.open[0, 0]], axis=-1)
+        force, size = (
+            float(loads.sum(axis=-1).mean()),
+            float(loads.sum(axis=-1).mean() / np.mean(found.share.stiffness)),
+        )
+    bears = np.where(loads > 0.0, loads / force, -np.maximum(left, 0.0) / size - 1e-300)
+    if given.even:
+        return np.asarray(bears)
+    # flanks that both fit touch together: what is less than rounding is no difference
+    return np.concatenate([bears, _nearest(found.where.gap[0]) / size + 1e-10], axis=1)
+
+
+def _nearest(gap: Array) -> Array:
+    """By how much every pair is nearer than the nearest of the others (n, pairs) [m]; nan where it cannot touch."""
+    order = np.sort(gap, axis=1)
+    others = np.where(gap == order[:, :1], order[:, 1:2], order[:, :1]) if gap.shape[1] > 1 else gap
+    with np.errstate(invalid="ignore"):
+        return np.where(np.isfinite(gap) & np.isfinite(others), others - gap, np.nan)

@@ -1,0 +1,219 @@
+"""What free ends add to a gear between frictionless walls: one prism with functions over the face, solved with both.
+
+Waves along the face (``fem.elasticity.prism``) hold the ends against frictionless walls, w = 0. Without walls sigma_zz
+vanishes there, and the gear yields more, most at its ends. The difference does not know the load's own neighbourhood,
+unless that is at the end: it is smooth, so that a coarse section and a few functions over the face give it, by
+
+    E = C(free) - C(walls)
+
+on the same mesh with the same functions, which leaves out what both lack. Mid-face is a plane of symmetry: loads that
+are equal on both sides of it and such that are opposite are solved apart, on half the face.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from base import Array, record
+from fem.elasticity.line_load import FlankPoints
+from fem.elasticity.prism import Face, Section, prism
+
+__all__ = ["FreeEnds", "HalfFace", "free_ends", "half_face", "over_cells", "unknowns_along"]
+
+ORDER = 3
+"""Of the polynomials of one piece of the face."""
+
+LAST, GROWTH = 0.375, 2.6
+"""Length of the piece at the end [modules], and of each piece over the one nearer to the end."""
+
+
+@record
+class HalfFace:
+    """Continuous piecewise polynomials over half a face, by their values at nodes from mid-face to the end.
+
+    Attributes
+    ----------
+    ends : (pieces + 1,) array
+        Where pieces end [m], from 0.
+    mass, stiffness, mixed : (n, n) arrays
+        <f g>, <f' g'>, <f g'>.
+    """
+
+    ends: Array
+    mass: Array
+    stiffness: Array
+    mixed: Array
+
+    def face(self, even: bool, free: bool) -> Face:
+        """Products for displacements that are equal (even) or opposite on the other half, with free ends or walls."""
+        n = len(self.mass)
+        psi = slice(0 if even else 1, n)
+        phi = slice(1 if even else 0, n if free else n - 1)
+        return Face(
+            (self.mass[psi, psi], self.mass[phi, phi]),
+            (self.stiffness[psi, psi], self.stiffness[phi, phi]),
+            self.mixed[psi, phi],
+            self.mixed.T[psi, phi],
+        )
+
+    def values(self, z: Array) -> Array:
+        """Every function (n, k) at places (k,) of the half with z >= 0 [m]."""
+        return np.asarray(self._on_pieces(z)[0])
+
+    def slopes(self, z: Array) -> Array:
+        """Their derivatives (n, k) [1/m]."""
+        return np.asarray(self._on_pieces(z)[1])
+
+    def _on_pieces(self, z: Array) -> Array:
+        """Values and derivatives (2, n, k)."""
+        piece = np.clip(np.searchsorted(self.ends, z) - 1, 0, len(self.ends) - 2)
+        start, long = self.ends[piece], np.diff(self.ends)[piece]
+        local = 2 * (z - start) / long - 1
+        found = np.zeros((2, len(self.mass), len(z)))
+        rows, columns = ORDER * piece[:, None] + np.arange(ORDER + 1), np.arange(len(z))[:, None]
+        found[0, rows, columns] = _values(local)
+        found[1, rows, columns] = _slopes(local) * (2 / long)[:, None]
+        return found
+
+    def means(self, edges: Array) -> tuple[Array, Array]:
+        """Means over cells of every function, and of its opposite on the other half.
+
+        Parameters
+        ----------
+        edges : (k + 1,) array
+            Of the cells, growing, from mid-face [m].
+
+        Returns
+        -------
+        two (n, k) arrays
+            Of functions that are equal on both halves, and of such that change sign at mid-face.
+        """
+        s, weight = legendre.leggauss(ORDER + 1)
+        even, odd = np.zeros((2, len(self.mass), len(edges) - 1))
+        cuts = np.unique(np.concatenate([-self.ends, self.ends, edges]))
+        cuts = cuts[(cuts >= edges[0]) & (cuts <= edges[-1])]
+        middle, half = 0.5 * (cuts[:-1] + cuts[1:]), 0.5 * np.diff(cuts)
+        side = np.sign(middle)
+        piece = np.clip(np.searchsorted(self.ends, np.abs(middle)) - 1, 0, len(self.ends) - 2)
+        cell = np.searchsorted(edges, middle) - 1
+        start, stop = self.ends[piece], self.ends[piece + 1]
+        z = np.abs(middle[:, None] + half[:, None] * s)
+        local = (2 * (z - start[:, None]) / (stop - start)[:, None] - 1).ravel()
+        values = weight @ _values(local).reshape(len(middle), ORDER + 1, ORDER + 1)
+        values = values * (half / np.diff(edges)[cell])[:, None]
+        rows = ORDER * piece[:, None] + np.arange(ORDER + 1)
+        np.add.at(even, (rows, cell[:, None]), values)
+        np.add.at(odd, (rows, cell[:, None]), side[:, None] * values)
+        return even, odd
+
+
+@cache
+def _nodes() -> Array:
+    """Gauss-Lobatto nodes of one piece (ORDER + 1,), -1 to 1."""
+    inner = legendre.legroots(legendre.legder(np.eye(ORDER + 1)[ORDER])).real
+    return np.concatenate([[-1.0], np.sort(inner), [1.0]])
+
+
+def _values(s: Array) -> Array:
+    """Values (k, ORDER + 1) of a piece's functions at places (k,)."""
+    return np.asarray(legendre.legvander(s, ORDER) @ np.linalg.inv(legendre.legvander(_nodes(), ORDER)))
+
+
+def _lengths(half_width: float, module: float, last: float, growth: float) -> list[float]:
+    """Lengths of pieces from the end to mid-face, all together half the face or more [m]."""
+    lengths = [last * module]
+    while sum(lengths) < half_width:
+        lengths.append(lengths[-1] * growth)
+    return lengths
+
+
+def unknowns_along(width: float) -> int:
+    """Unknowns of a node of the section on half a face of some width in modules, all three directions."""
+    return 3 * (ORDER * len(_lengths(0.5 * width, 1.0, LAST, GROWTH)) + 1)
+
+
+def _slopes(s: Array) -> Array:
+    """Derivatives (k, ORDER + 1) of a piece's functions at places (k,)."""
+    rises = np.array([legendre.legval(s, legendre.legder(row)) for row in np.eye(ORDER + 1)]).T
+    return np.asarray(rises @ np.linalg.inv(legendre.legvander(_nodes(), ORDER)))
+
+
+def half_face(half_width: float, module: float, last: float = LAST, growth: float = GROWTH) -> HalfFace:
+    """Divide half a face into pieces that shorten towards the end.
+
+    Parameters
+    ----------
+    half_width, module : float
+        [m]
+    last, growth : float
+        Length of the piece at the end [modules], and of each piece over the one nearer to the end.
+    """
+    lengths = _lengths(half_width, module, last, growth)
+    ends = half_width * np.concatenate([[0.0], np.cumsum(lengths[::-1])]) / sum(lengths)
+    n = ORDER * len(lengths) + 1
+    s, weight = legendre.leggauss(ORDER + 1)
+    values, slopes = _values(s), _slopes(s)
+    mass, stiffness, mixed = np.zeros((3, n, n))
+    for piece, length in enumerate(np.diff(ends)):
+        at = slice(ORDER * piece, ORDER * piece + ORDER + 1)
+        mass[at, at] += 0.5 * length * (values.T * weight) @ values
+        stiffness[at, at] += 2 / length * (slopes.T * weight) @ slopes
+        mixed[at, at] += (values.T * weight) @ slopes
+    return HalfFace(np.asarray(ends), mass, stiffness, mixed)
+
+
+@record
+class FreeEnds:
+    """What free ends add to the displacements by line loads, by functions over half a face.
+
+    Attributes
+    ----------
+    half : HalfFace
+    own : two arrays (loads, psi, psi)
+        At each load, of loads that are equal and such that are opposite on both halves: [m per N] by a unit functional.
+    cross : two arrays (reach, loads, points, psi, psi)
+        On neighbours; the first function is the load's.
+    """
+
+    half: HalfFace
+    own: tuple[Array, Array]
+    cross: tuple[Array, Array]
+
+
+def over_cells(half: HalfFace, even: Array, odd: Array, edges: Array) -> Array:
+    """Means over cells (..., cells, cells) by a unit force on a cell.
+
+    Parameters
+    ----------
+    half : HalfFace
+    even, odd : (..., psi, psi) arrays
+        By functions over half the face.
+    edges : (cells + 1,) array
+        Of the cells, growing, from mid-face [m].
+    """
+    same, opposite = half.means(edges)
+    opposite = opposite[1:]
+    return np.asarray(0.5 * (same.T @ even @ same + opposite.T @ odd @ opposite))
+
+
+def free_ends(over: Section, half: HalfFace, at: FlankPoints, reach: int) -> FreeEnds:
+    """Solve a gear with free ends and between walls.
+
+    Parameters
+    ----------
+    over : Section
+        Coarse: the difference is smooth.
+    half : HalfFace
+    at : FlankPoints
+    reach : int
+        Neighbours that are observed.
+    """
+    own, cross = [], []
+    for even in (True, False):
+        free, walls = (prism(over, half.face(even, ends)).influence(at, reach) for ends in (True, False))
+        own.append(free[0] - walls[0])
+        cross.append(np.moveaxis(free[1] - walls[1], 2, 3))
+    return FreeEnds(half, (own[0], own[1]), (cross[0], cross[1]))

@@ -1,0 +1,108 @@
+"""Contacts beside a sharp tip corner as fields take them: the strips' pressure instead of Hertz's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem.cycle.cycle import MeshCycle
+from fem.elasticity import flamant
+from fem.elasticity.elasticity import reduced_modulus
+from fem.elasticity.line_load import flank_points
+from fem.elasticity.ring import Ring
+from fem.elasticity.support import held_profiles
+from fem.fields.near_field import Contact
+from fem.fields.tip_sector import tip_sector
+from fem.laws.tip_pressure import TipPressure, tip_pressure
+from fem.pair.bodies import Compliance
+
+if TYPE_CHECKING:
+    from gears import ToothProfile
+
+__all__ = ["corner_contact", "near_corner"]
+
+NEAR_CORNER = 1.5
+"""Half-widths from a sharp corner within which a contact's pressure is that of strips."""
+
+UNBOUNDED, LEAST_UNRESOLVED = 1.2, 0.01
+"""Pressure beside a corner over Hertz's largest one above which stresses are only indicative, and the smallest distance
+[modules] up to which they are."""
+
+
+def near_corner(cycle: MeshCycle, row: int, column: int, half_width: float, bodies: Compliance) -> int | None:
+    """Gear whose corner presses or cuts off the pressure; None where it does neither, or its law is another."""
+    for corner, gear in enumerate((bodies.pinion, bodies.wheel)):
+        rho = cycle.flank_rho[corner][row, column]
+        away = (gear.rho_end**2 - rho**2) / (2 * gear.base_radius)
+        if cycle.strips_at_corners[corner] and away < NEAR_CORNER * half_width:
+            return corner
+    return None
+
+
+def corner_contact(
+    cycle: MeshCycle, row: int, column: int, bodies: Compliance, ring: Ring, gear: int, corner: int
+) -> Contact:
+    """Contact on one gear, by the strips that bear.
+
+    Parameters
+    ----------
+    cycle : MeshCycle
+    row, column : int
+        Of the cycle.
+    bodies : Compliance
+    ring : Ring
+        Of the gear.
+    gear, corner : {0, 1}
+        The gear, and the one whose corner is near.
+    """
+    pair, offset = bodies.pair, int(cycle.pair_offset[column])
+    place = float(pair.points.A + (cycle.position[row] + offset) * pair.base_pitch)
+    line_load = float(cycle.forces[row, column]) / pair.face_width
+    pressure = tip_pressure(bodies, corner, place, line_load)
+    profile = held_profiles(pair, bodies.supports)[gear]
+    of = _on_corner if gear == corner else _on_flank
+    contact = of(offset if gear == 0 else -offset, ring, profile, bodies, pressure)
+    radius = pair.path_at(np.clip(place, pair.points.A, pair.points.E)).radius
+    half_width = float(flamant.hertz_half_width(line_load, radius, reduced_modulus(pair, cycle.plane))[0])
+    return replace(
+        contact, unresolved=_unresolved(pressure, 2 * line_load / (np.pi * half_width), pair.module)
+    )
+
+
+def _unresolved(pressure: TipPressure, hertz: float, module: float) -> float:
+    """Distance from the corner up to which the pressure, unbounded there, is well above Hertz's largest one."""
+    if pressure.distance[0] > pressure.width[0]:  # it does not reach the corner
+        return 0.0
+    above = np.minimum.accumulate(pressure.pressure > UNBOUNDED * hertz)
+    end = float(np.max((pressure.distance + 0.5 * pressure.width)[above], initial=0.0))
+    return max(end, LEAST_UNRESOLVED * module)
+
+
+def _on_corner(
+    tooth: int, ring: Ring, profile: ToothProfile, bodies: Compliance, pressure: TipPressure
+) -> Contact:
+    """Contact on the gear with the corner: its resultant on the ring, its strips on a separate sector."""
+    middle = np.sqrt(profile.flank_rho[1] ** 2 - 2 * profile.base_radius * pressure.mean(pressure.distance))
+    at = flank_points(ring.mesh, np.array([middle]))
+    away = -np.sign(at.towards_tip().lean) * pressure.mean(pressure.lean)
+    sector = tip_sector(profile, bodies.sizes, bodies.refinements, pressure)
+    load = float(np.sum(pressure.loads))
+    corner = flank_points(sector.mesh, np.array([profile.flank_rho[1]])).points[0]
+    return Contact(tooth, replace(at, lean=away), load, 0.5 * pressure.extent, sector=sector, corner=corner)
+
+
+def _on_flank(
+    tooth: int, ring: Ring, profile: ToothProfile, bodies: Compliance, pressure: TipPressure
+) -> Contact:
+    """Contact on the gear whose flank the corner touches: the strips' pressure on a half-plane."""
+    arc = pressure.touched**2 / (2 * profile.base_radius)
+    middle = pressure.mean(arc)
+    at = flank_points(ring.mesh, np.array([np.sqrt(2 * profile.base_radius * middle)]))
+    hand = np.sign(at.towards_tip().lean)
+    stretch = abs(arc[-1] - arc[0]) / abs(pressure.distance[-1] - pressure.distance[0])
+    strips = np.stack([hand * (arc - middle), stretch * pressure.width, pressure.loads])
+    load, half_width = float(np.sum(pressure.loads)), 0.5 * stretch * pressure.extent
+    corner = flank_points(ring.mesh, pressure.touched[:1]).points[0]
+    return Contact(tooth, at, load, half_width, strips=strips, corner=corner)

@@ -1,0 +1,138 @@
+"""Teeth and flanks of a loaded face in three dimensions, both gears as they mesh at a position."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Faults, Integers, quantity, record
+from fem.cycle.cycle import MeshCycle
+from fem.cycle.cycle_rows import check_row
+from fem.fields.face_waves import BESIDE, FaceWaves, GearPrisms, gear_prisms, on_flank
+from fem.fields.flank_patches import FlankField, FlankPatch, Place, joined
+from fem.fields.loaded_gears import frames
+
+if TYPE_CHECKING:
+    from fem.pair.bodies import Compliance
+    from gears import GearPair
+
+__all__ = ["FaceField", "ToothField", "face_fields"]
+
+
+@record
+class ToothField:
+    """Solid of the teeth in mesh of one gear and of some beside them, in the common frame; z is 0 at mid-face."""
+
+    no_error = "not estimated: it is for pictures"
+
+    points: Array = quantity("m", "unloaded position", "point space")
+    cells: Integers = quantity("1", "points of each wedge, a triangle along the face", "cell corner")
+    displacement_m: Array = quantity(
+        "m",
+        "elastic displacement of a gear on a hub that stands still; with free ends where its cells are coupled so, "
+        "else between frictionless walls",
+        "point space",
+    )
+    tooth: Integers = quantity("1", "tooth, 0 in the pair that entered last, counted anticlockwise", "cell")
+
+
+@record
+class FaceField:
+    """One gear at one position.
+
+    Attributes
+    ----------
+    teeth : ToothField
+    flanks : FlankField
+    """
+
+    teeth: ToothField
+    flanks: FlankField
+
+
+def face_fields(
+    pair: GearPair,
+    cycle: MeshCycle,
+    row: int,
+    bodies: Compliance,
+    prisms: tuple[GearPrisms, GearPrisms] | None = None,
+) -> tuple[FaceField, FaceField]:
+    """Teeth and flanks of pinion and wheel at one position of a mesh cycle with cells of the face.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    cycle : MeshCycle
+        With cells.
+    row : int
+        Of the cycle.
+    bodies : Compliance
+        The one that the cycle was computed with.
+    prisms : tuple of GearPrisms, optional
+        Of ``gear_prisms``, to save time over several positions.
+
+    Returns
+    -------
+    (FaceField, FaceField)
+
+    Raises
+    ------
+    base.InputError
+        A row that the cycle does not have, or that has no finite forces; a cycle without cells.
+    """
+    found = Faults()
+    check_row(found, cycle, row, over_face=True)
+    found.raise_if_any()
+    ready = prisms or gear_prisms(bodies, cycle)
+    first, second = (_face_field(pair, cycle, row, bodies, gear, ready[gear]) for gear in (0, 1))
+    return first, second
+
+
+def _face_field(
+    pair: GearPair, cycle: MeshCycle, row: int, bodies: Compliance, gear: int, ready: GearPrisms
+) -> FaceField:
+    module, flexible = pair.module, (bodies.pinion, bodies.wheel)[gear]
+    loaded = np.flatnonzero(cycle.forces[row] > 0.0)
+    tooth_of = (1 if gear == 0 else -1) * cycle.pair_offset
+    teeth = range(int(tooth_of[loaded].min()) - BESIDE, int(tooth_of[loaded].max()) + BESIDE + 1)
+    waves = FaceWaves.of(pair, cycle, row, loaded)
+    places = [on_flank(ready.mesh, rho / module) for rho in cycle.flank_rho[gear][row, loaded]]
+    apart = [[tooth - own for tooth in teeth] for own in tooth_of[loaded].tolist()]
+    moved = waves.moved(ready, places, apart)
+    if ready.ends is not None and cycle.face is not None:
+        edges = (cycle.face.setting.edges(pair) - pair.face_offsets[gear]) / module
+        for load, place, some in zip(cycle.face.line_load[row, loaded], places, apart, strict=True):
+            forces = load * pair.face_width / len(load)
+            added = ready.ends.moved(float(place.rho[0]), forces, edges, some) / module
+            moved[:, :, ready.ends.nodes] += added
+    moved /= flexible.law.plane_modulus
+    angle, centre = frames(pair, float(pair.points.A + cycle.loaded_position[row] * pair.base_pitch))[gear]
+    pitch = pair.teeth_profiles[gear].pitch_angle
+    stands = [Place(angle + tooth * pitch, centre) for tooth in teeth]
+    parts = []
+    for column in np.flatnonzero(np.isfinite(cycle.gaps[row]) & np.isin(tooth_of, teeth)).tolist():
+        tooth = int(tooth_of[column])
+        patch = FlankPatch.of(pair, cycle, row, column, gear, ready.mesh)
+        index = tooth - teeth[0]
+        parts.append(patch.placed(stands[index], waves.layers, moved[index], tooth))
+    return FaceField(_solid(ready, waves.layers, moved, stands, teeth, module), joined(parts))
+
+
+def _solid(
+    ready: GearPrisms, z: Array, moved: Array, place: Sequence[Place], teeth: Sequence[int], module: float
+) -> ToothField:
+    """Wedges of all teeth that are drawn, each with separate points."""
+    used, triangles = np.unique(ready.triangles, return_inverse=True)
+    triangles = triangles.reshape(-1, 3)
+    layer = len(used) * np.arange(len(z) - 1)[:, None, None]
+    wedges = np.concatenate([triangles + layer, triangles + layer + len(used)], axis=-1).reshape(-1, 6)
+    size = len(used) * len(z)
+    section = module * ready.points[used]
+    return ToothField(
+        np.concatenate([one.points(section, z) for one in place]),
+        np.concatenate([wedges + size * i for i in range(len(teeth))]),
+        np.concatenate([one.vectors(own[:, used]) for one, own in zip(place, moved, strict=True)]),
+        np.repeat(np.array(teeth), len(wedges)),
+    )

@@ -1,0 +1,182 @@
+"""A gear's solid under loads that vary along the face: displacement of whole sectors, wave by wave.
+
+Line loads along the face are sums of waves, q(z) = sum q_m cos k_m (z + b/2), k_m = m pi/b, and a gear answers each
+wave as a prism between frictionless walls (``fem.elasticity.prism``), here with its whole section instead of the flank
+alone:
+
+    u(x, y, z) = sum_m q_m cos k_m (z + b/2) U(x, y; k_m),   w likewise by sines.
+
+U is solved for the waves of ``fem.influence.gear_face`` and interpolated between them. Loads stand on the mesh as nodal
+forces: within an element of a contact the displacement is the mesh's and not that of Hertz's pressure. Where cells are
+coupled by bodies with free ends, what these add is a separate table (``fem.influence.face_ends``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Integers, record
+from fem.cycle.cycle import MeshCycle
+from fem.elasticity.line_load import FlankPoints, flank_points
+from fem.elasticity.prism import Face, Prism, prism
+from fem.influence.face_ends import EndFields, end_fields
+from fem.influence.gear_face import between_waves, section_of, solved_waves
+from fem.pair.face_setting import FREE_ENDS
+from meshes import SectorMesh
+from meshes.outline import Sizes
+
+if TYPE_CHECKING:
+    from fem.pair.bodies import Compliance
+    from gears import GearPair
+
+__all__ = ["BESIDE", "FaceWaves", "GearPrisms", "gear_prisms", "layers_of", "on_flank"]
+
+DEPTH = 2.0
+"""Depth below the root circle down to which the body is drawn, in modules."""
+
+SLIVER = 1e-6
+"""Twice the area of a triangle that is left out where the body is cut off, in square modules."""
+
+ENDS_SIZES = Sizes(flank=0.5, fillet=0.4, root=0.45, corner=0.4, top=1.2, growth=1.0)
+"""Of the section where ends are free: four more prisms are solved on it, for pictures."""
+
+BESIDE = 1
+"""Teeth that are drawn on either side of the loaded ones."""
+
+LAYERS = 12
+"""Layers of the solid along the face, or as many as there are cells if these are fewer."""
+
+
+@record
+class GearPrisms:
+    """A gear that is ready to be drawn at many positions, in modules and E*.
+
+    Attributes
+    ----------
+    mesh : SectorMesh
+    prisms : tuple of Prism
+        For the waves of ``fem.influence.gear_face.solved_waves``.
+    triangles : (t, 3) array of int
+        What is drawn of a sector: second-order triangles in four.
+    points : (nodes, 2) array
+        Where its nodes are drawn: those below a depth on the circle there, which cuts the body off.
+    ends : EndFields or None
+        What free ends add; None between walls.
+    """
+
+    mesh: SectorMesh
+    prisms: tuple[Prism, ...]
+    triangles: Integers
+    points: Array
+    ends: EndFields | None = None
+
+    def displacements(self, at: FlankPoints, teeth: Sequence[int]) -> Array:
+        """Displacements (waves, teeth, nodes, 3, loads) in each tooth's frame by unit line loads on tooth 0."""
+        found = np.zeros((len(self.prisms), len(teeth), len(self.mesh.points), 3, len(at.rho)))
+        for wave, one in zip(found, self.prisms, strict=True):
+            n = 2 * one.psi + one.phi
+            wave[:, :, :n] = one.displacements(at, teeth)
+        return found
+
+
+def gear_prisms(bodies: Compliance, cycle: MeshCycle) -> tuple[GearPrisms, GearPrisms]:
+    """Factorise both gears for waves along the face, on a coarse mesh; with free ends if its cells have these.
+
+    Parameters
+    ----------
+    bodies : Compliance
+    cycle : MeshCycle
+        With cells.
+    """
+    first, second = (_gear_prisms(bodies, cycle, gear) for gear in (0, 1))
+    return first, second
+
+
+def layers_of(pair: GearPair, cells: int) -> Array:
+    """Layers of the solid along the face in contact (layers,) [m], 0 at mid-face."""
+    return np.asarray(np.linspace(-0.5, 0.5, min(LAYERS, cells) + 1) * pair.face_width)
+
+
+def _gear_prisms(bodies: Compliance, cycle: MeshCycle, gear: int) -> GearPrisms:
+    assert cycle.face is not None
+    meshed, setting, pair = bodies.meshed[gear], cycle.face.setting, bodies.pair
+    free = setting.model == FREE_ENDS
+    over, (_, waves) = section_of(meshed, ENDS_SIZES if free else meshed.sizes, 0), solved_waves()
+    mesh = over.mesh
+    a, b, c, ab, bc, ca = mesh.triangles.T
+    quarters = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+    triangles = np.concatenate([np.column_stack(part) for part in quarters])
+    depth = meshed.shape.profile.root_radius - DEPTH
+    points = mesh.points * np.maximum(1.0, depth / np.linalg.norm(mesh.points, axis=1))[:, None]
+    p, q, r = (points[triangles[:, k]] for k in range(3))
+    (ux, uy), (vx, vy) = (q - p).T, (r - p).T
+    shown = (ux * vy - uy * vx > SLIVER) & np.any(
+        np.linalg.norm(mesh.points[triangles], axis=2) > depth, axis=1
+    )
+    prisms = tuple(prism(over, Face.wave(float(k))) for k in waves)
+    ends = None
+    if free:
+        z = (layers_of(pair, setting.cells) - pair.face_offsets[gear]) / pair.module
+        apart = int(np.ptp(cycle.pair_offset[np.any(cycle.forces > 0.0, axis=0)])) + BESIDE
+        nodes = np.unique(triangles[shown])
+        ends = end_fields(meshed, over, pair.face_widths[gear] / pair.module, z, apart, nodes)
+    return GearPrisms(mesh, prisms, triangles[shown], points, ends)
+
+
+@record
+class FaceWaves:
+    """What waves of each load do at layers of the face.
+
+    Attributes
+    ----------
+    layers : (layers,) array
+        [m], 0 at mid-face.
+    even, odd : (loads, layers, waves) arrays
+        Weights of the solved waves in u and v, and in w [N/m].
+    """
+
+    layers: Array
+    even: Array
+    odd: Array
+
+    @classmethod
+    def of(cls, pair: GearPair, cycle: MeshCycle, row: int, loaded: Integers) -> FaceWaves:
+        """Divide the line loads of some pairs, columns of the cycle, into waves."""
+        assert cycle.face is not None
+        width, load = pair.face_width, cycle.face.line_load[row, loaded]
+        cells = load.shape[-1]
+        m = np.arange(cells)
+        cosines = np.cos(np.pi * m[:, None] * (np.arange(cells) + 0.5) / cells)
+        modes = load @ cosines.T * np.where(m, 2.0, 1.0) / cells
+        layers = layers_of(pair, cells)
+        turn = np.pi * m * (layers[:, None] / width + 0.5)
+        by_wave = between_waves(np.pi * m * pair.module / width)
+        even, odd = (np.einsum("km,lm,mw->klw", modes, f(turn), by_wave) for f in (np.cos, np.sin))
+        return cls(layers, even, odd)
+
+    def moved(self, ready: GearPrisms, at: Sequence[FlankPoints], teeth: Sequence[Sequence[int]]) -> Array:
+        """Displacements (teeth, layers, nodes, 3) in each tooth's frame, times E* [N/m].
+
+        Parameters
+        ----------
+        ready : GearPrisms
+        at : sequence of FlankPoints
+            Place of each load [modules].
+        teeth : sequence of sequences of int
+            Teeth that are drawn, counted from that of each load.
+        """
+        found = np.zeros((len(teeth[0]), len(self.layers), len(ready.mesh.points), 3))
+        for even, odd, place, some in zip(self.even, self.odd, at, teeth, strict=True):
+            by_wave = ready.displacements(place, some)[..., 0]
+            found[..., :2] += np.einsum("lw,wtna->tlna", even, by_wave[..., :2], optimize=True)
+            found[..., 2] += np.einsum("lw,wtn->tln", odd, by_wave[..., 2], optimize=True)
+        return found
+
+
+def on_flank(mesh: SectorMesh, rho: float | Array) -> FlankPoints:
+    """Points of the loaded flank, those beyond its ends on them [modules]."""
+    low, high = (np.sqrt(2 * mesh.base_radius * f(mesh.parameters["flank_left"])) for f in (np.min, np.max))
+    return flank_points(mesh, np.clip(rho, low, high))

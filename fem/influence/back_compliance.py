@@ -1,0 +1,129 @@
+"""What loads on one side of the teeth do to the other side: front flanks loaded, back flanks seen, and the reverse.
+
+u on the flanks of the other hand along their inward normals, per unit line load; in the loaded sector itself the sum
+of the half-plane and the regular part (``fem.elasticity.line_load``). X_k(a, b) belongs to a load at rho = a on the
+left flank of tooth 0 and the right flank of tooth k at rho = b, counted anticlockwise. Mirrored gears are the same
+gears, and Maxwell and Betti let load and point change places: X_k(a, b) = X_k(b, a), and a load on the right flank
+moves the left one of tooth -k by the same. Samples that are not symmetric show an error of the elements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from base import Array, Integers, record
+from fem.elasticity.line_load import FlankPoints, LineLoads, flank_points, line_loads
+from fem.influence.gear_compliance import CROSS_DEGREE
+
+if TYPE_CHECKING:
+    from fem.elasticity.ring import Ring
+
+__all__ = ["BackCompliance", "back_by_mirror", "back_compliance"]
+
+MIRRORED: Array = np.array([[1.0], [-1.0]])
+"""Radial and tangential components in a mirror through the gear's axis."""
+
+
+@record
+class BackCompliance:
+    """Displacement of the flanks on the other side of a gear's teeth per unit line load.
+
+    Attributes
+    ----------
+    rho_range : (float, float)
+        Curvature radii covered [m]; those beyond are moved to its ends.
+    series : mapping of int to (k, k) array
+        Chebyshev coefficients of X_k over both curvature radii [m per N/m].
+    error : float
+        Largest asymmetry of the samples and what the series leave out [m per N/m].
+    """
+
+    rho_range: tuple[float, float]
+    series: Mapping[int, Array]
+    error: float
+
+    def scaled(self, module: float, plane_modulus: float) -> BackCompliance:
+        """Give a gear in modules and E* its size [m] and modulus [Pa]."""
+        low, high = self.rho_range
+        return BackCompliance(
+            (low * module, high * module),
+            {tooth: series / plane_modulus for tooth, series in self.series.items()},
+            self.error / plane_modulus,
+        )
+
+    def across(self, tooth: Integers, load: Array, point: Array) -> Array:
+        """Displacement into the right flank of a tooth by a load on the left flank of tooth 0 [m per N/m].
+
+        Parameters
+        ----------
+        tooth : array of int
+            Counted anticlockwise from the loaded one; 0 where it is too far away to feel the load.
+        load, point : arrays
+            Curvature radii [m].
+        """
+        tooth, load, point = np.broadcast_arrays(tooth, load, point)
+        low, high = self.rho_range
+        degree = len(next(iter(self.series.values()))) - 1
+        loads, points = (
+            chebyshev.chebvander(np.clip((2 * rho - low - high) / (high - low), -1.0, 1.0), degree)
+            for rho in (load, point)
+        )
+        moved = np.zeros(tooth.shape)
+        for number, series in self.series.items():
+            here = tooth == number
+            moved[here] = np.sum((loads[here] @ series) * points[here], axis=-1)
+        return moved
+
+
+def back_compliance(ring: Ring, rho: Array, reach: int) -> BackCompliance:
+    """Load left flanks at growing curvature radii (n,) [m] and see the right ones of ``reach`` teeth on either side."""
+    loads = line_loads(ring, flank_points(ring.mesh, rho, "left"))
+    seen = flank_points(ring.mesh, rho, "right")
+    return _fitted(rho, {tooth: _seen(loads, tooth, seen) for tooth in _teeth(ring, reach)})
+
+
+def back_by_mirror(loads: LineLoads, reach: int) -> BackCompliance:
+    """As ``back_compliance``, by loads on left flanks that are solved already.
+
+    Loads on right flanks are those on left ones in a mirror, but for the elements' errors: nothing is solved for
+    other teeth.
+    """
+    ring, rho = loads.ring, loads.at.rho
+    right, left = np.split(loads.cut_force.reshape(-1, 2, len(rho)), 2)
+    mirrored = (np.concatenate([left, right]) * MIRRORED).reshape(loads.cut_force.shape)
+    seen = flank_points(ring.mesh, rho, "right")
+    return _fitted(
+        rho,
+        {
+            tooth: mirrored.T @ ring.interfaces(loads.cut_force, tooth) if tooth else _seen(loads, 0, seen)
+            for tooth in _teeth(ring, reach)
+        },
+    )
+
+
+def _teeth(ring: Ring, reach: int) -> range:
+    most = min(reach, (ring.mesh.teeth - 1) // 2)
+    return range(-most, most + 1)
+
+
+def _seen(loads: LineLoads, tooth: int, where: FlankPoints) -> Array:
+    moved = loads.on_tooth(tooth, where)
+    return moved if tooth else moved + loads.singular(where)
+
+
+def _fitted(rho: Array, seen: Mapping[int, Array]) -> BackCompliance:
+    """Fit what loads do at the same places of the other flanks (points, loads), tooth by tooth."""
+    low, high = float(rho[0]), float(rho[-1])
+    basis = chebyshev.chebvander((2 * rho - low - high) / (high - low), min(CROSS_DEGREE, len(rho) - 1))
+    fit = np.linalg.pinv(basis)
+    series, error = {}, 0.0
+    for tooth, moved in seen.items():
+        even = 0.5 * (moved + moved.T)
+        series[tooth] = fit @ even @ fit.T
+        left_out = basis @ series[tooth] @ basis.T - even
+        error = max(error, float(np.max(np.abs(moved - even))), float(np.max(np.abs(left_out))))
+    return BackCompliance((low, high), series, error)

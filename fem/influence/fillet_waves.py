@@ -1,0 +1,126 @@
+"""Stress along the fillets by line loads that vary along the face, wave by wave.
+
+A wave of line load, cos k (z + b/2), makes sigma_t and sigma_z ~ cos and tau ~ sin along the fillets of a prism between
+frictionless walls (``fem.elasticity.prism``). Kept is what a wave does beyond the same load spread evenly, whose stress
+is that of ``fem.influence.fillet_influence`` to the last bit; both on one mesh, loads as nodal forces, solved for the
+waves of ``fem.influence.gear_face`` and interpolated between them. What nodal forces lack of the exact even stress
+falls off with the wave as the whole stress of that tooth does, so that short waves, which the root does not feel, leave
+nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from base import Array, record
+from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.fillet_strain import FilletStrain, fillet_strains
+from fem.elasticity.line_load import FlankPoints, flank_points
+from fem.elasticity.prism import Face, prism, section
+from fem.influence.gear_face import solved_waves
+
+if TYPE_CHECKING:
+    from fem.elasticity.prism import Prism
+    from fem.influence.fillet_influence import FilletInfluence
+    from meshes import SectorMesh
+
+__all__ = ["ACROSS", "ALONG", "SHEAR", "FilletWaves", "fillet_waves", "solid_of"]
+
+ALONG, ACROSS, SHEAR = 0, 1, 2
+"""E* eps_t, E* eps_z and tau."""
+
+PLACES, DEGREE = 14, 9
+"""Places of loads on the flank, and degree of the series in the curvature radius through them."""
+
+
+def solid_of(poisson: float) -> PlaneElasticity:
+    """Solid whose plane strain has E* = 1 and nu*."""
+    nu = poisson / (1 + poisson)
+    return PlaneElasticity("strain", 1 - nu**2, nu)
+
+
+@record
+class FilletWaves:
+    """What waves of line load on a gear's left flank do to its fillets beyond even loads, in modules.
+
+    Attributes
+    ----------
+    rho_range : (float, float)
+        Curvature radii of loads.
+    series : mapping of int to (degree + 1, waves, 3, 2, samples) array
+        For each tooth, counted anticlockwise from the loaded one: Chebyshev coefficients over ``rho_range`` of
+        E* eps_t, E* eps_z and tau [1/module] for the solved waves, on the left (index 0) and the right fillet.
+    lack : float
+        Largest part of the largest even stress that nodal forces on this mesh miss.
+    """
+
+    rho_range: tuple[float, float]
+    series: Mapping[int, Array]
+    lack: float
+
+    def beyond(self, tooth: int, rho: Array) -> Array:
+        """What the solved waves do beyond even loads (loads, waves, 3, 2, samples) [1/module], rho in modules."""
+        low, high = self.rho_range
+        unit = (2 * np.clip(rho, low, high) - low - high) / (high - low)
+        return np.asarray(np.tensordot(chebyshev.chebvander(unit, DEGREE), self.series[tooth], 1))
+
+
+def fillet_waves(mesh: SectorMesh, influence: FilletInfluence) -> FilletWaves:
+    """Load the left flank of a gear of module 1 by waves.
+
+    Parameters
+    ----------
+    mesh : meshes.SectorMesh
+        Of module 1.
+    influence : FilletInfluence
+        Of the same gear in modules, even loads.
+    """
+    low, high = influence.rho_range
+    unit = np.cos(np.pi * (np.arange(PLACES) + 0.5) / PLACES)
+    unit /= unit[0]
+    rho = 0.5 * (low + high) + 0.5 * (high - low) * unit
+    at, teeth = flank_points(mesh, rho), sorted(influence.series)
+    law = solid_of(influence.law.plane_poisson)
+    over, strains = section(mesh, law), fillet_strains(mesh, influence.profile, influence.line)
+    found = np.array(
+        [_stress(prism(over, Face.wave(k)), at, teeth, strains, k, law) for k in solved_waves()[1]]
+    )
+    even = np.array([influence.stress(tooth, rho) for tooth in teeth])
+    still = found[-1]
+    lack = even - still[:, :, ALONG]
+    sizes = np.linalg.norm(found[:, :, :, ALONG], axis=(-1, -2))
+    decay = np.divide(sizes, sizes[-1], out=np.zeros_like(sizes), where=sizes[-1] > 0.0)
+    beyond = found - still
+    beyond[:, :, :, ALONG] += (np.minimum(decay, 1.0) - 1.0)[..., None, None] * lack
+    fit = np.linalg.pinv(chebyshev.chebvander(unit, DEGREE))
+    series = {
+        tooth: np.einsum("dl,wlcsn->dwcsn", fit, beyond[:, i], optimize=True) for i, tooth in enumerate(teeth)
+    }
+    return FilletWaves((low, high), series, float(np.max(np.abs(lack)) / np.max(np.abs(even))))
+
+
+def _stress(
+    solved: Prism,
+    at: FlankPoints,
+    teeth: list[int],
+    strains: tuple[FilletStrain, ...],
+    wavenumber: float,
+    law: PlaneElasticity,
+) -> Array:
+    """E* eps_t, E* eps_z and tau (teeth, loads, 3, 2, samples) by a wave of unit line load at each place."""
+    moved = solved.displacements(at, teeth)
+    in_plane = moved[:, :, :2].reshape(len(teeth), -1, len(at.rho))
+    found = np.zeros((len(teeth), len(at.rho), 3, len(strains), strains[0].along.shape[0]))
+    for number, (plane, all_of_it) in enumerate(zip(in_plane, moved, strict=True)):
+        for side, one in enumerate(strains):
+            found[number, :, ALONG, side] = (one.along @ plane).T
+            if wavenumber:
+                w = all_of_it[:, 2]
+                found[number, :, ACROSS, side] = wavenumber * (one.value @ w).T
+                turned = one.slope @ w - wavenumber * (one.moved @ plane)
+                found[number, :, SHEAR, side] = law.shear_modulus * turned.T
+    return np.asarray(found * np.array([law.plane_modulus, law.plane_modulus, 1.0])[:, None, None])

@@ -1,0 +1,98 @@
+"""How a gear's flank moves at its contact beyond yielding along the normal, and what that adds to the energy.
+
+Per unit line load at rho, without the local field of the contact: t, the flank's displacement along its tangent
+towards the tip, and tau = (r_b/rho) (1/2) d own/d rho, the slope of its displacement into the gear along the flank
+towards the tip (half, since by Maxwell and Betti the place of the load and that of the displacement count alike).
+A contact that carries w has, with third-order energies per face width of gear and half-plane
+(``fem.elasticity.third_order``),
+
+    U_3 = w^3 [sum (alpha + t tau + t^2/(2 rho)) + (R/2) (tau_1 - tau_2)^2] + w^3/a sum c + local
+
+- alpha, c: the strained gear; t tau + t^2/(2 rho): the common normal turns with the flanks while they move along
+  themselves; (R/2) (tau_1 - tau_2)^2: flanks tilted against each other touch R (tau_2 - tau_1) w farther towards the
+  pinion's tip; sums are over both gears;
+- local = (64/(45 pi^2)) (beta_1/rho_2 - beta_2/rho_1) (kappa_1 - kappa_2) w^2 a, beta_i = (1/E*_i)/(1/E*_1 + 1/E*_2),
+  kappa = (1 - nu*)/E*: surfaces of unlike gears slip within Hertz's contact.
+
+The sum does not change when a gear is turned as a whole: then tau = 0, and alpha = -t^2/(2 rho).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from base import Array, record
+from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.third_order import third_order
+
+if TYPE_CHECKING:
+    from fem.elasticity.elasticity import PlaneElasticity
+    from fem.elasticity.ring import Ring
+
+__all__ = ["FlankMotion", "flank_motion"]
+
+PLACES, DEGREE = 9, 6
+CLEARANCE = 0.15
+"""Nearest place to the tip corner, as an arc in modules; nearer contacts take its values."""
+FOOT = 0.5
+"""Minimum curvature radius in modules; contacts nearer to the base circle take its values."""
+
+
+@record
+class FlankMotion:
+    """Motion of a gear's flank under a unit line load; arguments beyond the range are moved to its end.
+
+    Attributes
+    ----------
+    rho_range : (float, float)
+        Curvature radii covered [m].
+    tangential_series : (n,) array
+        Chebyshev coefficients of t [m per N/m].
+    energy_series : (3, n) array
+        Of the gear's third-order integrals per load cubed and face width (``fem.elasticity.third_order``).
+    """
+
+    rho_range: tuple[float, float]
+    tangential_series: Array
+    energy_series: Array
+
+    def _unit(self, rho: Array) -> Array:
+        low, high = self.rho_range
+        return np.clip((2 * rho - low - high) / (high - low), -1.0, 1.0)
+
+    def tangential(self, rho: Array) -> Array:
+        """Displacement t towards the tip [m per N/m] at rho [m]."""
+        return np.asarray(chebyshev.chebval(self._unit(rho), self.tangential_series))
+
+    def energy(self, rho: Array) -> Array:
+        """Third-order integrals (3, ...) at rho [m], less those of the half-plane; alpha is the first [m^3/N^2]."""
+        return np.asarray(chebyshev.chebval(self._unit(rho), self.energy_series.T))
+
+    def scaled(self, module: float, law: PlaneElasticity) -> FlankMotion:
+        """Give a gear in modules and E* its size [m] and modulus."""
+        low, high = self.rho_range
+        modulus = law.plane_modulus
+        units = module * np.array([modulus**2, modulus**3, modulus**3])
+        return FlankMotion(
+            (low * module, high * module),
+            self.tangential_series / modulus,
+            self.energy_series / units[:, None],
+        )
+
+
+def flank_motion(ring: Ring, flank: str = "left") -> FlankMotion:
+    """Load a gear's flank at some places from its foot to near the tip."""
+    mesh = ring.mesh
+    low = float(np.sqrt(2 * mesh.base_radius * mesh.parameters[f"flank_{flank}"].min()))
+    low = max(low, FOOT * mesh.module)
+    arc = float(mesh.parameters[f"flank_{flank}"].max()) - CLEARANCE * mesh.module
+    high = float(np.sqrt(2 * mesh.base_radius * arc))
+    unit = -np.cos(np.pi * (np.arange(PLACES) + 0.5) / PLACES)
+    at = flank_points(mesh, 0.5 * (low + high) + 0.5 * (high - low) * unit, flank)
+    loads = line_loads(ring, at)
+    tangential = np.diagonal(loads.on_tooth(0, at.towards_tip()))
+    fit = np.linalg.pinv(chebyshev.chebvander(unit, DEGREE))
+    return FlankMotion((low, high), fit @ tangential, third_order(loads) @ fit.T)

@@ -1,0 +1,239 @@
+"""What may touch where before any load: positions, teeth, points, levers and unloaded gaps."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Booleans, Faults, Integers, record
+from fem.laws.relieved_flanks import gentle, touch
+from fem.laws.setting import Deviations, Setting
+from fem.laws.tip_contact import nearest_gap
+from fem.laws.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_gap
+
+if TYPE_CHECKING:
+    from gears import GearPair
+
+__all__ = ["ContactCandidates", "contact_candidates", "unloaded_transmission_error"]
+
+REACHES = (0.6, 1.0)
+"""Base pitches outside the path within which tip edges are looked for; the second if the first is not enough."""
+
+
+@record
+class ContactCandidates:
+    """Pairs that might touch. n positions of all pitches; a base pitch has its own n_1 of them.
+
+    Attributes
+    ----------
+    position : (n,) array
+        Base pitches from A, of the pair that entered last at first.
+    offset : (pairs,) array of int
+        Base pitches that each column is ahead of the pair that entered last.
+    place : (n_1, pairs) array
+        rho1 of the unlimited involutes on the line of action [m].
+    rho : (2, n_1, pairs) array
+        Curvature radii where pinion and wheel are touched [m].
+    touchable, edge : (n_1, pairs) boolean arrays
+        Candidates, and those of a tip edge: outside the path, or where relief lets a corner be nearest.
+    curvature : (n_1, pairs) array
+        Of relieved flanks over that of the involutes, R/R'.
+    lacking : (n_1, pairs) array
+        Part of the gap from the material that the gears' flanks lack, but for that of single teeth [m].
+    lever : (2, n, pairs) array
+        Lever of the normal about the axes, over the base radii.
+    tangent_arm : (2, n, pairs) array
+        Distance from the foot of each axis on the normal to the contact [m], rho on the path.
+    leaning : (2, n_1, pairs) array
+        Angle from the normal of pinion's and wheel's involute to the force [rad], away from the tip; not zero at the
+        gear's own tip edge and where it is relieved.
+    gap : (pitches, n_1, pairs) array
+        Unloaded gaps [m], inf where not touchable.
+    teeth : (2, n, pairs) array of int
+        Numbers of the teeth.
+    back_gap : (n,) array
+        Smallest gap of the back flanks when the gears touch without load [m].
+    chamfered : (n_1, pairs) boolean array
+        Candidates whose chamfer is nearer than the corner before it.
+    reach_gap : float
+        Gap of the nearest contact that is not among the candidates [m].
+    """
+
+    position: Array
+    offset: Integers
+    place: Array
+    rho: Array
+    touchable: Booleans
+    edge: Booleans
+    curvature: Array
+    lacking: Array
+    lever: Array
+    tangent_arm: Array
+    leaning: Array
+    gap: Array
+    teeth: Integers
+    back_gap: Array
+    chamfered: Booleans
+    reach_gap: float
+
+    def corners(self) -> tuple[tuple[int, Booleans], ...]:
+        """Which gear's tip edge touches where: the wheel's (1) before A, the pinion's (0) after E."""
+        before = self.edge & (self.place < 0.5 * (self.place.min() + self.place.max()))
+        return (1, before), (0, self.edge & ~before)
+
+
+def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCandidates:
+    """Candidates for contact at midpoints of equal intervals of each base pitch, and their unloaded gaps."""
+    pair, positions = given.pair, given.positions
+    start, end = given.ends
+    pitch, line = pair.base_pitch, pair.line_of_action
+    last = ceil(pair.contact_ratio)
+    offset = np.arange(-1, last + 1) if given.beyond_path else np.arange(last)
+    stations = given.stations
+    position = (np.arange(positions) + 0.5) / positions if stations is None else stations.within
+    within, turned = position, np.zeros(len(position), dtype=np.int64)
+    if given.back:
+        within = given.mirror - position
+        turned = np.floor(within).astype(np.int64)
+        within = within - turned
+    place = pair.points.A + (within[:, None] + offset) * pitch
+    outside = (place < start) | (place > end)
+    edge = outside & (np.maximum(start - place, place - end) < reach * pitch) & given.beyond_path
+    touchable = ~outside | edge
+    middle = 0.5 * (pair.points.A + pair.points.E)
+    # places of pairs that cannot touch are never used, but must be places
+    place = np.where(touchable, place, middle)
+    rho = np.stack([place, line - place])
+    lever, arm, leaning = np.ones_like(rho), rho.copy(), np.zeros_like(rho)
+    gap, curvature = np.where(touchable, 0.0, np.inf), np.ones_like(place)
+    chamfered = np.zeros_like(edge)
+    if given.removed is not None and gentle(given):
+        near = touch(given, place[touchable], given.removed)
+        beyond = np.zeros_like(touchable)
+        beyond[touchable] = near.beyond
+        edge = (beyond if given.beyond_path else beyond & outside) & touchable
+        gap[touchable], curvature[touchable] = near.gap, near.curvature
+        rho[:, touchable], lever[:, touchable], arm[:, touchable] = near.rho, near.lever, near.rho
+        leaning[:, touchable] = near.leaning
+    elif given.removed is not None:
+        on_path = touchable & ~edge
+        gap[on_path] = given.removed[0](rho[0][on_path]) + given.removed[1](rho[1][on_path])
+    other_place = pair.points.A + given.mirror * pitch - (place - pair.points.A)
+    for corner, chosen in ((1, edge & (place < middle)), (0, edge & (place > middle))):
+        if chosen.any():
+            at = _edges(given, corner, place[chosen])
+            rho[1 - corner][chosen], rho[corner][chosen] = at.where, given.rounds[corner].rho
+            lever[corner][chosen], lever[1 - corner][chosen] = at.lever, 1.0
+            arm[corner][chosen], arm[1 - corner][chosen] = at.arm, at.where
+            leaning[corner][chosen], leaning[1 - corner][chosen], gap[chosen] = at.leaning, 0.0, at.gap
+            chamfered[chosen], curvature[chosen] = at.chamfered, 1.0
+    missed = touchable & ~np.isfinite(gap)  # the tip passes over the other tip
+    touchable, edge = touchable & ~missed, edge & ~missed
+    # (pitches, positions, pairs): every position in every pitch, or each in its own
+    number = np.arange(given.pitches)[:, None, None] if stations is None else stations.pitch[:, None]
+    ahead = offset - turned[:, None] if given.back else -offset
+    steps = np.broadcast_to(number + ahead, (given.pitches, positions, len(offset)))
+    teeth, other = given.teeth(steps), given.opposite
+    by_tooth = given.pitch_gap(teeth) + given.tooth_gap(teeth, rho) / np.where(touchable, lever[0], 1.0)
+    rolling = given.rolling_gap(place)
+    gaps = gap + rolling + by_tooth + (0.0 if given.face is None else given.face.least_gap(pair))
+    least = float(np.min(by_tooth) + np.min(rolling))
+    behind = other.pitch_gap(other.teeth(steps)) + given.rolling_gap(np.clip(other_place, start, end))
+    back = np.where(touchable, behind, np.inf).min(axis=-1)
+    numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
+    tiles = (1, given.pitches, 1)
+    return ContactCandidates(
+        position=(number[..., 0] + position).ravel(),
+        offset=offset,
+        place=place,
+        rho=rho,
+        touchable=touchable,
+        edge=edge,
+        curvature=curvature,
+        lacking=gap,
+        lever=np.tile(lever, tiles),
+        tangent_arm=np.tile(np.where(touchable, arm, np.nan), tiles),
+        leaning=leaning,
+        gap=gaps,
+        teeth=teeth.reshape(2, -1, len(offset)) % numbers,
+        back_gap=(pair.backlash + gaps.min(axis=-1) + back).ravel(),
+        chamfered=chamfered,
+        reach_gap=_reach_gap(given, reach) + least if given.beyond_path else np.inf,
+    )
+
+
+def _reach_gap(given: Setting, reach: float) -> float:
+    """Smaller gap of the two contacts at the ends of the reach; farther out gaps are larger."""
+    start, end = given.ends
+    apart = reach * given.pair.base_pitch
+    before, after = _edges(given, 1, np.array([start - apart])), _edges(given, 0, np.array([end + apart]))
+    return float(min(before.gap[0], after.gap[0]))
+
+
+@record
+class _Edges:
+    """Contacts of one gear's tip: where the other flank is touched; lever, arm and leaning of the force, gap."""
+
+    where: Array
+    lever: Array
+    arm: Array
+    leaning: Array
+    gap: Array
+    chamfered: Booleans
+
+
+def _edges(given: Setting, corner: int, place: Array) -> _Edges:
+    pair, rounding = given.pair, given.rounds[corner]
+    radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
+    touched = place if corner == 1 else pair.line_of_action - place
+    _, where = unloaded_gap(radii, pair.line_of_action, touched, np.array([rounding.rho]))
+    place_of_tip = where[:, 0]
+    lever = lever_ratio(pair, place_of_tip, place, corner)
+    arm = np.sqrt(np.maximum(radii[1] ** 2 * (1 - lever**2) + rounding.rho**2, 0.0))
+    angle = opening(radii, pair.line_of_action, touched, where, np.array([rounding.rho]))[:, 0]
+    plain = nearest_gap(pair, corner, place, rounding)
+    removed = given.removed
+    gap = plain if removed is None else nearest_gap(pair, corner, place, rounding, removed)
+    # turns of the pinion close the gap by the pinion's lever: r_b1 for its own flank
+    gap = gap / lever if corner == 0 else gap
+    reaches = (place_of_tip <= given.rounds[1 - corner].rho) & (lever > 0)
+    beyond = chamfer_gap(pair, corner, touched, rounding.start)
+    chamfered = np.isfinite(beyond) & (beyond < plain)
+    return _Edges(place_of_tip, lever, arm, angle, np.where(reaches, gap, np.inf), chamfered)
+
+
+def unloaded_transmission_error(
+    pair: GearPair,
+    positions: int = 40,
+    beyond_path: bool = True,
+    deviations: Deviations | None = None,
+    pitches: int = 1,
+    first_teeth: tuple[int, int] = (0, 0),
+    tip_rounding: float | tuple[float, float] = 0.0,
+) -> Array:
+    """Transmission error of rigid gears under no load, from the geometry alone (pitches*positions,) [m].
+
+    The smallest gap of all pairs, D_0: zero for perfect involutes while one of them is between A and E; with
+    relief or deviations the pair that touches first, which may do so with a tip edge outside A..E. Positive
+    when the wheel lags. Parameters as for ``mesh_cycle``.
+
+    Raises
+    ------
+    base.InputError
+        Input that makes no sense.
+
+    Examples
+    --------
+    >>> from fem import unloaded_transmission_error
+    >>> from gears import Gear, GearPair
+    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
+    >>> unloaded_transmission_error(pair, positions=3)
+    array([0., 0., 0.])
+    """
+    given = Setting(pair, positions, beyond_path, deviations, pitches, first_teeth, tip_rounding)
+    found = Faults()
+    given.check(found)
+    found.raise_if_any()
+    return np.asarray(contact_candidates(given, REACHES[-1]).gap.min(axis=-1).ravel())

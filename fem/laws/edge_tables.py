@@ -1,0 +1,187 @@
+"""Laws of a pair's tip edges, kept by place: pitches and torques ask for the same ones, on each mesh of an estimate."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Booleans, Integers, record
+from fem.influence.memo import Memo
+from fem.laws.local_law import Table
+from fem.laws.place_surface import PlaceSurface, place_surface, slid
+from fem.laws.tip_contact import edge_laws
+
+if TYPE_CHECKING:
+    from fem.laws.contact_candidates import ContactCandidates
+    from fem.laws.setting import Setting
+    from fem.pair.bodies import Compliance
+
+__all__ = ["EdgeTables", "edge_tables"]
+
+APART = 1e-11
+"""Base pitches within which two places are one: laws are continuous in the place."""
+
+MOST = 20_000
+"""Laws kept of either gear's tip; when there are more all are forgotten."""
+
+
+@record
+class _Laws:
+    """Laws of one gear's tip, in order of their places.
+
+    Attributes
+    ----------
+    key : (n,) array
+        Places, rounded; growing.
+    force, approach : (n, points) arrays
+        [N], [m]
+    largest : (n,) array
+        [N]
+    smooth : (n,) boolean array
+    """
+
+    key: Array
+    force: Array
+    approach: Array
+    largest: Array
+    smooth: Booleans
+
+    def _nearest(self, key: Array) -> Integers:
+        """Laws whose places are nearest; there is at least one."""
+        after = np.clip(np.searchsorted(self.key, key), 1, max(len(self.key) - 1, 1))
+        before, after = after - 1, np.minimum(after, len(self.key) - 1)
+        return np.where(key - self.key[before] <= self.key[after] - key, before, after)
+
+    def has(self, key: Array) -> Booleans:
+        """Whether the law of each place is here, or of one that rounding has put beside it."""
+        if not len(self.key):
+            return np.zeros(len(key), dtype=bool)
+        found: Booleans = np.abs(self.key[self._nearest(key)] - key) <= 1.0
+        return found
+
+    def rows(self, key: Array) -> _Laws:
+        """Laws of places that are here."""
+        return self._part(self._nearest(key))
+
+    def joined(self, other: _Laws) -> _Laws:
+        """These and others."""
+        every = [(getattr(self, one.name), getattr(other, one.name)) for one in fields(self)]
+        both = _Laws(*(np.concatenate(pair) for pair in every))
+        return both._part(np.argsort(both.key))
+
+    def _part(self, rows: Integers) -> _Laws:
+        return _Laws(*(getattr(self, one.name)[rows] for one in fields(self)))
+
+
+class EdgeTables:
+    """Laws of all tip edges of a pair by the place of the contact.
+
+    Parameters
+    ----------
+    given : Setting
+        At any positions: what counts is how the gears are set up.
+    bodies : Compliance
+        On any of its meshes that share the answer of the tips; others have separate tables (`serving`).
+    """
+
+    def __init__(self, given: Setting, bodies: Compliance) -> None:
+        self.given, self.bodies = given, bodies
+        self._kept: dict[int, _Laws] = {}
+        self._other: EdgeTables | None = None
+
+    def serving(self, bodies: Compliance) -> EdgeTables:
+        """Tables of the same pair with the tips of other bodies: these, or others that are kept here as well."""
+        strips = bodies.tip_strips
+        if bodies is self.bodies or strips is None or strips is self.bodies.tips:
+            return self
+        if self._other is None or self._other.bodies.tip_strips is not strips:
+            self._other = EdgeTables(self.given, bodies)
+        return self._other
+
+    def at(
+        self, where: ContactCandidates, slid: tuple[float, float] = (0.0, 0.0)
+    ) -> tuple[Table | None, Array]:
+        """Laws of all tip edges in row-major order, and the largest forces kappa F that they cover [N].
+
+        What strips ``slid`` on pinion and wheel is given back (``fem.laws.cut_off``).
+        """
+        if not where.edge.any():
+            return None, np.zeros(0)
+        found = [
+            (chosen, self._laws(corner, where.place[chosen], slid[corner]))
+            for corner, chosen in where.corners()
+        ]
+        points = max(laws.force.shape[1] for _, laws in found)
+        order = np.argsort(np.concatenate([np.flatnonzero(chosen) for chosen, _ in found]))
+        force, approach = (
+            np.concatenate([_extended(values, points) for values in every])[order]
+            for every in ([laws.force for _, laws in found], [laws.approach for _, laws in found])
+        )
+        largest = np.concatenate([laws.largest for _, laws in found])[order]
+        smooth = np.concatenate([laws.smooth for _, laws in found])[order]
+        return Table.through(force, approach, smooth), largest
+
+    @cached_property
+    def slid(self) -> tuple[float, float]:
+        """What strips slide on the teeth of pinion and wheel, for contacts that move."""
+        return slid(self.bodies)
+
+    @cached_property
+    def surfaces(self) -> tuple[PlaceSurface, PlaceSurface]:
+        """Laws beside the corners of pinion and wheel over place and force, for contacts that move."""
+        first, second = (
+            place_surface(self.given, self.bodies, corner, self.slid[corner]) for corner in (0, 1)
+        )
+        return first, second
+
+    def _laws(self, corner: int, place: Array, slid: float) -> _Laws:
+        """Laws of one gear's tip at places (n,) [m]; those that are known are not computed again."""
+        found = self._held(corner, place)
+        return found if slid == 0.0 else replace(found, approach=found.approach + 3 * slid * found.force**2)
+
+    def _held(self, corner: int, place: Array) -> _Laws:
+        key = np.round(place / (APART * self.given.pair.base_pitch))
+        known = self._kept.get(corner)
+        if known is None or len(known.key) > MOST:
+            known = self._computed(corner, key, place)
+        elif not (here := known.has(key)).all():
+            known = known.joined(self._computed(corner, key[~here], place[~here]))
+        self._kept[corner] = known
+        return known.rows(key)
+
+    def _computed(self, corner: int, key: Array, place: Array) -> _Laws:
+        key, first = np.unique(key, return_index=True)
+        apart = np.diff(key, prepend=-np.inf) > 1.0  # what rounding has parted is one place
+        key, first = key[apart], first[apart]
+        given, bodies = self.given, self.bodies
+        touched = (bodies.pinion, bodies.wheel)[1 - corner].law
+        tips = bodies.tips[corner]
+        law = edge_laws(given.pair, tips, corner, place[first], touched, given.rounds[corner], given.removed)
+        return _Laws(key, law.force, law.approach - law.approach[:, :1], law.largest, law.smooth)
+
+
+_TABLES: Memo[EdgeTables] = Memo(4)
+
+
+def edge_tables(given: Setting, bodies: Compliance) -> EdgeTables:
+    """Tables of a face set up likewise, with what loads before have left in them; new ones of flanks with relief.
+
+    Parameters
+    ----------
+    given : Setting
+    bodies : Compliance
+        The very record: tables that are kept hold theirs, so that no other one can take its place.
+    """
+    if given.removed is not None or given.face is None:
+        return EdgeTables(given, bodies)
+    return _TABLES.obtain((id(bodies), given.rounds), lambda: EdgeTables(given, bodies))
+
+
+def _extended(values: Array, points: int) -> Array:
+    """Rows continued in a straight line to a number of points."""
+    more = np.arange(1, points - values.shape[1] + 1)
+    beyond = values[:, -1:] + more * (values[:, -1:] - values[:, -2:-1])
+    return np.concatenate([values, beyond], axis=1)

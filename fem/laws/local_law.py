@@ -1,0 +1,248 @@
+"""Local deflection of each pair by its own force: Hertz on the flanks, tables at tip edges, oil film."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+
+from base import Array, Booleans, Integers, record
+from fem.pair.hertz_approach import LEAST_FORCE, HertzApproach
+
+__all__ = ["CutOff", "Film", "FilmLaw", "PairLaws", "Table", "film_yielding"]
+
+
+@record
+class Table:
+    """Monotone cubic interpolation of one law per row; straight beyond the end.
+
+    What contacts approach over their force is nearly linear in the force's logarithm, as in ``HertzApproach``, and is
+    exactly so while only the corner and the opening of the flanks count. Smooth laws have that form up to their first
+    force, and at the others the derivatives of parabolas through three points of it; laws by strips that close in any
+    order have those of Fritsch and Carlson.
+
+    Attributes
+    ----------
+    force, approach, steepness : (n, k) arrays
+        Points [N], [m], the first without force, and derivatives [m/N]; infinite at the first of laws that are smooth.
+    """
+
+    force: Array
+    approach: Array
+    steepness: Array
+
+    @classmethod
+    def through(cls, force: Array, approach: Array, smooth: Booleans | bool = True) -> Table:
+        """Table through growing points (n, k), and which of the laws are smooth (n,)."""
+        size, secant = np.diff(force), np.diff(approach) / np.diff(force)
+        left, right = 2 * size[:, 1:] + size[:, :-1], size[:, 1:] + 2 * size[:, :-1]
+        middle = (left + right) / (left / secant[:, :-1] + right / secant[:, 1:])
+        any_order = np.concatenate([secant[:, :1], middle, secant[:, -1:]], axis=1)
+        log, quotient = np.log(force[:, 1:]), (approach[:, 1:] - approach[:, :1]) / force[:, 1:]
+        rise = np.diff(quotient) / np.diff(log)
+        width = log[:, 2:] - log[:, :-2]
+        bent = (np.diff(log)[:, 1:] * rise[:, :-1] + np.diff(log)[:, :-1] * rise[:, 1:]) / width
+        inside = quotient[:, :-1] + np.concatenate([np.minimum(rise[:, :1], 0.0), bent], axis=1)
+        inside = np.clip(inside, 0.0, 3 * np.minimum(secant[:, :-1], secant[:, 1:]))
+        begins = np.full((len(force), 1), np.inf)
+        by_logarithm = np.concatenate([begins, inside, secant[:, -1:]], axis=1)
+        return cls(force, approach, np.where(np.reshape(smooth, (-1, 1)), by_logarithm, any_order))
+
+    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
+        """Approach [m] and derivative [m/N] at forces (..., n) [N], one of each row."""
+        return _by_row(self._at, force)
+
+    def _at(self, rows: Integers, force: Array) -> tuple[Array, Array]:
+        last = self.force.shape[1] - 1
+        cell = np.clip((self.force[rows] <= force[:, None]).sum(axis=-1) - 1, 0, last - 1)
+        f0, f1 = self.force[rows, cell], self.force[rows, cell + 1]
+        d0, d1 = self.approach[rows, cell], self.approach[rows, cell + 1]
+        s0, s1 = self.steepness[rows, cell], self.steepness[rows, cell + 1]
+        width, begins = f1 - f0, np.isinf(s0)
+        quotient, s0 = (d1 - d0) / width, np.where(begins, 0.0, s0)
+        beyond = np.maximum(force - f1, 0.0)
+        t = np.minimum((force - f0) / width, 1.0)
+        value = (
+            d0 * (1 + 2 * t) * (1 - t) ** 2
+            + d1 * t**2 * (3 - 2 * t)
+            + width * (s0 * t * (1 - t) ** 2 - s1 * t**2 * (1 - t))
+        )
+        slope = 6 * t * (1 - t) * quotient + s0 * (1 - t) * (1 - 3 * t) + s1 * t * (3 * t - 2)
+        per_log = s1 - quotient
+        small = quotient + per_log * np.log(np.maximum(force, LEAST_FORCE) / f1)
+        value = np.where(begins, d0 + force * small, value)
+        slope = np.where(begins, small + np.where(force > LEAST_FORCE, per_log, 0.0), slope)
+        return value + s1 * beyond, slope
+
+
+@record
+class CutOff:
+    """What a near tip corner adds to the flank's law of some contacts, over the force (``fem.laws.cut_off``).
+
+    Cubic between its points in the force's logarithm; in proportion to the force below the first one, where it is
+    zero for true involutes, and beyond the last, which strips do not cover.
+
+    Attributes
+    ----------
+    at : boolean array
+        Which contacts (positions, pairs), n of them in row-major order.
+    log_force : (n, k) array
+        Logarithms of forces [N].
+    quotient, slope : (n, k) arrays
+        Further deflection over the force [m/N], and its derivative by the logarithm.
+    """
+
+    at: Booleans
+    log_force: Array
+    quotient: Array
+    slope: Array
+
+    def of(self, position: int) -> CutOff:
+        """Corrections at a single position."""
+        rows = np.nonzero(self.at)[0] == position
+        one = self.at[position : position + 1]
+        return CutOff(one, self.log_force[rows], self.quotient[rows], self.slope[rows])
+
+    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
+        """Further deflection [m] and its derivative [m/N] under forces (..., n) [N], one of each contact."""
+        return _by_row(self._at, force)
+
+    def _at(self, rows: Integers, force: Array) -> tuple[Array, Array]:
+        log, last = np.log(np.maximum(force, LEAST_FORCE)), self.log_force.shape[1] - 1
+        cell = np.clip((self.log_force[rows] <= log[:, None]).sum(axis=-1) - 1, 0, last - 1)
+        start = self.log_force[rows, cell]
+        width = self.log_force[rows, cell + 1] - start
+        q0, q1 = self.quotient[rows, cell], self.quotient[rows, cell + 1]
+        s0, s1 = self.slope[rows, cell] * width, self.slope[rows, cell + 1] * width
+        t = np.clip((log - start) / width, 0.0, 1.0)
+        quotient = q0 * (1 + 2 * t) * (1 - t) ** 2 + q1 * t**2 * (3 - 2 * t)
+        quotient = quotient + s0 * t * (1 - t) ** 2 - s1 * t**2 * (1 - t)
+        slope = (6 * t * (1 - t) * (q1 - q0) + s0 * (1 - t) * (1 - 3 * t) + s1 * t * (3 * t - 2)) / width
+        slope = np.where(log < self.log_force[rows, -1], slope, 0.0)
+        return force * quotient, quotient + np.where(log > self.log_force[rows, 0], slope, 0.0)
+
+
+def _by_row(at: Callable[[Integers, Array], tuple[Array, Array]], force: Array) -> tuple[Array, Array]:
+    """Ask laws of rows at forces (m,) for forces (..., rows): those without a force once a row."""
+    bears, count = force != 0.0, force.shape[-1]
+    rows = np.nonzero(bears)[-1]
+    found = at(np.concatenate([np.arange(count), rows]), np.concatenate([np.zeros(count), force[bears]]))
+    value, slope = np.empty_like(force), np.empty_like(force)
+    for each, one in zip((value, slope), found, strict=True):
+        each[...] = one[:count]
+        each[bears] = one[count:]
+    return value, slope
+
+
+@record
+class PairLaws:
+    """Hertz on the path of contact, a table for each tip-edge contact outside it.
+
+    Attributes
+    ----------
+    hertz : HertzApproach
+        For all (positions, pairs).
+    edge : (positions, pairs) boolean array
+        Contacts of a tip edge.
+    table : Table or None
+        One row for each of them, in row-major order.
+    cut_offs : tuple of CutOff
+        Corrections of contacts near tip corners.
+    """
+
+    hertz: HertzApproach
+    edge: Booleans
+    table: Table | None = None
+    cut_offs: tuple[CutOff, ...] = ()
+
+    def at(self, position: int) -> PairLaws:
+        """Laws of a single position."""
+        one = slice(position, position + 1)
+        per_log = np.broadcast_to(self.hertz.per_log, self.edge.shape)[one]
+        table = self.table
+        if table is not None:
+            rows = np.nonzero(self.edge)[0] == position
+            table = Table(table.force[rows], table.approach[rows], table.steepness[rows])
+        near = tuple(cut.of(position) for cut in self.cut_offs)
+        return PairLaws(HertzApproach(self.hertz.constant[one], per_log), self.edge[one], table, near)
+
+    def approach(self, force: Array) -> Array:
+        """Local deflection (positions, pairs) [m]."""
+        return self.value_and_slope(force)[0]
+
+    def slope(self, force: Array) -> Array:
+        """Its derivative [m/N]."""
+        return self.value_and_slope(force)[1]
+
+    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
+        """Both together."""
+        value, slope = self.hertz.value_and_slope(force)
+        if self.table is not None:
+            value[..., self.edge], slope[..., self.edge] = self.table.value_and_slope(force[..., self.edge])
+        for one in self.cut_offs:
+            more, steeper = one.value_and_slope(force[..., one.at])
+            value[..., one.at] += more
+            slope[..., one.at] += steeper
+        return value, slope
+
+
+class Film(Protocol):
+    """Separation of the flanks by an oil film, as ``mesh_cycle`` asks for it."""
+
+    def __call__(self, rho1: Array, forces: Array) -> tuple[Array, Array]:
+        """Separation s >= 0 [m] and its derivative by the force ds/dF <= 0 [m/N].
+
+        Parameters
+        ----------
+        rho1 : (positions, pairs) array
+            Curvature radii on the pinion [m]; nan where a pair cannot touch or touches with a tip edge only,
+            where any finite answer is ignored.
+        forces : (positions, pairs) array
+            Normal forces [N], zero included.
+        """
+
+
+def film_yielding(film: Film, rho1: Array, forces: Array, shares: Array) -> Array:
+    r"""What films yield beyond the transmission error, counted along their tangents from zero force (positions,) [m].
+
+    A film separates the flanks most where the force is smallest, so that the transmission error D itself is less
+    than without film and F/D would call a film stiffer than no film. What yields is the bodies' deflection
+    :math:`D + s_i` and the film's :math:`F_i/k_i`: with these in series in each pair, and the mean over the pairs
+    weighted by their shares, a stiff film gives the dry secant back.
+
+    Parameters
+    ----------
+    film : Film
+    rho1 : (positions, pairs) array
+        Places [m]; nan where a pair is dry.
+    forces, shares : (positions, pairs) arrays
+        Forces [N] and their shares of the whole.
+    """
+    separation, slope = film(rho1, forces)
+    yields = np.where(np.isfinite(rho1), separation - forces * slope, 0.0)
+    return np.asarray(np.sum(shares * yields, axis=1))
+
+
+@record
+class FilmLaw:
+    """A ``Film`` at fixed places, in the form that load sharing asks for; dry at tip edges."""
+
+    film: Film
+    rho1: Array
+
+    def approach(self, force: Array) -> Array:
+        """Separation (..., positions, pairs) [m]."""
+        return self.value_and_slope(force)[0]
+
+    def slope(self, force: Array) -> Array:
+        """Its derivative [m/N]."""
+        return self.value_and_slope(force)[1]
+
+    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
+        """Both together; the film is asked with all leading dimensions as positions."""
+        places = np.broadcast_to(self.rho1, force.shape)
+        flat, wet = (-1, force.shape[-1]), np.isfinite(places)
+        found = self.film(places.reshape(flat), force.reshape(flat))
+        value, slope = (np.where(wet, np.reshape(one, force.shape), 0.0) for one in found)
+        return value, slope

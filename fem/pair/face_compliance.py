@@ -1,0 +1,174 @@
+"""Compliance of both gears of a pair along the face: waves and free ends of all pairs in contact, put together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array
+from fem.influence.gear_face import EndsOverCells, FlankEnds, FlankWaves, flank_ends, flank_waves
+from fem.influence.gear_shape import MeshedShape
+from fem.influence.solved_gear import Gears
+from fem.pair.wide_contact import beyond_logarithm
+
+if TYPE_CHECKING:
+    from fem.pair.bodies import Compliance
+
+__all__ = ["ends_of", "even_loads", "gear_waves", "pair_ends", "pair_waves", "waves_of"]
+
+SPREAD = 0.15
+"""Arc from the tip corner [modules] within which loads on cells count as there: the pressure of a contact beside a
+corner, or of the corner, spreads as far; a line at the corner would yield less than nothing in short waves."""
+
+DIGITS = 12
+"""Of lengths over the module, by which what is solved of a face is known."""
+
+
+def waves_of(meshed: MeshedShape, gears: Gears) -> FlankWaves:
+    """Answer of a gear to waves of load, solved where it is kept nowhere."""
+    return gears.record("waves", (meshed,), partial(flank_waves, meshed))
+
+
+def ends_of(meshed: MeshedShape, width: float, gears: Gears) -> FlankEnds:
+    """What free ends add to it over a face of some width in modules, solved where it is kept nowhere."""
+    long = float(f"{width:.{DIGITS}g}")
+    return gears.record("ends", (meshed, long), partial(flank_ends, meshed, long))
+
+
+def pair_waves(
+    bodies: Compliance, rho: Array, cells: int, strip: float = 0.0, gears: Sequence[int] = (0, 1)
+) -> Array:
+    """What waves of load yield beyond even loads (..., n, n, cells - 1), per force on the whole face [m/N].
+
+    Parameters
+    ----------
+    bodies : Compliance
+    rho : (2, ..., n) array
+        Curvature radii of n pairs on pinion and wheel, in order of rho1, one tooth apart [m].
+    cells : int
+        Waves k = m pi/b, m = 1 .. cells - 1.
+    strip : float
+        Half-width of strips of pressure over a cell's length; 0 is a line.
+    gears : sequence of int
+        That yield: 0 is the pinion, 1 the wheel.
+    """
+    width = bodies.pair.face_width
+    long = width / bodies.pair.module
+    wavenumber: Array = np.arange(1, cells, dtype=float) * (np.pi / long)
+    n = rho.shape[-1]
+    found: Array = np.zeros((*rho.shape[1:], n, cells - 1))
+    for gear in gears:
+        found += gear_waves(bodies, gear, rho[gear], wavenumber, strip * long / cells) / width
+    return found
+
+
+def gear_waves(
+    bodies: Compliance, gear: int, rho: Array, wavenumber: Array, half_width: float = 0.0
+) -> Array:
+    """What waves of line load yield beyond even ones on one gear (..., n, n, waves) [m per N/m].
+
+    Parameters
+    ----------
+    bodies : Compliance
+    gear : int
+        0 is the pinion, 1 the wheel.
+    rho : (..., n) array
+        Curvature radii of n pairs on it, in order of rho1, one tooth apart [m].
+    wavenumber : (waves,) array
+        k times the module.
+    half_width : float
+        Of strips of pressure, over the module; 0 is a line.
+    """
+    meshed, flexible = bodies.meshed[gear], (bodies.pinion, bodies.wheel)[gear]
+    waves = waves_of(meshed, Gears())
+    n = rho.shape[-1]
+    found: Array = np.zeros((*rho.shape, n, len(wavenumber)))
+    diagonal = np.arange(n)
+    module = bodies.pair.module
+    last = waves.rho_end**2 - 2.0 * SPREAD * flexible.base_radius / module
+    unit, at = 1.0 / flexible.law.plane_modulus, np.minimum(rho / module, np.sqrt(last))
+    wide = beyond_logarithm(wavenumber * half_width) if half_width else 0.0
+    found[..., diagonal, diagonal, :] = unit * (waves.own_at(at, wavenumber) + 2 / np.pi * wide)
+    for apart in range(1, min(n, bodies.reach + 1)):
+        behind, ahead = diagonal[:-apart], diagonal[apart:]
+        # the pair ahead has the smaller rho2
+        load, point = (behind, ahead) if gear == 0 else (ahead, behind)
+        cross = unit * waves.cross_at(apart, at[..., load], at[..., point], wavenumber)
+        found[..., behind, ahead, :] = found[..., ahead, behind, :] = cross
+    return found
+
+
+def even_loads(bodies: Compliance, gear: int, rho: Array) -> Array:
+    """What even line loads yield on one gear (..., n, n) [m per N/m], without the local indentation.
+
+    Parameters
+    ----------
+    bodies, gear, rho
+        As of ``gear_waves``.
+    """
+    flexible, n = (bodies.pinion, bodies.wheel)[gear], rho.shape[-1]
+    found: Array = np.zeros((*rho.shape, n))
+    diagonal = np.arange(n)
+    found[..., diagonal, diagonal] = flexible.own(rho)
+    for apart in range(1, min(n, bodies.reach + 1)):
+        behind, ahead = diagonal[:-apart], diagonal[apart:]
+        load, point = (behind, ahead) if gear == 0 else (ahead, behind)
+        cross = flexible.cross(apart, rho[..., load], rho[..., point])
+        found[..., behind, ahead] = found[..., ahead, behind] = cross
+    return found
+
+
+def pair_ends(
+    bodies: Compliance,
+    rho: Array,
+    edges: tuple[Array, Array],
+    widths: tuple[float, float],
+    gears: Sequence[int] = (0, 1),
+) -> Array:
+    """What free ends add between cells of n pairs (..., n, cells, n, cells) [m/N].
+
+    Parameters
+    ----------
+    bodies : Compliance
+    rho : (2, ..., n) array
+        As of ``pair_waves``.
+    edges : two (cells + 1,) arrays
+        Of the cells on pinion and wheel, growing, from the middle of the gear's own face [m].
+    widths : (float, float)
+        Face widths of both [m].
+    gears : sequence of int
+        As of ``pair_waves``.
+    """
+    n, cells = rho.shape[-1], len(edges[0]) - 1
+    found: Array = np.zeros((*rho.shape[1:], cells, n, cells))
+    module = bodies.pair.module
+    for gear in gears:
+        flexible = (bodies.pinion, bodies.wheel)[gear]
+        ends = _ends(bodies.meshed[gear], widths[gear] / module, edges[gear] / module)
+        unit, at = 1.0 / (flexible.law.plane_modulus * module), rho[gear] / module
+        for one in range(n):
+            found[..., one, :, one, :] += unit * ends.own_at(at[..., one])
+        for apart in range(1, min(n, bodies.reach + 1)):
+            for behind in range(n - apart):
+                ahead = behind + apart
+                load, point = (behind, ahead) if gear == 0 else (ahead, behind)
+                cross = unit * ends.cross_at(apart, at[..., load], at[..., point])
+                found[..., load, :, point, :] += cross
+                found[..., point, :, load, :] += np.swapaxes(cross, -1, -2)
+    return found
+
+
+def _ends(meshed: MeshedShape, width: float, edges: Array) -> EndsOverCells:
+    """Free ends of a gear over cells, width and edges in modules."""
+    gears = Gears()
+    long = float(f"{width:.{DIGITS}g}")
+
+    def over() -> EndsOverCells:
+        whole = ends_of(meshed, width, gears)
+        # the face that was solved ends where the cells do, to the last bit
+        return whole.over(np.clip(edges, -whole.half.ends[-1], whole.half.ends[-1]))
+
+    return gears.over_face("ends", (meshed, long, edges.tobytes()), over)

@@ -1,0 +1,159 @@
+"""How the face is looked at: its cells, and gaps along it by leads and alignment."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from base import Array, Faults, Limit, record, shorten
+from gears import Shaft
+from gears.tooth.face import ALIGNED, STRAIGHT, Alignment, Lead
+
+if TYPE_CHECKING:
+    from gears import GearPair
+
+__all__ = ["PLACES", "FaceSetting", "face_setting"]
+
+USUAL = 64
+"""Cells of the face unless they are given."""
+
+FREE_ENDS, WALLS, SLICES = "free-ends", "walls", "slices"
+"""What couples the cells of the face."""
+
+PLACES = 2049
+"""Along the face at which its minimum gap is looked for."""
+
+CELLS = Limit(4, 512, remedy="64 resolve what a face does", whole=True)
+
+
+@record
+class FaceSetting:
+    """How the face is looked at.
+
+    Attributes
+    ----------
+    cells : int
+        Equal cells of the face, even.
+    alignment : Alignment
+    leads : (Lead, Lead)
+        Of pinion and wheel.
+    model : {"free-ends", "walls", "slices"}
+        What couples the cells: bodies with free ends, or between frictionless walls; nothing but the approach.
+    strip : float
+        Half-width of strips of pressure over a cell's length, where cells are narrow (``wide_contact``); else 0.
+    shafts : (Shaft or None, Shaft or None)
+        Of pinion and wheel, which bend and twist; None is rigid.
+    """
+
+    cells: int
+    alignment: Alignment = ALIGNED
+    leads: tuple[Lead, Lead] = (STRAIGHT, STRAIGHT)
+    model: str = FREE_ENDS
+    shafts: tuple[Shaft | None, Shaft | None] = (None, None)
+    strip: float = 0.0
+
+    @property
+    def coupled(self) -> tuple[Any, ...]:
+        """What decides how bodies couple cells, whatever stands between the flanks and under the gears."""
+        return self.cells, self.model, self.strip
+
+    @property
+    def slope(self) -> float:
+        """Slopes of leads and alignment in the plane of action together, over the face [m]."""
+        return sum(lead.slope for lead in self.leads) + self.alignment.in_plane
+
+    def edges(self, pair: GearPair) -> Array:
+        """Edges of the cells (cells + 1,) [m], 0 at mid-face."""
+        return np.asarray(np.linspace(-0.5, 0.5, self.cells + 1) * pair.face_width)
+
+    def middles(self, face_width: float) -> Array:
+        """Middles of the cells (cells,) [m], 0 at mid-face."""
+        return np.asarray(((np.arange(self.cells) + 0.5) / self.cells - 0.5) * face_width)
+
+    def check(self, found: Faults, pair: GearPair, positions: int) -> None:
+        """Note everything that is wrong, and what takes more memory at a number of positions than there is."""
+        from fem.pair.face_memory import check_memory
+
+        found.number("cells", self.cells, CELLS)
+        found.choice("face_model", self.model, (FREE_ENDS, WALLS, SLICES), "slices alone bear too evenly")
+        if isinstance(self.cells, int) and self.cells % 2:
+            found.add("cells", self.cells, "must be even", "mid-face lies between two cells")
+        if found.instance("alignment", self.alignment, Alignment, optional=True):
+            found.extend(self.alignment.faults("alignment"))
+        if not isinstance(self.shafts, Sequence) or len(self.shafts) != 2:
+            found.add(
+                "shafts", shorten(self.shafts), "must be of pinion and wheel", "give None for a stiff one"
+            )
+            return
+        for name, lead, width in zip(("pinion", "wheel"), self.leads, pair.face_widths, strict=True):
+            if lead.end_relief and lead.end_relief_length > 0.5 * width:
+                allowed = f"must be at most {0.5 * width:g} m, half the face"
+                found.add(
+                    f"{name}.lead.end_relief_length", lead.end_relief_length, allowed, "relieve less of it"
+                )
+
+        if not found.found:
+            check_memory(found, pair, self.cells, positions, self.model)
+        for k, shaft in enumerate(self.shafts):
+            if found.instance(f"shafts[{k}]", shaft, Shaft, optional=True) and shaft is not None:
+                _check_shaft(found, f"shafts[{k}]", shaft, pair.face_width, pair.face_offsets[k])
+
+    def least_gap(self, pair: GearPair) -> float:
+        """Smallest of the gaps along the face by straight leads and what lies in the plane of action [m], 0 or less."""
+        return float(np.min(self.gaps_along(pair)))
+
+    def gaps_along(self, pair: GearPair) -> Array:
+        """Gaps at PLACES along the face by straight leads and what lies in the plane of action (PLACES,) [m]."""
+        z = np.linspace(-0.5, 0.5, PLACES) * pair.face_width
+        return self._gaps_at(pair, z, np.array(np.inf))
+
+    def gaps(self, pair: GearPair, radius: Array) -> Array:
+        """Mean gaps of the cells (..., cells) [m], less those at mid-face of straight aligned gears."""
+        both = self.gaps_within(pair, radius, 2)
+        return np.asarray((both[..., :-1:2] + 4.0 * both[..., 1::2] + both[..., 2::2]) / 6.0)
+
+    def gaps_within(self, pair: GearPair, radius: Array, parts: int) -> Array:
+        """Gaps at the ends of equal parts of every cell (..., parts cells + 1) [m]."""
+        z = np.linspace(-0.5, 0.5, parts * self.cells + 1) * pair.face_width
+        return self._gaps_at(pair, z, radius)
+
+    def _gaps_at(self, pair: GearPair, z: Array, radius: Array) -> Array:
+        """Gaps (..., n) [m] at places along the face (n,) [m]."""
+        removed = sum(
+            lead.removed(z - offset, width)
+            for lead, width, offset in zip(self.leads, pair.face_widths, pair.face_offsets, strict=True)
+        )
+        return np.asarray(self.alignment.gap(z, pair.face_width, radius[..., None]) + removed)
+
+
+def face_setting(
+    pair: GearPair,
+    alignment: Alignment | None,
+    cells: int | None,
+    model: str,
+    shafts: tuple[Shaft | None, Shaft | None] | None = None,
+) -> FaceSetting | None:
+    """How the face of a pair is looked at; None where nothing differs along it and no cells are asked for."""
+    leads, both = (pair.pinion.lead, pair.wheel.lead), shafts or (None, None)
+    alike = leads == (STRAIGHT, STRAIGHT) and pair.face_widths == (pair.face_width, pair.face_width)
+    if alike and alignment is None and cells is None and both == (None, None):
+        return None
+    return FaceSetting(USUAL if cells is None else cells, alignment or ALIGNED, leads, model, both)
+
+
+def _check_shaft(found: Faults, where: str, shaft: Shaft, face_width: float, offset: float) -> None:
+    """Note a face in contact that is not all on its shaft."""
+    half = 0.5 * face_width
+    within = Limit(
+        half + offset,
+        shaft.length - half + offset,
+        "m",
+        "the whole face must be on the shaft: make its end longer",
+    )
+    if within.low <= within.high:
+        found.number(f"{where}.gear_position", shaft.gear_position, within)
+    else:
+        allowed = f"must be at least the face width, {face_width:g} m"
+        found.add(f"{where}.segments", f"{shaft.length:g} m long", allowed, "give the steps of the shaft")

@@ -1,0 +1,191 @@
+"""Both gears of a pair as they have been solved, and what is solved when it is first asked for."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from base import Cost, part, quantity, record
+from base.results import ITSELF
+from fem.elasticity.ring import Ring
+from fem.elasticity.support import FIXED, Support, held_profiles
+from fem.influence.back_compliance import BackCompliance
+from fem.influence.flank_motion import FlankMotion
+from fem.influence.gear_compliance import GearCompliance
+from fem.influence.gear_shape import MeshedShape, shapes
+from fem.influence.solved_gear import Gears
+from fem.influence.tip_strips import TipStrips
+
+if TYPE_CHECKING:
+    from gears import GearPair
+    from meshes import Sizes
+
+__all__ = ["SolvedPair"]
+
+
+@record
+class SolvedPair:
+    """Flanks, tip edges, motions and back flanks of both gears, on the mesh in use and on the one before."""
+
+    no_error = "not estimated: what a deflection is made of, whose error is `error`"
+
+    headline: ClassVar[tuple[str, ...]] = ("plane", "refinements")
+
+    pair: GearPair = part("the gears")
+    plane: str = part('"strain" or "stress"')
+    pinion: GearCompliance = part("of the pinion, held at the bore or hub")
+    wheel: GearCompliance = part("of the wheel, likewise")
+    refinements: int = quantity("1", "refinements of the mesh in use")
+    sizes: Sizes = part("of the mesh before it was refined")
+    reach: int = quantity("1", "neighbours with cross terms on either side of a tooth")
+    error: float = quantity("1", "estimated relative error of a pair's deflection, largest along the path")
+    cost: Cost
+    converged: bool
+    message: str
+    supports: tuple[Support, Support] = part("how the bores of both are held", default=(FIXED, FIXED))
+    tip_strips: tuple[TipStrips, TipStrips] | None = part(
+        "tip edges of both gears; None before contact outside the path has asked for them", default=None
+    )
+    tip_strips_before: tuple[TipStrips, TipStrips] | None = part(
+        "the same on the mesh before the last refinement; None before errors have asked for it", default=None
+    )
+    flank_motions: tuple[FlankMotion, FlankMotion] | None = part(
+        "how the flanks of both gears move; None before contacts that move have asked for it", default=None
+    )
+    back_series: tuple[BackCompliance, BackCompliance] | None = part(
+        "what loads on front flanks do to back flanks; None before flanks on both sides have asked for it",
+        default=None,
+    )
+    back_before: tuple[BackCompliance, BackCompliance] | None = part(
+        "the same on the mesh before the last refinement; None where that is unknown", default=None
+    )
+    fit_error: float = quantity(
+        "1", "part of the error by the fit along the flanks", no_error=ITSELF, default=0.0
+    )
+    gain: float = quantity(
+        "1", "by how much the last refinement reduced the mesh's error", no_error=ITSELF, default=1.0
+    )
+    before: tuple[GearCompliance, GearCompliance] | None = part(
+        "of pinion and wheel on the mesh before the last refinement", default=None
+    )
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave the factorised gears behind: they are large, and a factorisation cannot travel."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
+
+    @property
+    def meshed(self) -> tuple[MeshedShape, MeshedShape]:
+        """Shapes of both gears in modules, and their meshes: what solved gears are kept by."""
+        profiles = held_profiles(self.pair, self.supports)
+        first, second = shapes(self.pair, profiles, self.plane)
+        return (
+            MeshedShape(first, self.sizes, self.refinements),
+            MeshedShape(second, self.sizes, self.refinements),
+        )
+
+    @cached_property
+    def tips(self) -> tuple[TipStrips, TipStrips]:
+        """Tip edges of both gears, for contact outside the path; solved where they were not."""
+        return self.tip_strips or self.tips_of(Gears())
+
+    @cached_property
+    def _tips_before(self) -> tuple[TipStrips, TipStrips]:
+        """Tip edges whose difference from these, over the gain of the mesh, is their error.
+
+        Far from the corner over the length of the element there they are those of the mesh before: loads on the flank
+        and on the edge are the same tooth's, and what is wrong of both evens out where the load goes from one to the
+        other. Nearer, a refinement gains less than ``gain``, and the difference is enlarged by as much.
+        """
+        edge = self.sizes.corner * 0.5**self.refinements * self.pair.module
+        first, second = (
+            fine.towards(before, edge, self.gain)
+            for fine, before in zip(
+                self.tips, self.tip_strips_before or self.tips_of(Gears(), before=True), strict=True
+            )
+        )
+        return first, second
+
+    @cached_property
+    def _flanks_before(self) -> tuple[GearCompliance, GearCompliance] | None:
+        """Flanks whose difference from these, over the gain of the mesh, is the error of mesh and fit."""
+        if self.before is None:
+            return None
+        first, second = (
+            before.off_by(fine, self.gain)
+            for fine, before in zip((self.pinion, self.wheel), self.before, strict=True)
+        )
+        return first, second
+
+    def tips_of(self, gears: Gears, before: bool = False) -> tuple[TipStrips, TipStrips]:
+        """Tip edges of both gears from where solved gears are, or on the mesh before the last refinement."""
+        first, second = (
+            gears.tips(meshed, before).scaled(self.pair.module, flexible.law)
+            for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
+        )
+        return first, second
+
+    @cached_property
+    def motions(self) -> tuple[FlankMotion, FlankMotion]:
+        """How the flanks of both gears move beyond yielding along their normals; solved where it was not."""
+        return self.flank_motions or self.motions_of(Gears())
+
+    def motions_of(self, gears: Gears) -> tuple[FlankMotion, FlankMotion]:
+        """How the flanks of both gears move, from where solved gears are."""
+        first, second = (
+            gears.motion(meshed).scaled(self.pair.module, flexible.law)
+            for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
+        )
+        return first, second
+
+    @cached_property
+    def back_flanks(self) -> tuple[BackCompliance, BackCompliance]:
+        """What loads on the front flanks of both gears do to their back flanks; solved where it was not."""
+        if self.back_series is not None:
+            return self.back_series
+        gears = Gears()
+        first, second = (
+            gears.backs(meshed).scaled(self.pair.module, flexible.law.plane_modulus)
+            for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
+        )
+        return first, second
+
+    def rings(self) -> tuple[Ring, Ring]:
+        """Meshed and factorised gears: those that this process still has, or computed anew from the same sizes."""
+        return self._rings
+
+    @cached_property
+    def _rings(self) -> tuple[Ring, Ring]:
+        gears = Gears()
+        first, second = (
+            gears.rings(meshed)[1].scaled(self.pair.module, flexible.law)
+            for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
+        )
+        return first, second
+
+    @property
+    def coarser(self) -> Self | None:
+        """The same gears, off by their errors times the gain of the last refinement; None where these are unknown.
+
+        By the mesh they differ as the one before that refinement does. Motion and back flanks do not change.
+        """
+        if self._flanks_before is None:
+            return None
+        pinion, wheel = self._flanks_before
+        tips, motions, backs = (
+            self.__dict__.get(found, given)  # whatever has been solved until now
+            for found, given in (
+                ("tips", self.tip_strips),
+                ("motions", self.flank_motions),
+                ("back_flanks", self.back_series),
+            )
+        )
+        return replace(
+            self,
+            pinion=pinion,
+            wheel=wheel,
+            before=None,
+            tip_strips=None if tips is None else self._tips_before,
+            flank_motions=motions,
+            back_series=backs,
+        )

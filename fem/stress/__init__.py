@@ -1,0 +1,1 @@
+"""Root stress: along the fillets of both gears over a mesh cycle, in the plane and over the face."""

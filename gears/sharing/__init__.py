@@ -1,0 +1,1 @@
+"""How pairs of teeth share the load, and smooth curves over the mesh cycle between its events."""

@@ -1,0 +1,1 @@
+"""One gear: rack, profile and fillet, blank, deviations, lead, material, and outlines to draw."""
