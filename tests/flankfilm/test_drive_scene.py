@@ -121,7 +121,7 @@ def test_a_train_is_in_tables_report_and_outputs(train):
         assert part.figures
         modes = len(train.values["drive"].natural_frequencies)
         assert len(part.tables[0].rows) == {"drive": modes, "drive sweep": 4}[name]
-    assert [one.unit for one in HEADLINES["drive sweep"](train.values["drive sweep"])] == ["N", "N m"]
+    assert [one.unit for one in HEADLINES["drive sweep"](train.values["drive sweep"])] == ["", "N", "N m"]
     for draw in (figures.drive_sweep, figures.drive_modes):
         assert draw(data).axes
     engine = Engine(parse_scene(TRAIN), Cache(None))

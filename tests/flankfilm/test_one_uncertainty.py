@@ -45,8 +45,8 @@ CARDS = {
         "mean_tangent_stiffness_N_per_mm_um",
     ),
     "loaded transmission error": ("lubricated_transmission_error_range", "transmission_error_um"),
-    "least film on the path": ("film_least_film", "least_film_um"),
-    "greatest root stress": ("", "root_tension_pinion_MPa"),
+    "minimum film on the path": ("film_least_film", "least_film_um"),
+    "maximum root stress": ("", "root_tension_pinion_MPa"),
 }
 """Beginning of a card's name to its variable in results.nc and its output of studies."""
 
@@ -106,13 +106,13 @@ def test_every_display_gives_one_uncertainty(run: Results, begins: str):
 def test_the_mark_is_that_of_the_numerical_error(run: Results):
     tighter = replace(run, scene=run.scene.model_copy(update={"tolerance": TOLERANCE}))
     marked = {one.name for one in headlines(tighter) if "!" in one.note}
-    assert "least film on the path" in marked
+    assert "minimum film on the path" in marked
     assert not any(name.startswith(("mean", "loaded")) for name in marked)
 
 
 def test_the_table_has_the_models_errors_of_the_cards(run: Results):
     cycle = run.values["film"]
-    table = stiffness(None, [cycle], (), run.values["pair"].face_width, run.dataset).tables[0]
+    table = stiffness(None, None, [cycle], (), run.values["pair"].face_width, run.dataset).tables[0]
     (column,) = [i for i, head in enumerate(table.heads) if str(head).startswith("model error of secant")]
     cards = {one.name: one.uncertainty for one in headlines(run)}
     known = [one for name, one in cards.items() if name.startswith(tuple(list(CARDS)[:3]))]
@@ -136,7 +136,7 @@ def test_entries_are_of_figures_and_have_a_page(key: tuple[str, str]):
 
 def test_what_is_not_known_says_so(run: Results):
     shown = {one.name: one for one in headlines(run)}
-    assert "(numerical; model not estimated)" in shown["least film on the path"].note
+    assert "(numerical; model not estimated)" in shown["minimum film on the path"].note
     closed = [one for one in run.values["other cycles"] if one.contact is None]
     assert all(MODEL_ERRORS[("MeshFigures", "mean_stiffness")].of(one) is None for one in closed)
     assert closed
