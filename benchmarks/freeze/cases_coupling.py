@@ -168,7 +168,7 @@ def jumps_and_map() -> dict[str, Any]:
     }
 
 
-@case(quick=True)
+@case()
 def drive() -> dict[str, Any]:
     """Drive train of a pair: modes, sweep, run-up."""
     build = public("flankfilm.pair_drive", "flankfilm.coupling.pair_drive")

@@ -41,6 +41,11 @@ def folder_arrays(folder: Path) -> Arrays:
             arrays[name] = np.array(page(file.read_text(encoding="utf-8")))
         elif file.suffix == ".svg":
             arrays[name] = np.array(picture(file.read_text(encoding="utf-8")))
+        elif file.suffix == ".json":
+            held = json.loads(file.read_text(encoding="utf-8"))
+            arrays |= {
+                f"{name}/{key}": np.array(json.dumps(held[key])) for key in sorted(held.keys() - OF_THE_RUN)
+            }
         else:
             arrays[f"{name}/sha256"] = np.array(hashlib.sha256(file.read_bytes()).hexdigest())
     return arrays
