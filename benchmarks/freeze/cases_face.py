@@ -40,13 +40,11 @@ def cells() -> dict[str, Any]:
         cycle = mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=ASKEW, cells=number)
         found[f"{number} cells"] = face_figures(cycle)
     many = mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=ASKEW, cells=64)
-    found["64 cells"] = take(
-        many, f"{SAMPLED} {OVER_FACE}"
-    )  # sampled alone: the case of leads locates events
+    found["64 cells"] = face_figures(many)
     found["straight"] = face_figures(mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=Alignment(), cells=8))
-    for model in ("walls", "slices"):
-        cycle = mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=ASKEW, cells=8, face_model=model)
-        found[model] = face_figures(cycle)
+    walls = mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=ASKEW, cells=8, face_model="walls")
+    slices = mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=ASKEW, cells=16, face_model="slices")
+    found |= {"walls": face_figures(walls), "slices": take(slices, f"{SAMPLED} {OVER_FACE}")}
     held = mesh_cycle(SMALL, [10.0, 100.0, 300.0], 12, bodies(), False, alignment=ASKEW, cells=16)
     return {**found, **{f"path/{k}": face_figures(one) for k, one in enumerate(held)}}
 
