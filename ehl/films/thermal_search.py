@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -55,19 +56,21 @@ class Compared:
         (self.coarse, self.before), (self.fine, self.oil) = before, last
         rest = _DONE * tolerance / 3.0  # what further steps would still change
         mu_0, mu = traction(self.before), traction(self.oil)
-        warm_0, warm = np.array(rises(self.before)), np.array(rises(self.oil))
-        change = np.abs(warm_0 - warm)
-        self.inlet = self.fine.plan.inlet_error
+        self.rest, self.inlet = rest, self.fine.plan.inlet_error
         self.traction_error = rest + abs(mu_0 - mu) / max(abs(mu), 1e-4)
-        self.temperature_error = rest + float(np.max(change / np.maximum(warm, 1.0)))
-        self.temperature_error += self._spike_left() / max(float(warm[0]), 1.0)
         oil = self.oil.contact.lubricant
         cut = 0.0 if self.oil.solids is None or oil.viscosity_slope == 0.0 else _INLET_SHARE / INLET_GAP
-        self.temperature_error += self._heat_ahead()
         lowest_0, lowest = (figures(level).minimum_thickness for level in (self.coarse, self.fine))
         film = film_error(self.coarse, self.fine) + _LEAST * abs(lowest_0 / lowest - 1.0)
         # what the hottest oil does to film and traction is in these; itself it may stand at the spike
         self.error = max(film, GRID_FACTOR * self.traction_error) + self.inlet + cut + rest
+
+    @cached_property
+    def temperature_error(self) -> float:
+        """Relative error of the rises of oil and surfaces; no grid is chosen by it, found for the last alone."""
+        warm_0, warm = np.array(rises(self.before)), np.array(rises(self.oil))
+        change = float(np.max(np.abs(warm_0 - warm) / np.maximum(warm, 1.0)))
+        return self.rest + change + self._spike_left() / max(float(warm[0]), 1.0) + self._heat_ahead()
 
     def _heat_ahead(self) -> float:
         """Share of the rises that heat ahead of where it is followed would add.
