@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib
+import re
 import subprocess
 import sys
 import tomllib
@@ -213,6 +214,16 @@ def test_no_folder_holds_too_many_files(package: str):
         (folder / "__init__.py").read_text(encoding="utf-8").lstrip("r").startswith('"""')
         for folder in folders
     )
+
+
+@pytest.mark.parametrize("package", sorted(WINGS))
+def test_the_page_of_the_structure_lists_the_folders_in_order(package: str):
+    page = (ROOT / "docs" / "api" / "structure.md").read_text(encoding="utf-8")
+    rows = re.findall(rf"^\| `({package}/\w+)` \| (.+) \|$", page, re.MULTILINE)
+    wings = [f"{package}/{wing}" for floor in WINGS[package] for wing in floor]
+    sources = [(ROOT / wing / "__init__.py").read_text(encoding="utf-8") for wing in wings]
+    docs = [ast.get_docstring(ast.parse(source)) or "" for source in sources]
+    assert rows == [(wing, doc.partition("\n")[0]) for wing, doc in zip(wings, docs, strict=True)]
 
 
 def test_imports_that_climb_or_go_round_are_found_among_folders(tmp_path):

@@ -1,1 +1,1 @@
-"""Attractors and what starts reach them: basins, boundaries, manifolds, crises and whole diagrams."""
+"""Attractors and their basins: boundaries, manifolds, crises and whole diagrams."""

@@ -1,4 +1,4 @@
-"""The inverse problem: which parameters have special points where somebody reports them."""
+"""The inverse problem: parameters whose special points are those of a report."""
 
 import lazy_loader as _lazy
 

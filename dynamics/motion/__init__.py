@@ -1,1 +1,1 @@
-"""Motions that are followed for long: sweeps, run-ups, spectra and Lyapunov exponents."""
+"""Long motions: sweeps, run-ups, spectra and Lyapunov exponents."""

@@ -1,4 +1,4 @@
-"""A pair: compliance of both gears together, what it is measured against, faces of unequal width.
+"""A pair: compliance of both gears together, references of the deflection, faces of unequal width.
 
 Nothing here depends on the load but the indentation of two flanks, which belongs to the compliance of a pair.
 """

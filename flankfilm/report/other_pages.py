@@ -13,7 +13,7 @@ import numpy as np
 
 from base import Booleans
 from flankfilm import figures
-from flankfilm.coupling.references import relative_to
+from flankfilm.coupling.references import RELATIVE, relative_to
 from flankfilm.coupling.verification import UNITS
 from flankfilm.figures.optima import can_be_mapped
 from flankfilm.figures.reading import key_title, key_words, titled, unit_of, unit_text, words
@@ -40,6 +40,12 @@ if TYPE_CHECKING:
 
 ERRORS = frozenset((*ERROR_OF.values(), *MODEL_ERROR_OF.values()))
 """Outputs that are relative errors of others."""
+
+OF_DEFLECTION = frozenset({"stiffness_error", "tangent_stiffness_error", "transmission_error_error"})
+"""Errors of the outputs that depend on the reference of the deflection."""
+
+REFERENCE_KEYS = frozenset({"stiffness.reference", "dynamics.stiffness_reference", "stiffness.model"})
+"""Keys that change this reference."""
 
 MOST_ROWS = 100
 """Maximum number of rows on a page; the files hold all."""
@@ -69,7 +75,12 @@ def write_study_page(found: StudyResults, data: xr.Dataset, folder: Path) -> Pat
         drawn.append(picture(draw, data, caption))
     left = f"The first {MOST_ROWS} of {rows}; rows.csv and study.nc hold all." if rows > MOST_ROWS else ""
     table = _rows(data, plan, [(plan.rows[row.index], row) for row in found.rows[:MOST_ROWS]], left)
-    facts = [Fact(f"{counted(rows, 'row')}, {plan.design}", "rows"), _tolerance(data), _work(data)]
+    facts = [
+        Fact(f"{counted(rows, 'row')}, {plan.design}", "rows"),
+        _tolerance(data),
+        *reference_facts(plan),
+        _work(data),
+    ]
     parts = [
         Part("study", "Outputs", figures=tuple(drawn)),
         Part("rows", "Rows", tables=(table,), unfolded=True),
@@ -258,6 +269,16 @@ def _tolerance(data: xr.Dataset) -> Fact:
     if "tolerance" in data.coords:
         return Fact("tolerance of each row in the table", "rows")
     return Fact(f"tolerance of each row {percent(_asked(data))}")
+
+
+def reference_facts(plan: Plan) -> list[Fact]:
+    """Reference of the deflection by finite elements, where an output depends on it and no row changes it."""
+    stiffness, dynamics = (plan.scene.get(section) or {} for section in ("stiffness", "dynamics"))
+    depends = OF_DEFLECTION & {ERROR_OF.get(name) for name in plan.outputs}
+    if not depends or REFERENCE_KEYS & {*plan.keys} or stiffness.get("model", "fem") != "fem":
+        return []
+    reference = stiffness.get("reference") or dynamics.get("stiffness_reference") or "body"
+    return [Fact(f"deflection {RELATIVE[reference]}")]
 
 
 def _asked(data: xr.Dataset) -> float:

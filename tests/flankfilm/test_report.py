@@ -7,7 +7,7 @@ import inspect
 import itertools
 import re
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -25,7 +25,12 @@ from flankfilm.optimisation.task import read_task
 from flankfilm.output.run import results_dataset, write_data
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.contents import write_report
-from flankfilm.report.other_pages import write_optimum_page, write_study_page, write_verification_page
+from flankfilm.report.other_pages import (
+    reference_facts,
+    write_optimum_page,
+    write_study_page,
+    write_verification_page,
+)
 from flankfilm.report.page import Head, Headline, render
 from flankfilm.report.run_parts import merged
 from flankfilm.results import Results
@@ -160,6 +165,21 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     pages["optimum"] = write_optimum_page(best, others["optimum"], folder / "optimum")
     with xr.open_dataset(folder / "results.nc", engine="h5netcdf") as found:
         return Made(found.load(), others, pages)
+
+
+@pytest.mark.parametrize(
+    ("section", "shown"),
+    [
+        ({}, ["deflection relative to the gear bodies"]),
+        ({"reference": "bore"}, ["deflection relative to the bores"]),
+        ({"model": "ishikawa"}, []),
+    ],
+)
+def test_a_study_names_the_reference_of_its_deflections(tmp_path, section, shown):
+    plan = replace(some_study(tmp_path).plan, scene={"stiffness": section})
+    assert [fact.text for fact in reference_facts(plan)] == shown
+    assert reference_facts(replace(plan, outputs=("contact_ratio",))) == []
+    assert reference_facts(replace(plan, keys=("stiffness.reference",))) == []
 
 
 def test_every_function_is_tried_here_or_elsewhere():
