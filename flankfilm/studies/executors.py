@@ -97,11 +97,13 @@ def _processes(workers: int) -> Iterator[Pool]:
 
 def _dask(workers: int) -> Iterator[Pool]:
     try:
+        from dask import config
         from dask.distributed import Client
     except ImportError as fault:
         raise _missing("dask", "distributed") from fault
-    address = os.environ.get("DASK_SCHEDULER_ADDRESS")
-    with environment(**ONE_THREAD), _logging_as_before():
+    # an address of no letters, which dask would take for one, is none
+    address = os.environ.get("DASK_SCHEDULER_ADDRESS") or config.get("scheduler-address", None) or None
+    with environment(**ONE_THREAD), _logging_as_before(), config.set({"scheduler-address": address}):
         here = {"n_workers": workers, "threads_per_worker": 1, "preload": "flankfilm.children"}
         try:
             with Client(address) if address else Client(**here) as client:
