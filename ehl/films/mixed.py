@@ -80,9 +80,9 @@ def solve_mixed(
 
     Notes
     -----
-    The share is sought in ln[s/(1-s)] between bounds, each film giving the next share: the asperities' pressure falls as their
-    share rises, since the film that carries less is thicker, and what the share asks for rises. The film's derivative
-    by the share comes from its own Newton matrix at first, then from the last two films.
+    The share is sought in ln[s/(1-s)] between bounds, each film giving the next share. The asperities' pressure falls
+    as their share rises, since the film that carries less is thicker, and what the share asks for rises. The film's
+    derivative by the share comes from its own Newton matrix at first, then from the last two films.
 
     References
     ----------
