@@ -573,3 +573,11 @@ def test_all_that_the_project_asks_for_is_there_in_a_version_that_will_do() -> N
     for one in map(Requirement, asked):
         (exact,) = versions[canonicalize_name(one.name)]
         assert one.specifier.contains(exact.version), f"{one}: .ci/pin writes requirements.txt anew"
+
+
+def test_the_continuous_integration_names_its_workers():
+    # `./run test` divides the tests among all cores only when it has no argument of pytest.
+    script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    suites = re.findall(r"\./run test\b[^|]*", script)
+    assert len(suites) == 2
+    assert all(" -n 2 " in suite for suite in suites)
