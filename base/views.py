@@ -39,7 +39,7 @@ def show_with(views: Mapping[str, str], pictures: Mapping[str, str] | None = Non
 
     Examples
     --------
-    >>> show_with({"gears.pair.pair:GearPair": "gears.notebook:pair_html"})
+    >>> show_with({"gears.pair.gear_pair:GearPair": "gears.notebook:pair_html"})
     """
     _VIEWS.update(views)
     _PICTURES.update(pictures or {})

@@ -1,6 +1,6 @@
 from . import inverse as inverse
-from .attraction.attraction import BasinResult as BasinResult
-from .attraction.attraction import basins as basins
+from .attraction.basins import BasinResult as BasinResult
+from .attraction.basins import basins as basins
 from .attraction.boundary import BasinBoundary as BasinBoundary
 from .attraction.boundary import basin_boundary as basin_boundary
 from .attraction.crises import Crisis as Crisis
@@ -17,12 +17,12 @@ from .attraction.multi_sweeps import MultiSweep as MultiSweep
 from .attraction.multi_sweeps import multi_sweep as multi_sweep
 from .branches.branch import Branch as Branch
 from .branches.branch import SpecialPoint as SpecialPoint
-from .branches.carrying import carried_point as carried_point
 from .branches.continuation import continue_branch as continue_branch
 from .branches.continuation import doubled_orbit as doubled_orbit
 from .branches.grazing import contact_grazing as contact_grazing
 from .branches.loci import continue_locus as continue_locus
-from .branches.tracking import special_sensitivities as special_sensitivities
+from .branches.moved_special_point import carried_point as carried_point
+from .branches.special_point_derivatives import special_sensitivities as special_sensitivities
 from .flow.motions import Trajectory as Trajectory
 from .flow.motions import period_map as period_map
 from .flow.motions import trajectory as trajectory

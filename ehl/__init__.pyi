@@ -1,6 +1,4 @@
 from .discrete.asperities import Roughness as Roughness
-from .discrete.bodies import STEEL as STEEL
-from .discrete.bodies import Solid as Solid
 from .discrete.contact import LineContact as LineContact
 from .discrete.flash import blok_flash_temperature as blok_flash_temperature
 from .discrete.regimes import regime as regime
@@ -12,6 +10,8 @@ from .discrete.regressions import moes_central as moes_central
 from .discrete.regressions import nijenbanning_line_central as nijenbanning_line_central
 from .discrete.regressions import pan_hamrock_central as pan_hamrock_central
 from .discrete.regressions import pan_hamrock_minimum as pan_hamrock_minimum
+from .discrete.solids import STEEL as STEEL
+from .discrete.solids import Solid as Solid
 from .discrete.supply import Meniscus as Meniscus
 from .discrete.supply import OilLayer as OilLayer
 from .films.film import DEFINITIONS as DEFINITIONS

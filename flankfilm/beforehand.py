@@ -99,7 +99,7 @@ def _held(scene: Scene, pair: gears.GearPair) -> tuple[Fault, ...]:
     if scene.stiffness.model == "given":
         return ()
     from fem.elasticity.support import held_profiles
-    from fem.laws.setting import Setting
+    from fem.laws.mesh_setup import MeshSetup
 
     hubs = supports(scene)
 
@@ -109,7 +109,7 @@ def _held(scene: Scene, pair: gears.GearPair) -> tuple[Fault, ...]:
                 held_profiles(pair, hubs)
 
     edges = Faults()
-    Setting(pair, tip_rounding=tip_roundings(scene)).check(edges)
+    MeshSetup(pair, tip_rounding=tip_roundings(scene)).check(edges)
     keys = {f"tip_rounding[{k}]": f"{gear}.tip_rounding_um" for k, gear in enumerate(("pinion", "wheel"))}
     rounded = (replace(fault, where=keys.get(fault.where, fault.where)) for fault in edges.found)
     return (*_faults(build), *(in_keys(fault, scene.pair, "pair") for fault in rounded))

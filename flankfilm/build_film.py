@@ -8,7 +8,7 @@ from typing import Any, TypedDict
 import ehl
 import gears
 from base import InputError
-from ehl.oil.grades import LIMITS as GRADE
+from ehl.oil.oil_grades import LIMITS as GRADE
 from flankfilm import coupling
 from flankfilm.scene.film import BY_GRADE, BY_NUMBERS, SHEAR_AND_HEAT, LubricantSection, RoughnessSection
 from flankfilm.scene.ground import under_keys

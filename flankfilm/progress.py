@@ -99,7 +99,7 @@ def compiling_line(module: str) -> str:
 
     Examples
     --------
-    >>> compiling_line("ehl.kernels.kernels")
+    >>> compiling_line("ehl.kernels.film_kernels")
     'compiling for films, once: later runs load what is kept'
     """
     kinds = [kind for start, kind in COMPILED.items() if module.startswith(start)]

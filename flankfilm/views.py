@@ -8,10 +8,10 @@ from base import show_with
 from base.views import ANY
 
 PICTURES: Mapping[str, str] = {
-    "gears.pair.pair:GearPair": "pair",
+    "gears.pair.gear_pair:GearPair": "pair",
     "gears.pair.path:PathOfContact": "curves",
     "gears.closed_form.record:ClosedForm": "closed_form",
-    "fem.cycle.cycle:MeshCycle": "loaded_contact",
+    "fem.cycle.result:MeshCycle": "loaded_contact",
     "fem.cycle.face_loads:FaceLoads": "face_loads",
     "fem.stress.tooth_root:RootStress": "root_stress",
     "fem.stress.face_root:FaceRootStress": "face_root_stress",
@@ -27,7 +27,7 @@ PICTURES: Mapping[str, str] = {
     "dynamics.attraction.diagrams:Diagram": "branches",
     "dynamics.motion.sweeps:SweepResult": "sweep",
     "dynamics.attraction.multi_sweeps:MultiSweep": "multi_sweep",
-    "dynamics.attraction.attraction:BasinResult": "basins",
+    "dynamics.attraction.basins:BasinResult": "basins",
     "dynamics.motion.exponents:LyapunovScan": "exponents",
     "dynamics.branches.loci:Locus": "locus",
     "dynamics.motion.spectra:Spectrum": "spectrum",

@@ -85,7 +85,7 @@ def warmed(name: str) -> Warmed:
 def _motions() -> None:
     """Sweeps, basins, orbits and trajectories of the exact flow."""
     import dynamics
-    from dynamics.flow.flow import tables
+    from dynamics.flow.exact_flow import exact_flow
     from dynamics.orbits.multiple_shooting import stretches
 
     pair = _pair()
@@ -93,7 +93,7 @@ def _motions() -> None:
     dynamics.basins(pair, (-1.0, 1.0, 3), (-1.0, 1.0, 3))
     dynamics.find_orbits(pair, (1,), starts=2)
     dynamics.trajectory(pair, (0.5, 0.2), 1)
-    table = tables(pair)
+    table = exact_flow(pair)
     stretches(table, np.array([[0.5, 0.2]]), np.array([0, table.cells]))
 
 

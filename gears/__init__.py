@@ -8,7 +8,7 @@ __getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)
 
 _show_with(
     {
-        "gears.pair.pair:GearPair": "gears.notebook:pair_html",
+        "gears.pair.gear_pair:GearPair": "gears.notebook:pair_html",
         "gears.closed_form.record:ClosedForm": "gears.notebook:closed_form_html",
     }
 )

@@ -13,7 +13,7 @@ from base import Array
 
 if TYPE_CHECKING:
     from gears.closed_form.record import ClosedForm
-    from gears.pair.pair import GearPair
+    from gears.pair.gear_pair import GearPair
 
 _CELL = 'style="text-align: right; padding: 0.1em 0.8em"'
 _HEAD = 'style="text-align: left; padding: 0.1em 0.8em; font-weight: normal"'

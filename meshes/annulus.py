@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 
 from base import Array, InputError, Integers, record
-from gears.tooth.plane import turned
+from gears.tooth.rotation import turned
 from meshes.sector import SectorMesh
 
 

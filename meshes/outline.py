@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base import Array, Faults, Limit
-from gears.tooth.plane import polar
+from gears.tooth.rotation import polar
 
 if TYPE_CHECKING:
     from gears import ToothProfile

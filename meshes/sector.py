@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, InputError, Integers, record
-from gears.tooth.plane import polar
+from gears.tooth.rotation import polar
 from meshes.gmsh_fill import triangulate
 from meshes.outline import Curve, Sizes, arc, cut, sector_curves
 from meshes.triangle import NODES, shape_gradients

@@ -42,7 +42,7 @@ OF_STANDARDS = {"N/(mm um)", "mm2/s"}
 OWN_UNITS = {
     "gears.closed_form.face_load.Iso6336FaceLoad",
     "gears.closed_form.tooth_stiffness.Iso6336Stiffness",
-    "ehl.oil.grades.GradedOil",
+    "ehl.oil.oil_grades.GradedOil",
 }
 
 

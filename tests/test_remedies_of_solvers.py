@@ -140,7 +140,7 @@ def test_contacts_that_move_too_far():
 
 def test_a_compliance_beyond_the_finest_mesh_is_kept_with_its_error(steel, monkeypatch):
     pair, _ = steel
-    monkeypatch.setattr(sys.modules["fem.pair.pair_compliance"], "FINEST", 1)
+    monkeypatch.setattr(sys.modules["fem.pair.compliance"], "FINEST", 1)
     bodies = fem.compliance(pair, 2e-6)
     assert bodies.converged
     said = re.search(

@@ -7,7 +7,7 @@ import numpy as np
 from base import Array, InputError
 from dynamics.attraction.escapes import STRETCH, Cover
 from dynamics.attraction.manifolds import is_direct_saddle
-from dynamics.flow.flow import tables
+from dynamics.flow.exact_flow import exact_flow
 from dynamics.model.oscillator import GearOscillator
 from dynamics.model.protocol import Flow
 from dynamics.model.states import apart
@@ -51,7 +51,7 @@ def accessible_saddles(oscillator: GearOscillator, states: Array, longest: int) 
     if len(states) < ENOUGH:
         allowed = f"must have {ENOUGH} samples of its chaos, or be periodic"
         raise InputError.at("attractor", f"{len(states)} samples", allowed, "take that of chaos_end")
-    flow, cover = tables(oscillator), Cover.of(states)
+    flow, cover = exact_flow(oscillator), Cover.of(states)
     size = float(np.max(np.ptp(states, axis=0)))
     met: list[Orbit] = []
     left = stayed = 0

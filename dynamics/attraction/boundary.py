@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
-from dynamics.attraction.attraction import Attractor
-from dynamics.attraction.homes import Homes
-from dynamics.flow.flow import tables
+from dynamics.attraction.basins import Attractor
+from dynamics.attraction.known_attractors import KnownAttractors
+from dynamics.flow.exact_flow import exact_flow
 from dynamics.model.limits import CONFIDENCE, RADIUS
 from dynamics.model.oscillator import GearOscillator
 from dynamics.model.protocol import exact_only
@@ -148,7 +148,7 @@ def basin_boundary(
         if not homes:
             faults.add("attractors", len(attractors), "must hold a periodic one", "find them with basins")
         region = checked_region(faults, region)
-    labeller = _Labeller(Homes(tables(oscillator), homes, near), wait)
+    labeller = _Labeller(KnownAttractors(exact_flow(oscillator), homes, near), wait)
     origin, width = np.array(region)[:, 0], np.ptp(region, axis=1)
     corners = np.array([(i, j) for i in range(side) for j in range(side)], dtype=np.int64)
     counts, shares, fine = [], np.zeros(len(homes) + 1), True
@@ -182,7 +182,7 @@ def basin_boundary(
 class _Labeller:
     """Labels of corners, each followed once."""
 
-    def __init__(self, homes: Homes, limit: int) -> None:
+    def __init__(self, homes: KnownAttractors, limit: int) -> None:
         self.homes, self.limit = homes, limit
         self.known: dict[tuple[float, float], int] = {}
 

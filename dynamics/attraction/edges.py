@@ -6,10 +6,10 @@ import numpy as np
 
 from base import Array, Booleans, Faults
 from dynamics.attraction.accessible import accessible_saddles
-from dynamics.attraction.attraction import Attractor
-from dynamics.attraction.homes import Homes
+from dynamics.attraction.basins import Attractor
+from dynamics.attraction.known_attractors import KnownAttractors
 from dynamics.attraction.manifolds import is_direct_saddle
-from dynamics.flow.flow import tables
+from dynamics.flow.exact_flow import exact_flow
 from dynamics.flow.motions import period_map
 from dynamics.model.oscillator import GearOscillator
 from dynamics.model.protocol import exact_only
@@ -85,7 +85,7 @@ def edge_saddles(
         longest = faults.whole("max_period", max_period, 1, 1000, "16 is usual")
     if attractor.orbit is None:
         return accessible_saddles(oscillator, attractor.states, max(longest, PIECES))
-    homes = Homes(tables(oscillator), [attractor.states], radius)
+    homes = KnownAttractors(exact_flow(oscillator), [attractor.states], radius)
     met: list[tuple[Orbit, int]] = []
     angles = 2.0 * np.pi * (np.arange(number) + 0.5) / number
     for point in attractor.states:
@@ -102,7 +102,7 @@ def edge_saddles(
     return [orbit for orbit, _ in sorted(met, key=lambda m: -m[1])]
 
 
-def _edge(homes: Homes, limit: int, point: Array, along: Array) -> Array | None:
+def _edge(homes: KnownAttractors, limit: int, point: Array, along: Array) -> Array | None:
     """State on the boundary on a ray from a point of the attractor, nearest to it; None if there is none."""
 
     def stay(distances: Array) -> Booleans:
@@ -122,7 +122,7 @@ def _edge(homes: Homes, limit: int, point: Array, along: Array) -> Array | None:
     return np.asarray(point + 0.5 * (low + high) * along)
 
 
-def _saddle(oscillator: GearOscillator, homes: Homes, edge: Array, longest: int) -> Orbit | None:
+def _saddle(oscillator: GearOscillator, homes: KnownAttractors, edge: Array, longest: int) -> Orbit | None:
     """Saddle that the motion from a state on the boundary comes closest to."""
     states = np.vstack([edge, period_map(homes.flow, edge, 40 + 2 * longest).states])
     best: list[tuple[float, int, int]] = []

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from base import Array, Booleans, Cost, Faults, InputError, Stopwatch, part, quantity, record
 from base.results import EXACT
-from dynamics.attraction.attraction import Attractor
+from dynamics.attraction.basins import Attractor
 from dynamics.model.limits import PERIODS, STARTS, ordered
 from dynamics.model.oscillator import GearOscillator
 from dynamics.model.protocol import Flow, exact_only, settling_periods

@@ -14,7 +14,7 @@ from base import Array, Booleans
 from dynamics.attraction.manifolds import is_direct_saddle
 from dynamics.branches.branch import Branch
 from dynamics.branches.roots import bracketed
-from dynamics.flow.flow import carried, tables
+from dynamics.flow.exact_flow import exact_flow, propagated
 from dynamics.model.oscillator import GearOscillator
 from dynamics.orbits.shooting import Orbit, find_orbit
 
@@ -89,13 +89,13 @@ class HomoclinicSearch:
         n, multiplier = orbit.periods, float(np.real(orbit.multipliers[0]))
         size = _size(orbit)
         along, across = _directions(orbit.jacobian, multiplier)
-        table = tables(orbit.oscillator)
+        table = exact_flow(orbit.oscillator)
         begin = math.ceil(math.log(BEGUN / FIRST) / math.log(multiplier))
 
         def states(share: Array, more: int) -> Array:
             first = orbit.state + side * FIRST * size * np.outer(multiplier**share, along)
             self.periods += len(share) * (n * begin + more)
-            return carried(table, first, n * begin + more)
+            return propagated(table, first, n * begin + more)
 
         def passed(at: Array) -> Array:
             return np.asarray(-side * ((at - orbit.state) @ across) / size)
@@ -111,7 +111,7 @@ class HomoclinicSearch:
         wide: list[tuple[float, int, float]] = []
         measured: list[tuple[Booleans, Array]] = []  # near the saddle, and raw u, period by period
         for k in range(1, self.longest + follow + 1):
-            at = carried(table, at, 1)
+            at = propagated(table, at, 1)
             with np.errstate(invalid="ignore"):
                 measured.append((np.max(np.abs(at - orbit.state), axis=1) < NEAR * size, passed(at)))
                 if k <= follow:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, quantity, record
-from dynamics.flow.flow import Tables, carried, tables, tabulated
+from dynamics.flow.exact_flow import ExactFlow, exact_flow, propagated, tabulated
 from dynamics.flow.motions import period_map
 from dynamics.model.limits import POSITIVE
 from dynamics.model.oscillator import GearOscillator
@@ -57,7 +57,7 @@ def is_direct_saddle(multipliers: npt.ArrayLike) -> bool:
     return is_saddle(multipliers) and bool(np.real(np.asarray(multipliers)[0]) > 1.0)
 
 
-def reversed_tables(oscillator: GearOscillator) -> Tables:
+def reversed_tables(oscillator: GearOscillator) -> ExactFlow:
     """Tabulate the oscillator that runs backwards in time.
 
     With time and speed reversed about tau = 0 the equation keeps its form; the damping and all phases change their
@@ -155,7 +155,7 @@ class _Grower:
         self, orbit: Orbit, backwards: bool, region: Region | None, length: float, gap: float, most: int
     ) -> None:
         self.orbit, self.backwards = orbit, backwards
-        self.forward = tables(orbit.oscillator)
+        self.forward = exact_flow(orbit.oscillator)
         self.table = reversed_tables(orbit.oscillator) if backwards else self.forward
         self.scale = max(float(np.max(np.abs(orbit.points))), 1e-300)
         box = 3.0 * self.scale
@@ -219,4 +219,4 @@ class _Grower:
 
     def _carry(self, at: Array, rounds: int) -> Array:
         self.periods += len(at) * rounds * self.round
-        return carried(self.table, at, rounds * self.round, self.backwards) if rounds else at
+        return propagated(self.table, at, rounds * self.round, self.backwards) if rounds else at

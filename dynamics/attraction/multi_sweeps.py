@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, quantity, record
-from dynamics.attraction.attraction import basins
+from dynamics.attraction.basins import basins
 from dynamics.model.limits import checked_grid
 from dynamics.model.protocol import PeriodicOscillator, periodic_only
 from dynamics.model.states import apart, scale_of

@@ -14,7 +14,8 @@ from base import Array, Cost, InputError, Stopwatch
 from dynamics.branches.branch import ENDLESS, GOOD_ENDS, LARGE, MEETS, SMALL, UNBOUNDED, Branch, SpecialPoint
 from dynamics.branches.branch_problem import BranchProblem, Heading, MapPoint, Sizes, Steps
 from dynamics.branches.crossings import find_crossings
-from dynamics.branches.meetings import meeting
+from dynamics.branches.locus_predictor import Tracer, both_ways, joined
+from dynamics.branches.rejoining import rejoining_point
 from dynamics.branches.step_rules import (
     ASTRAY,
     CORNER,
@@ -28,7 +29,6 @@ from dynamics.branches.step_rules import (
     STRAIGHT,
     hides,
 )
-from dynamics.branches.tracing import Tracer, both_ways, joined
 from dynamics.orbits.shooting import floquet_multipliers, is_stable, motion_label
 
 MET = 1e-5  # of the size of the motion: distance of two halves of an orbit at which its branch meets that of the half
@@ -92,7 +92,7 @@ class _Walker(Tracer):
         self.half = self._half(start)
         self.behind = (math.inf, math.inf)
         self.refused = ""
-        self.meeting: SpecialPoint | None = None
+        self.rejoining_point: SpecialPoint | None = None
         self.missed: list[float] = []
         self.iterations = 0
 
@@ -177,7 +177,7 @@ class _Walker(Tracer):
 
     def _end_at(self, point: SpecialPoint | None) -> None:
         """Note where the branch ends; a saddle node there is the doubling itself, at which a multiplier is 1 too."""
-        self.ended, self.meeting = MEETS, point
+        self.ended, self.rejoining_point = MEETS, point
         if point is not None:
             near = 10.0 * MET * self.problem.scale
             self.special = [
@@ -230,7 +230,7 @@ class _Walker(Tracer):
         if self._met(half):
             self.refused = "the branch of half the period is near"
             if not patient or float(np.max(np.abs(self.half))) < MET:
-                self._end_at(meeting(self.problem, last))
+                self._end_at(rejoining_point(self.problem, last))
             return None
         chord = new.u - last.u
         found = [p for p, _ in looked if p is not None]
@@ -294,7 +294,7 @@ def _joined(walkers: list[_Walker], watch: Stopwatch) -> Branch:
     stable = [is_stable(m) for m in pairs]
     missed = [v for w in walkers for v in w.missed]
     good = all(reason in GOOD_ENDS for reason in ended) and not missed
-    met = (walkers[0].meeting, walkers[-1].meeting if len(walkers) > 1 else None)
+    met = (walkers[0].rejoining_point, walkers[-1].rejoining_point if len(walkers) > 1 else None)
     message = f"{len(points)} points, {len(special)} special; ended: {ended[0]}, {ended[1]}"
     if any(end == MEETS and point is None for end, point in zip(ended, met, strict=True)):
         message += "; where it meets was not located"

@@ -12,7 +12,7 @@ import numpy as np
 from base import Array, Integers
 from dynamics.branches.branch_problem import BranchProblem, MapPoint, match_extrema
 from dynamics.branches.step_rules import touches_twice
-from dynamics.flow.flow import DEGREE, tabulated
+from dynamics.flow.exact_flow import DEGREE, tabulated
 from dynamics.model.oscillator import MAX_CELLS, GearOscillator, cells_per_period
 from dynamics.model.protocol import EPS
 

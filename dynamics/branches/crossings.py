@@ -11,8 +11,8 @@ import numpy as np
 
 from dynamics.branches.branch import SpecialPoint
 from dynamics.branches.branch_problem import BranchProblem, Heading, MapPoint, Sizes, Steps, match_extrema
+from dynamics.branches.compiled_steps import March, march
 from dynamics.branches.corrector import OrbitProblem, Point
-from dynamics.branches.marching import March, march
 from dynamics.branches.roots import along_chord
 from dynamics.branches.special_orbits import PRODUCTS, Condition, special_orbit
 from dynamics.model.protocol import EPS

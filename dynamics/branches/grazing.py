@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, InputError, RangeWarning, Stopwatch, quantity, record
 from dynamics.branches.branch import SpecialPoint
-from dynamics.flow.flow import tables, turning_points
+from dynamics.flow.exact_flow import exact_flow, turning_points
 from dynamics.flow.motions import period_map
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import ordered
@@ -90,7 +90,7 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
     if side not in (1, -1):
         raise InputError.at("side", side, "must be 1 or -1", "1 is the driving side")
     linear = dataclasses.replace(oscillator, half_backlash=0.0, one_sided=False)
-    table = tables(linear, refinement)
+    table = exact_flow(linear, refinement)
     image = period_map(table, np.zeros(2))
     matrix = np.eye(2) - image.jacobian
     stretch = max(1.0, float(np.max(np.abs(image.jacobian))))

@@ -11,10 +11,10 @@ from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.branches.branch import UNBOUNDED, SpecialPoint, of_kind
 from dynamics.branches.branch_problem import Steps, checked_range
 from dynamics.branches.corrector import OrbitProblem
+from dynamics.branches.locus_predictor import both_ways, joined
 from dynamics.branches.locus_tracing import DoublePoint, LocusTracer
 from dynamics.branches.sizes import size_of
 from dynamics.branches.special_orbits import Condition, special_orbit
-from dynamics.branches.tracing import both_ways, joined
 from dynamics.model.arrays import AsArray
 from dynamics.model.oscillator import GearOscillator
 from dynamics.model.protocol import exact_only

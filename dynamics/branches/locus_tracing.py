@@ -12,9 +12,9 @@ from base import Array, quantity, record
 from dynamics.branches.branch import ENDLESS, LARGE, UNBOUNDED
 from dynamics.branches.branch_problem import Steps, match_extrema
 from dynamics.branches.corrector import OrbitProblem, Point
+from dynamics.branches.locus_predictor import Tracer
 from dynamics.branches.roots import bracketed
 from dynamics.branches.special_orbits import Condition, special_orbit
-from dynamics.branches.tracing import Tracer
 from dynamics.model.protocol import EPS
 
 

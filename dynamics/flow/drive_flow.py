@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from base import Array, Cost, Integers, Stopwatch, in_blocks
-from dynamics.flow.flow import REASONS
+from dynamics.flow.exact_flow import REASONS
 from dynamics.kernels.drives import STRIDE
 from dynamics.model.drive_oscillator import DriveOscillator
 from dynamics.model.protocol import EPS, Flow, MapResult, Stretches, lost_motion
@@ -70,7 +70,7 @@ class DriveFlow(Flow):
 
     def follow(self, state: Array, periods: int = 1, skip: int = 0, derivatives: bool = True) -> MapResult:
         """Follow a state; the Jacobian covers the periods skipped, too."""
-        from dynamics.kernels.drives.carrying import iterate
+        from dynamics.kernels.drives.propagating import iterate
 
         watch = Stopwatch()
         at, start = self.oscillator.coordinates, np.zeros(1)
@@ -109,7 +109,7 @@ class DriveFlow(Flow):
 
         All nan if the motion is lost.
         """
-        from dynamics.kernels.drives.carrying import iterate
+        from dynamics.kernels.drives.propagating import iterate
 
         osc, at = self.oscillator, self.oscillator.coordinates
         tau = np.array([first, first + number]) * (osc.period / self.cells)
@@ -147,7 +147,7 @@ class DriveFlow(Flow):
 
     def stretches(self, state: Array, sizes: Sequence[int], keep: bool = False) -> Stretches:
         """Growth of all directions, made orthonormal every eight cells."""
-        from dynamics.kernels.drives.carrying import iterate
+        from dynamics.kernels.drives.propagating import iterate
 
         moved = self.oscillator.lowered(np.asarray(state, dtype=np.float64)[None], np.zeros(1))[0]
         n, clock, damped = len(moved), np.zeros(1), np.zeros(len(sizes))
@@ -175,7 +175,7 @@ class DriveFlow(Flow):
 
     def settle(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
         """Follow starts until they stay near known attractors."""
-        from dynamics.kernels.drives.carrying import settle
+        from dynamics.kernels.drives.propagating import settle
 
         osc, n = self.oscillator, self.oscillator.dimension
         moved = osc.lowered(starts, np.zeros(len(starts)))

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 from base import Faults, InputError
 from dynamics.flow.drive_flow import drive_flow
-from dynamics.flow.flow import tables
-from dynamics.flow.retabling import Retabling
+from dynamics.flow.exact_flow import exact_flow
 from dynamics.flow.stepwise_flow import StepwiseFlow
+from dynamics.flow.table_reuse import TableReuse
 from dynamics.model.drive_oscillator import DriveOscillator
 from dynamics.model.limits import POSITIVE
 from dynamics.model.oscillator import GearOscillator
@@ -53,7 +53,7 @@ def flow_of(
             parameters,
             "take differences" if drives else "take dynamics.branches.sensitivity.map_derivatives",
         ),
-        ("extrema", extrema, "take trajectory" if drives else "take dynamics.flow.flow.turning_points"),
+        ("extrema", extrema, "take trajectory" if drives else "take dynamics.flow.exact_flow.turning_points"),
     )
     with Faults() as faults:
         for name, value, remedy in asked:
@@ -62,7 +62,7 @@ def flow_of(
         if tolerance is not None:
             faults.number("tolerance", tolerance, POSITIVE)
     if isinstance(oscillator, GearOscillator):
-        return tables(oscillator, tolerance=tolerance)
+        return exact_flow(oscillator, tolerance=tolerance)
     return drive_flow(oscillator)
 
 
@@ -89,7 +89,7 @@ def flows_along(
         with Faults() as faults:
             if tolerance is not None:
                 faults.number("tolerance", tolerance, POSITIVE)
-        line = Retabling(oscillator, parameter, tolerance)
+        line = TableReuse(oscillator, parameter, tolerance)
         if line.first > 0:  # else it is all made anew, and there is nothing to keep
             return line.at
     return lambda here: flow_of(here, tolerance)

@@ -73,7 +73,7 @@ class StepwiseFlow(Flow):
 
     def follow(self, state: Array, periods: int = 1, skip: int = 0, derivatives: bool = True) -> MapResult:
         """Follow a state; the derivatives cover the periods skipped, too."""
-        from dynamics.kernels.stepwise.carrying import iterate
+        from dynamics.kernels.stepwise.propagating import iterate
 
         watch = Stopwatch()
         room = 32 * (skip + periods)
@@ -115,7 +115,7 @@ class StepwiseFlow(Flow):
 
     def stretches(self, state: Array, sizes: Sequence[int], keep: bool = False) -> Stretches:
         """Growth of two directions, made orthonormal so often that no stretch between is large."""
-        from dynamics.kernels.stepwise.carrying import stretch
+        from dynamics.kernels.stepwise.propagating import stretch
 
         pieces = max(1, math.ceil(self.oscillator.period / 1.5))
         y, (going, on) = self._vector(state, derivatives=True), self._going()
@@ -149,7 +149,7 @@ class StepwiseFlow(Flow):
 
     def _walk(self, state: Array, periods: int, points: int) -> tuple[Array, Array]:
         """Samples and events, as the kernels note them."""
-        from dynamics.kernels.stepwise.carrying import carry
+        from dynamics.kernels.stepwise.propagating import propagate
 
         y, (going, on) = self._vector(state, derivatives=False), self._going()
         samples, unseen = np.empty((periods * points + 1, 2)), np.zeros(2, dtype=np.int64)
@@ -160,7 +160,9 @@ class StepwiseFlow(Flow):
             going[2], place = 0.0, i % points
             room = np.empty((256, 6))
             flag = int(
-                carry(*self._fixed, angles[place], angles[place + 1], y, going, on, unseen, room, i // points)
+                propagate(
+                    *self._fixed, angles[place], angles[place + 1], y, going, on, unseen, room, i // points
+                )
             )
             if flag or going[2] > len(room):
                 raise lost_motion(state, REASONS.get(flag, "more than 256 events between two samples"))

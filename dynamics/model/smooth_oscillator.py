@@ -191,7 +191,7 @@ def restoring_force(
     >>> restoring_force(oscillator, 0.0, [0.1, 0.5])[:, 0]
     array([0. , 0.3])
     """
-    from dynamics.kernels.stepwise.carrying import probe
+    from dynamics.kernels.stepwise.propagating import probe
 
     if not isinstance(oscillator, SmoothOscillator):
         name, allowed = type(oscillator).__name__, "must be a SmoothOscillator in restoring_force"

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
-from dynamics.flow.flow import carried, tables
+from dynamics.flow.exact_flow import exact_flow, propagated
 from dynamics.flow.flows import flow_of
 from dynamics.flow.motions import period_map
 from dynamics.model.limits import SEARCHED, whole_numbers
@@ -173,7 +173,7 @@ class _Search:
     """Orbits found so far, and where to start."""
 
     def __init__(self, oscillator: GearOscillator, region: Region | None) -> None:
-        self.oscillator, self.table = oscillator, tables(oscillator)
+        self.oscillator, self.table = oscillator, exact_flow(oscillator)
         self.orbits: list[Orbit] = []
         self.places, self.owners = np.empty((0, 2)), list[int]()  # states of all orbits, and whose they are
         self.motion, self.periods = _long_motions(oscillator, self.table)
@@ -250,7 +250,7 @@ class _Search:
                 used += number
             starts = np.concatenate(parts)
             if batch % 2:  # what has gone on for a while lies nearer to orbits
-                starts = carried(self.table, starts, batch // 2 % PASSED + 1)
+                starts = propagated(self.table, starts, batch // 2 % PASSED + 1)
             known = len(self.orbits)
             for k in range(len(starts)):
                 last, periods = hunt(

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from base import Array
-from dynamics.flow.flow import Tables, carried, tables
+from dynamics.flow.exact_flow import ExactFlow, exact_flow, propagated
 from dynamics.flow.motions import period_map
 from dynamics.model.excitation import largest
 from dynamics.model.oscillator import GearOscillator
@@ -39,7 +39,7 @@ def index_at_infinity(oscillator: GearOscillator, n: int) -> int | None:
         Excitation periods.
     """
     if not oscillator.one_sided:
-        linear: Tables = tables(dataclasses.replace(oscillator, half_backlash=0.0))
+        linear: ExactFlow = exact_flow(dataclasses.replace(oscillator, half_backlash=0.0))
         jacobian = period_map(linear, np.zeros(2)).jacobian
         if not np.all(np.isfinite(jacobian)):
             return None
@@ -66,11 +66,11 @@ def winding(oscillator: GearOscillator, n: int, radius: float) -> int | None:
     radius : float
         Of the circle in the plane of X and V, about the origin.
     """
-    table = tables(oscillator)
+    table = exact_flow(oscillator)
 
     def directions(angles: Array) -> Array:
         at = radius * np.column_stack([np.cos(angles), np.sin(angles)])
-        move = carried(table, at, n) - at
+        move = propagated(table, at, n) - at
         return np.asarray(np.arctan2(move[:, 1], move[:, 0]))
 
     angles = np.linspace(-math.pi, math.pi, 65)

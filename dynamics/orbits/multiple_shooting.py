@@ -11,11 +11,11 @@ import numpy.typing as npt
 
 from base import Array, Integers
 from dynamics.flow.drive_flow import DriveFlow
-from dynamics.flow.flow import Tables
+from dynamics.flow.exact_flow import ExactFlow
 from dynamics.model.drive_oscillator import DriveOscillator
 from dynamics.model.oscillator import GearOscillator
 
-Parted: TypeAlias = Tables | DriveFlow
+Parted: TypeAlias = ExactFlow | DriveFlow
 """Flows that follow parts of a period."""
 # four radians at most of every time scale: a stretch multiplies errors by less than 1e4
 CELLS_PER_STRETCH = 8
@@ -73,7 +73,7 @@ def shoot_in_stretches(
     ----------
     oscillator : GearOscillator or DriveOscillator
         The oscillator.
-    table : Tables or DriveFlow
+    table : ExactFlow or DriveFlow
         Its tables.
     guess : ndarray, shape (size,)
         State at tau = 0.

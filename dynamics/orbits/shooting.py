@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, part, quantity, record
 from dynamics.flow.drive_flow import DriveFlow
-from dynamics.flow.flow import Tables
+from dynamics.flow.exact_flow import ExactFlow
 from dynamics.flow.flows import flow_of
 from dynamics.model.drive_oscillator import DriveOscillator
 from dynamics.model.limits import NEWTON_STEPS, ORBIT_PERIODS, TRANSIENT
@@ -214,7 +214,7 @@ def _in_stretches(
     Of the exact flows alone; tried where one shot is lost, or is not enough for a long orbit.
     """
     if not (
-        isinstance(oscillator, GearOscillator | DriveOscillator) and isinstance(flow, Tables | DriveFlow)
+        isinstance(oscillator, GearOscillator | DriveOscillator) and isinstance(flow, ExactFlow | DriveFlow)
     ):
         return None
     if not lost and flow.cells * n <= LONG:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from ehl.discrete.bodies import STEEL, Solid
 from ehl.discrete.contact import LineContact
+from ehl.discrete.solids import STEEL, Solid
 
 _SHAPE = 1.11
 """Maximum rise under an elliptic (Hertz) source over 1/sqrt(width): max of int sqrt(1-s^2)/sqrt(x-s) ds, scaled."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv, dgetrs
 
 from base import Array, Integers
-from ehl.discrete.discrete import Grid, Groups, Oil, film_gap, fluxes, inlet_pressure, load_inside
+from ehl.discrete.equations import Grid, Groups, Oil, film_gap, fluxes, inlet_pressure, load_inside
 from ehl.discrete.grid import face_weights
 from ehl.discrete.squeeze import Squeeze
 
@@ -108,7 +108,7 @@ def newton(
     squeeze : Squeeze, optional
         What the film's change in time adds to the net fluxes; steady unless given.
     """
-    from ehl.kernels.kernels import newton_matrix
+    from ehl.kernels.film_kernels import newton_matrix
 
     faces = face_weights(grid.nodes, upwind=True) if upwind else grid.quick
     step_done = 1e-2 if loose else done

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from base import Array, Integers
-from ehl.discrete.discrete import Grid, Groups, film_gap, inlet_pressure
+from ehl.discrete.equations import Grid, Groups, film_gap, inlet_pressure
 
 
 class Content(NamedTuple):

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from base import Array, Cost, Faults, Integers, Limit, Stopwatch, described, part, quantity, record, unclocked
 from base.results import ITSELF
 from ehl.discrete.contact import LineContact
-from ehl.discrete.discrete import Grid, Residual, film_gap
+from ehl.discrete.equations import Grid, Residual, film_gap
 from ehl.discrete.squeeze import Content, Storage, by_parameter
 from ehl.discrete.supply import OilLayer, Supply
 from ehl.films.film import Film
@@ -122,7 +122,7 @@ def film_response(film: Film, frequency: ArrayLike) -> FilmResponse:
     at = _checked(film, frequency)
     assert film.state is not None
     with unclocked():
-        import ehl.kernels.kernels  # noqa: F401  numba
+        import ehl.kernels.film_kernels  # noqa: F401  numba
     watch = Stopwatch()
     levels = [_Linear.of(level, film.supply) for level in (film.state.coarse, film.state.fine)]
     coarse, fine = (np.array([one.answer(w) for w in at.ravel()]).reshape(*at.shape, 3) for one in levels)
@@ -211,7 +211,7 @@ class _Linear:
     @classmethod
     def of(cls, level: Level, supply: Supply | None) -> _Linear:
         """Linearise about the steady film, on nodes that follow the load."""
-        from ehl.kernels.kernels import newton_matrix
+        from ehl.kernels.film_kernels import newton_matrix
 
         grid, groups, found = level.grid, level.groups, level.found
         before = Residual.of(grid, groups, found.P, found.H0)

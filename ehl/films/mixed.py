@@ -21,7 +21,7 @@ from ehl.discrete.regressions import moes_central
 from ehl.discrete.supply import OilLayer, Supply
 from ehl.films.film import Film
 from ehl.films.mixed_film import MixedFilm
-from ehl.films.outcome import Found
+from ehl.films.result import Found
 from ehl.films.solver import solve_checked
 from ehl.solving.levels import State, figures
 from ehl.solving.load_share import (

@@ -9,9 +9,9 @@ from dataclasses import KW_ONLY, replace
 from base import Faults, RangeWarning, Stopwatch, described, part, quantity, record, shorten
 from base.results import EXACT
 from ehl.discrete.asperities import Roughness
-from ehl.discrete.bodies import STEEL, Solid
 from ehl.discrete.contact import LineContact
 from ehl.discrete.regimes import BOUNDARY, BOUNDARY_FRICTION
+from ehl.discrete.solids import STEEL, Solid
 from ehl.discrete.supply import Supply
 from ehl.films.mixed import solve_mixed
 from ehl.films.mixed_film import MixedFilm, RoughFilm

@@ -15,11 +15,11 @@ from ehl.discrete.contact import LineContact
 from ehl.discrete.regressions import moes_central
 from ehl.discrete.supply import Meniscus, OilLayer, Supply
 from ehl.films.film import Film
-from ehl.films.outcome import Found, above, film_error, remedy, spike_error
+from ehl.films.result import Found, above, film_error, remedy, spike_error
+from ehl.solving.grid_search import GridSearch
 from ehl.solving.levels import Level, State
 from ehl.solving.options import Options, warn_of_range
 from ehl.solving.plan import Plan
-from ehl.solving.run import Run
 
 _FIRST_NODES = 65
 _MOST_FIRST_NODES = 257
@@ -147,7 +147,7 @@ def solve_checked(
         return _starved(contact, options, options.supply, start)
     reach = max(REACH, (10.0 / options.tolerance) ** (1.0 / 3.0))
     flooded = Plan.of(contact, options.grid, options.domain, reach)
-    run = Run(contact, flooded, None, whole_spike=options.spike is not None, spent=spent)
+    run = GridSearch(contact, flooded, None, whole_spike=options.spike is not None, spent=spent)
     return _solve(run, options, start)
 
 
@@ -194,11 +194,11 @@ def _held(
     """Solve a starved contact, whose flooded flow would be about ``flow`` [m]."""
     plan = Plan.fed(contact, options.grid, supply, flow)
     whole = options.spike is not None
-    run = Run(contact, plan, supply, whole_spike=whole, flooded=flooded, spent=spent)
+    run = GridSearch(contact, plan, supply, whole_spike=whole, flooded=flooded, spent=spent)
     return _solve(run, options, held)
 
 
-def _solve(run: Run, options: Options, old: State | None) -> Found:
+def _solve(run: GridSearch, options: Options, old: State | None) -> Found:
     """Solve a first pair of grids, then refine.
 
     A start gives films on the first pair alone: on finer ones a film of another load is often too far off.
@@ -234,7 +234,7 @@ def _same(level: Level, n: int, same: bool) -> Level | None:
     return level if same and level.grid.nodes.size == n else None
 
 
-def _refine(run: Run, coarse: Level, fine: Level, options: Options) -> Found:
+def _refine(run: GridSearch, coarse: Level, fine: Level, options: Options) -> Found:
     """Double the grid until the estimates meet what is asked, then report.
 
     A grid that fails is passed over: the next one is compared with the last that gave in.

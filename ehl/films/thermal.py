@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 
 from base import Array, Faults, Limit, RangeWarning, Stopwatch, part, quantity, record, unclocked
-from ehl.discrete.bodies import STEEL, Solid
 from ehl.discrete.contact import LineContact
-from ehl.discrete.heated import Heated
+from ehl.discrete.solids import STEEL, Solid
 from ehl.discrete.supply import Meniscus, OilLayer, Supply
+from ehl.discrete.thermal_oil import ThermalOil
 from ehl.films.film import Film, FilmErrors, unsolved
-from ehl.films.outcome import above
+from ehl.films.result import above
 from ehl.films.thermal_search import Compared, Search
 from ehl.solving.heat_balance import losses, rises, rolling, stresses, traction
 from ehl.solving.levels import figures
@@ -76,7 +76,7 @@ class ThermalFilm(Film):
         "change of the maximum temperature rises between two grids, what an unresolved spike leaves, and heat that is "
         "missing or ahead of the inlet",
     )
-    oils: tuple[Heated, Heated] | None = part("what a next solution starts from", default=None)
+    oils: tuple[ThermalOil, ThermalOil] | None = part("what a next solution starts from", default=None)
 
     @property
     def dissipation(self) -> float:

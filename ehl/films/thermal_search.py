@@ -10,13 +10,13 @@ import numpy as np
 
 from base import Array, Cost
 from base.results import WORST
-from ehl.discrete.bodies import Solid
 from ehl.discrete.contact import LineContact
-from ehl.discrete.discrete import Groups
-from ehl.discrete.heated import INLET_GAP, Heated
+from ehl.discrete.equations import Groups
 from ehl.discrete.newton import newton
+from ehl.discrete.solids import Solid
 from ehl.discrete.supply import OilLayer, Supply
-from ehl.films.outcome import GRID_FACTOR, film_error
+from ehl.discrete.thermal_oil import INLET_GAP, ThermalOil
+from ehl.films.result import GRID_FACTOR, film_error
 from ehl.films.solver import REACH, solve_checked
 from ehl.solving.heat_balance import losses, rises, traction
 from ehl.solving.levels import Level, State, figures, transfer
@@ -38,7 +38,7 @@ _FIRST_NODES = 65
 _MOST_NODES = 513
 _SHARES = (0.25, 0.5, 0.75, 1.0)  # of the sliding, where all of it at once fails
 
-Solved = tuple[Level, Heated]
+Solved = tuple[Level, ThermalOil]
 
 
 def at_bulk(contact: LineContact, bulk: tuple[float, float]) -> LineContact:
@@ -111,7 +111,7 @@ def _out_of_balance(powers: dict[str, float]) -> float:
     return abs(powers["closure"] * made) / max(abs(made), through, 1e-300)
 
 
-def _climb(level: Level, oil: Heated) -> tuple[float, float]:
+def _climb(level: Level, oil: ThermalOil) -> tuple[float, float]:
     """Maximum temperature under the spike and its rise above the coldest oil between the middle and there [K]."""
     P, hottest = level.found.P, oil.temperature.max(axis=1)
     tops = np.flatnonzero((P[1:-1] >= P[:-2]) & (P[1:-1] > P[2:])) + 1
@@ -130,7 +130,7 @@ class Neighbour:
     coarse: Solved
     fine: Solved
 
-    def carry(self, solved: Solved, level: Level, oil: Heated) -> Level:
+    def carry(self, solved: Solved, level: Level, oil: ThermalOil) -> Level:
         """Start the finer level and its oil from the old one and from what has changed on the coarser."""
         (old, old_oil), (new, new_oil) = self.coarse, solved
         at, places = level.grid.nodes, old.grid.nodes
@@ -172,7 +172,9 @@ class Search:
         self.left = f"without heat and shear: {film.film().message}"
         return None
 
-    def from_neighbour(self, old: State, oils: tuple[Heated, Heated], nodes: int | None) -> Compared | None:
+    def from_neighbour(
+        self, old: State, oils: tuple[ThermalOil, ThermalOil], nodes: int | None
+    ) -> Compared | None:
         """Start from both levels of a similar contact and their oils."""
         plan = Plan.of(self.isothermal, "graded", None, self.reach)
         if old.plan.serves(plan):
@@ -243,7 +245,11 @@ class Search:
         return Level(self.contact, base.plan, grid, replace(base.found, P=P, H0=H0))
 
     def _on(
-        self, level: Level, known: Heated | None, old: Neighbour | None = None, found: Solved | None = None
+        self,
+        level: Level,
+        known: ThermalOil | None,
+        old: Neighbour | None = None,
+        found: Solved | None = None,
     ) -> Solved | None:
         """Solve on a level's grid from its pressures and from another solution's temperatures."""
         self.nodes = max(self.nodes, level.grid.nodes.size)
@@ -262,15 +268,15 @@ class Search:
                 return None
         return partly
 
-    def _oil(self, level: Level, share: float, known: Heated | None) -> Heated:
+    def _oil(self, level: Level, share: float, known: ThermalOil | None) -> ThermalOil:
         """Oil on a level's grid, with a share of the sliding."""
         contact = replace(self.contact, sliding=share * self.contact.sliding)
-        oil = Heated(contact, level.grid, Groups.on(contact, level.grid), self.solids, self.bulk)
+        oil = ThermalOil(contact, level.grid, Groups.on(contact, level.grid), self.solids, self.bulk)
         if known is not None:
             oil.start_from(known)
         return oil
 
-    def _newton(self, level: Level, oil: Heated) -> Solved | None:
+    def _newton(self, level: Level, oil: ThermalOil) -> Solved | None:
         found = level.found
         try:
             with np.errstate(all="ignore"):

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from base import Array, Faults
-from ehl.discrete.discrete import Groups
-from ehl.discrete.heated import Heated
+from ehl.discrete.equations import Groups
 from ehl.discrete.newton import newton
+from ehl.discrete.thermal_oil import ThermalOil
 from ehl.films.film import FilmErrors
 from ehl.films.thermal import ThermalFilm
 from ehl.solving.levels import Level, figures, transfer
@@ -74,13 +74,13 @@ def with_load_slopes(film: ThermalFilm) -> ThermalFilm:
     return replace(film, separation_slope=float(after[0]), central_slope=float(after[1]), errors=errors)
 
 
-def _slopes(level: Level, oil: Heated) -> Array:
+def _slopes(level: Level, oil: ThermalOil) -> Array:
     """Differences of separation and central film by the load [m2/N]; NaN where a load was not solved."""
     found = []
     for growth in (1.0 - _STEP, 1.0 + _STEP):
         contact = replace(oil.contact, load=growth * oil.contact.load)
         groups = Groups.on(contact, level.grid)
-        near = Heated(contact, level.grid, groups, oil.solids, oil.bulk)
+        near = ThermalOil(contact, level.grid, groups, oil.solids, oil.bulk)
         near.start_from(oil)
         P, H0 = transfer(level, contact, level.plan, level.grid)
         with np.errstate(all="ignore"):

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from base import Array, Cost, Faults, Limit, Stopwatch, described, part, quantity, record, shorten
 from base.results import EXACT
-from ehl.discrete.bodies import STEEL, Solid
 from ehl.discrete.contact import LineContact
+from ehl.discrete.solids import STEEL, Solid
 from ehl.films.thermal import ThermalFilm, solve_thermal
 from ehl.oil.lubricant import Lubricant
 

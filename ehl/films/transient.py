@@ -23,11 +23,11 @@ from base.results import ITSELF, WORST
 from ehl.discrete.contact import LineContact
 from ehl.discrete.supply import Meniscus
 from ehl.films.film import Film, unsolved
-from ehl.films.outcome import GRID_FACTOR
+from ehl.films.result import GRID_FACTOR
 from ehl.films.solver import solve
-from ehl.solving.course import Course, JumpError, Shot
-from ehl.solving.over_time import OverTime, at_time, checked, jump_fault
 from ehl.solving.stepping import Laying
+from ehl.solving.time_inputs import OverTime, at_time, checked, jump_fault
+from ehl.solving.time_march import JumpError, Shot, TimeMarch
 
 _FIRST_NODES = 129
 _MOST_NODES = 513
@@ -158,7 +158,7 @@ def solve_transient(
     """
     functions, times = checked(contact, load, time, entrainment, radius, tolerance, nodes, step, supply)
     with unclocked():
-        import ehl.kernels.kernels  # noqa: F401  numba
+        import ehl.kernels.film_kernels  # noqa: F401  numba
     watch = Stopwatch()
 
     def contact_at(at: float) -> LineContact:
@@ -191,7 +191,7 @@ class _Run:
     def solved(self, nodes: int | None) -> TransientFilm:
         """Return the film, or the reason why there is none."""
         n, reason = nodes or _FIRST_NODES, ""
-        nearest: tuple[tuple[Course, Course], float, float] | None = None
+        nearest: tuple[tuple[TimeMarch, TimeMarch], float, float] | None = None
         for _ in range(_ROUNDS):
             first = solve(self.contact_at(float(self.times[0])), nodes=n, supply=self.supply)
             if not first.converged:
@@ -221,11 +221,11 @@ class _Run:
             first, f"{reason}: allow a larger tolerance, or let load and speed change more slowly"
         )
 
-    def pair(self, first: Film) -> tuple[Course, Course] | str:
+    def pair(self, first: Film) -> tuple[TimeMarch, TimeMarch] | str:
         """Follow the film on the coarser grid, and on the finer one through the same instants."""
         assert first.state is not None
         coarse, fine = (
-            Course.begin(
+            TimeMarch.begin(
                 float(self.times[0]),
                 level,
                 self.contact_at,
@@ -253,7 +253,7 @@ class _Run:
         counts = {"steps": steps, "rejected": self.rejected}
         return Cost(self.watch.seconds, unknowns=self.nodes - 1, iterations=self.iterations, counts=counts)
 
-    def film(self, pair: tuple[Course, Course], grid: float, steps: float) -> TransientFilm:
+    def film(self, pair: tuple[TimeMarch, TimeMarch], grid: float, steps: float) -> TransientFilm:
         """Return the film in SI."""
         fine = pair[1]
         shown = [_shot(fine, at) for at in self.times.tolist()]
@@ -305,7 +305,7 @@ class _Run:
         )
 
 
-def _grid_error(coarse: Course, fine: Course) -> float:
+def _grid_error(coarse: TimeMarch, fine: TimeMarch) -> float:
     """Largest estimated error of the finer of two grids, of all moments."""
     names = ("central_thickness", "minimum_thickness", "separation")
     worst = 0.0
@@ -315,6 +315,6 @@ def _grid_error(coarse: Course, fine: Course) -> float:
     return worst
 
 
-def _shot(course: Course, time: float) -> Shot:
+def _shot(course: TimeMarch, time: float) -> Shot:
     """Shot of one of the times."""
     return course.shots[int(np.argmin(np.abs(course.times - time)))]

@@ -329,9 +329,9 @@ class Lubricant:
 
         See Also
         --------
-        ehl.oil.grades.graded_oil : equations, ranges and sources.
+        ehl.oil.oil_grades.graded_oil : equations, ranges and sources.
         """
-        from ehl.oil.grades import graded_oil
+        from ehl.oil.oil_grades import graded_oil
 
         oil = graded_oil(vg, temperature, viscosity_index, base, density_15)
         return cls(

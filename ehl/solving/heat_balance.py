@@ -7,17 +7,17 @@ import math
 import numpy as np
 
 from base import Array
-from ehl.discrete.heated import Heated
+from ehl.discrete.thermal_oil import ThermalOil
 
 _GAUSS = np.polynomial.legendre.leggauss(12)
 
 
-def traction(oil: Heated) -> float:
+def traction(oil: ThermalOil) -> float:
     """Mean shear stress over the load, positive where the first surface is the faster; of film and cavity."""
     return -(_along(oil, oil.shear.flow[:, 0]) + cavity(oil)) / oil.contact.load
 
 
-def cavity(oil: Heated) -> float:
+def cavity(oil: ThermalOil) -> float:
     """Integral of the mean shear stress of the oil in the cavity [N/m].
 
     Behind the film's end oil fills the share h_e/h of the gap in streams from wall to wall, h_e the gap at the end. Its
@@ -36,24 +36,24 @@ def cavity(oil: Heated) -> float:
     return float(behind @ oil.lengths[end:]) + float(behind[-1]) * beyond
 
 
-def _along(oil: Heated, values: Array) -> float:
+def _along(oil: ThermalOil, values: Array) -> float:
     """Integrate values of cells along the film."""
     to = oil.last + 1
     return float(values[:to] @ oil.lengths[:to])
 
 
-def rises(oil: Heated) -> tuple[float, float]:
+def rises(oil: ThermalOil) -> tuple[float, float]:
     """Maximum rise of the oil above the mean bulk temperature, and of a surface above its own [K]."""
     first, second = (float(np.max(oil.temperature[:, j]) - oil.bulk[j]) for j in (0, -1))
     return float(np.max(oil.temperature) - oil.bulk.mean()), max(first, second)
 
 
-def rolling(oil: Heated, P: Array) -> float:
+def rolling(oil: ThermalOil, P: Array) -> float:
     """Integral of h p'/2 [N/m]."""
     return float(0.5 * np.sum(oil.shear.gap * np.diff(P * oil.groups.pressure)))
 
 
-def stresses(oil: Heated, P: Array) -> Array:
+def stresses(oil: ThermalOil, P: Array) -> Array:
     """Shear stress at both surfaces (n, 2) [Pa]; 0 behind the film."""
     tilt = 0.5 * oil.shear.gap * np.diff(P * oil.groups.pressure) / oil.lengths
     mean = oil.shear.flow[:, 0]
@@ -62,7 +62,7 @@ def stresses(oil: Heated, P: Array) -> Array:
     return oil.at_nodes(found)
 
 
-def losses(oil: Heated) -> dict[str, float]:
+def losses(oil: ThermalOil) -> dict[str, float]:
     """Where the power of one metre of face goes [W/m]."""
     shear, weights = oil.shear, oil.across.weights
     made = shear.gap * ((shear.across * shear.rate) @ weights)
@@ -91,7 +91,7 @@ def losses(oil: Heated) -> dict[str, float]:
     }
 
 
-def _carried_off(oil: Heated) -> float:
+def _carried_off(oil: ThermalOil) -> float:
     """Heat that leaves with the oil at both ends of the cells where it is followed [W/m]."""
     k, T, weights = oil.last, oil.temperature, oil.across.weights
     near = oil.lengths[k] / (oil.lengths[k] + oil.lengths[k - 1])

@@ -10,7 +10,7 @@ import numpy as np
 
 from base import Array
 from ehl.discrete.contact import LineContact
-from ehl.discrete.discrete import Grid, Groups, centre_gap, film_gap
+from ehl.discrete.equations import Grid, Groups, centre_gap, film_gap
 from ehl.discrete.grid import clusters
 from ehl.discrete.newton import Iteration, newton
 from ehl.discrete.regressions import moes_central

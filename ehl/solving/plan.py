@@ -9,7 +9,7 @@ import numpy as np
 
 from base import Array
 from ehl.discrete.contact import LineContact
-from ehl.discrete.discrete import Grid, make_grid
+from ehl.discrete.equations import Grid, make_grid
 from ehl.discrete.grid import clusters, default_domain, graded_nodes, upstream_share
 from ehl.discrete.regressions import moes_central
 from ehl.discrete.supply import Meniscus, OilLayer, Supply, inlet_of_layer, starved_film

@@ -14,7 +14,7 @@ import numpy as np
 
 from base import Array
 from ehl.discrete.contact import LineContact
-from ehl.discrete.discrete import Grid, Groups, Residual
+from ehl.discrete.equations import Grid, Groups, Residual
 from ehl.discrete.supply import OilLayer, Supply
 from ehl.solving.levels import Level, dry_approach
 from ehl.solving.plan import Plan, expected_film

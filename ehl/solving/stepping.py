@@ -8,7 +8,7 @@ import numpy as np
 
 from base import Array
 from ehl.discrete.contact import LineContact
-from ehl.discrete.discrete import Grid, Groups, centre_gap, fluxes
+from ehl.discrete.equations import Grid, Groups, centre_gap, fluxes
 from ehl.discrete.newton import Iteration, newton
 from ehl.discrete.squeeze import Content, Squeeze
 from ehl.discrete.supply import Meniscus

@@ -20,7 +20,7 @@ SHOWN = (0, 2, 8)  # of these, whose line loads are drawn
 CELLS = 48
 
 
-def crowned(bodies: fem.Compliance, crowning: float) -> LoadedTeeth:
+def crowned(bodies: fem.PairCompliance, crowning: float) -> LoadedTeeth:
     """The pair with a crowned pinion, and gears between walls: quicker than free ends."""
     pair = replace(PAIR, pinion=replace(PAIR.pinion, lead=Lead(crowning=crowning)))
     flanks = Flanks(cells=CELLS, face_model="walls")

@@ -22,7 +22,7 @@ OIL = Lubricant(
 STRESSES = (5e6, 10e6)  # Pa, between which most oils lie
 
 
-def losses(bodies: fem.Compliance, rpm: float, stress: float) -> ff.coupling.MeshLosses:
+def losses(bodies: fem.PairCompliance, rpm: float, stress: float) -> ff.coupling.MeshLosses:
     """Losses at a speed with an oil that yields at a stress."""
     oil = replace(OIL, eyring_stress=stress)
     return ff.mesh_losses(PAIR, TORQUE, rpm * np.pi / 30.0, oil, positions=24, compliance=bodies)

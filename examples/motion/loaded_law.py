@@ -32,7 +32,7 @@ from dynamics import (
     TabulatedContact,
     fit_fourier,
 )
-from dynamics.flow.flow import turning_points
+from dynamics.flow.exact_flow import turning_points
 from gears import BasicRack, Gear, GearPair, Material
 
 Array = NDArray[np.float64]
@@ -44,7 +44,7 @@ COLOURS = {"secant": "tab:blue", "tangent": "tab:red", "loaded law": "black"}
 
 
 @dataclass(frozen=True)
-class Setting:
+class MeshSetup:
     """The pair, its sweep and its scales.
 
     Attributes
@@ -116,7 +116,7 @@ def article_pair() -> GearPair:
     return pair.with_backlash(BACKLASH)
 
 
-def setting(held: bool) -> Setting:
+def setting(held: bool) -> MeshSetup:
     """Finite elements: deflections under every force, and the scales."""
     pair = article_pair()
     cycles = fem.mesh_cycle(
@@ -135,12 +135,12 @@ def setting(held: bool) -> Setting:
         force=mean.force,
         mean_force=0.1,
     )
-    return Setting(
+    return MeshSetup(
         force, deflection, mean.secant_stiffness, mean.stiffness, mean.force, scales, 0.5 * pair.backlash
     )
 
 
-def law(given: Setting, order: int) -> TabulatedContact:
+def law(given: MeshSetup, order: int) -> TabulatedContact:
     """The loaded law, dimensionless."""
     scales = given.scales
     return TabulatedContact.from_deflections(
@@ -152,7 +152,7 @@ def law(given: Setting, order: int) -> TabulatedContact:
     )
 
 
-def oscillators(given: Setting, order: int) -> dict[str, GearOscillator | SmoothOscillator]:
+def oscillators(given: MeshSetup, order: int) -> dict[str, GearOscillator | SmoothOscillator]:
     """The three laws at the lowest speed."""
     scales = given.scales
     linear = {
@@ -171,7 +171,7 @@ def oscillators(given: Setting, order: int) -> dict[str, GearOscillator | Smooth
     return {**linear, "loaded law": loaded}
 
 
-def curve(name: str, osc: GearOscillator | SmoothOscillator, given: Setting) -> Curve:
+def curve(name: str, osc: GearOscillator | SmoothOscillator, given: MeshSetup) -> Curve:
     """Follow the motion of period 1 from the lowest speed."""
     low, high = (given.scales.frequency_from_rpm(rpm) for rpm in SPEEDS)
     smooth = isinstance(osc, SmoothOscillator)
@@ -205,7 +205,7 @@ def extent(osc: GearOscillator | SmoothOscillator, frequency: float, state: Arra
     return float(x.min()), float(x.max())
 
 
-def figure(given: Setting, curves: Sequence[Curve], order: int) -> Figure:
+def figure(given: MeshSetup, curves: Sequence[Curve], order: int) -> Figure:
     """Laws at the stiffest and the softest position, and the swing over the speed."""
     page = Figure(figsize=(10, 4.2), layout="constrained")
     left, right = page.subplots(1, 2, width_ratios=(1, 1.7))
@@ -233,7 +233,7 @@ def figure(given: Setting, curves: Sequence[Curve], order: int) -> Figure:
     return page
 
 
-def summary(given: Setting, curves: Sequence[Curve], order: int) -> str:
+def summary(given: MeshSetup, curves: Sequence[Curve], order: int) -> str:
     """Jump speeds, maximum swings, and what differs."""
     lines = [f"{order} harmonic(s)"]
     for one in curves:

@@ -11,7 +11,7 @@ import numpy as np
 from base import Array, Integers, record
 from fem.contact.cell_laws import CellLaws, between_middles
 from fem.contact.cell_matrix import cell_coupling
-from fem.contact.part_cells import WITHIN, part_cells, rises
+from fem.contact.partial_cells import WITHIN, gap_drops, partial_cells
 from fem.elasticity.flamant import hertz_half_width
 from fem.laws.local_law import FilmLaw, PairLaws
 from fem.pair.face_shafts import HeldShafts, shafts_under_face
@@ -20,9 +20,9 @@ from fem.pair.wide_contact import shared_by_width
 if TYPE_CHECKING:
     from fem.contact.cell_coupling import CellCoupling
     from fem.laws.contact_candidates import ContactCandidates
-    from fem.laws.setting import Setting
-    from fem.pair.bodies import Compliance
+    from fem.laws.mesh_setup import MeshSetup
     from fem.pair.face_setting import FaceSetting
+    from fem.pair.pair_compliance import PairCompliance
     from gears import GearPair, LoadShare
     from gears.sharing.load_sharing import DeflectionLaw
 
@@ -65,8 +65,8 @@ class CellShare:
 class CellContact:
     """What is shared over the face of whole pairs, arguments as of ``gears.share_load``."""
 
-    given: Setting
-    bodies: Compliance
+    given: MeshSetup
+    bodies: PairCompliance
     whole: Array
     where: ContactCandidates
     kappa: Array
@@ -87,8 +87,8 @@ class CellContact:
         near : (torques, ..., pairs, parts) array
             Forces to begin with, on some parts of it [N].
         rise : (torques, ..., pairs, cells) array, optional
-            By how much smallest gaps of cells fall short of their mean (`rises`) [m]; otherwise cells touch all over or
-            nowhere.
+            By how much smallest gaps of cells fall short of their mean (`gap_drops`) [m]; otherwise cells touch all
+            over or nowhere.
         held : bool
             Whether the share is measured from the first touch on shafts that are held; else it counts the shafts.
         """
@@ -112,7 +112,7 @@ class CellContact:
 
         @lru_cache(maxsize=1)
         def law(strip: float, some: tuple[int, ...]) -> DeflectionLaw:
-            return laws if rise is None else part_cells(laws, coupling(strip)[0], _flat(rise)[list(some)])
+            return laws if rise is None else partial_cells(laws, coupling(strip)[0], _flat(rise)[list(some)])
 
         def share(strip: float, some: Integers) -> LoadShare:
             alone, stiff = coupling(strip)
@@ -154,12 +154,12 @@ class CellContact:
             found, reached = shafts.held(found, self.kappa, self.gaps, slopes, 1.0 if arms is None else arms)
         return CellShare(found, bends, left, strips, np.zeros_like(left) if rise is None else rise, reached)
 
-    def rises(self, face: FaceSetting, coarse: CellShare) -> Array:
+    def gap_drops(self, face: FaceSetting, coarse: CellShare) -> Array:
         """By how much the minimum gap of cells falls short of their mean (torques, ..., pairs, cells) [m].
 
         By a solution with as many cells, or fewer.
         """
-        return rises(face.gaps_within(self.given.pair, self._radius, WITHIN), coarse.bends)
+        return gap_drops(face.gaps_within(self.given.pair, self._radius, WITHIN), coarse.bends)
 
     def _apart(self, face: FaceSetting) -> Array:
         """Gaps without load, beyond where the first place of the face touches (pitches, positions, pairs cells) [m]."""

@@ -9,14 +9,14 @@ import numpy as np
 
 from base import Array, Booleans
 from fem.contact.cell_coupling import CellCoupling
-from fem.influence.solved_gear import Gears
+from fem.influence.gear_store import GearStore
 from fem.pair.face_compliance import pair_ends, pair_waves
 from fem.pair.face_setting import FREE_ENDS, SLICES, FaceSetting
-from fem.pair.overhang import cosines, overhang
+from fem.pair.unequal_widths import cosines, overhang
 
 if TYPE_CHECKING:
     from fem.laws.contact_candidates import ContactCandidates
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["cell_coupling", "cell_matrix", "in_blocks"]
 
@@ -28,7 +28,7 @@ MOST_AT_ONCE = 4_000_000
 
 
 def cell_coupling(
-    face: FaceSetting, bodies: Compliance, where: ContactCandidates, kappa: Array, matrix: Array
+    face: FaceSetting, bodies: PairCompliance, where: ContactCandidates, kappa: Array, matrix: Array
 ) -> CellCoupling:
     """Compliance of the bodies between cells of pairs that may touch, arguments as of ``cell_matrix``."""
     size = int(np.sum((where.touchable.sum(axis=-1) * face.cells) ** 2))
@@ -46,7 +46,7 @@ def cell_coupling(
     pair = bodies.pair
     size_of = (pair.module, pair.face_width, pair.face_widths, pair.face_offsets, bodies.reach)
     key = (bodies.meshed, laws, size_of, face.coupled, *(one.tobytes() for one in arrays))
-    return Gears().over_face("cells", key, cut)
+    return GearStore().over_face("cells", key, cut)
 
 
 def in_blocks(some: Callable[[slice], Array], touchable: Booleans, cells: int) -> CellCoupling:
@@ -73,7 +73,7 @@ def in_blocks(some: Callable[[slice], Array], touchable: Booleans, cells: int) -
 
 def cell_matrix(
     face: FaceSetting,
-    bodies: Compliance,
+    bodies: PairCompliance,
     rho: Array,
     kappa: Array,
     matrix: Array,
@@ -84,7 +84,7 @@ def cell_matrix(
     Parameters
     ----------
     face : FaceSetting
-    bodies : Compliance
+    bodies : PairCompliance
     rho : (2, positions, pairs) array
         Curvature radii [m].
     kappa : (positions, pairs) array

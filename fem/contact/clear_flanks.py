@@ -16,10 +16,10 @@ from base import Array, Booleans
 from fem.contact.loaded_flanks import FlanksInPlace, flanks_in_place
 from fem.contact.opposite_flanks import OppositeShare, between
 from fem.laws.local_law import Film
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 
 if TYPE_CHECKING:
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
     from gears import LoadShare
 
 __all__ = ["stays_clear"]
@@ -32,8 +32,8 @@ ROLLED = 0.2
 
 
 def stays_clear(
-    given: Setting,
-    bodies: Compliance,
+    given: MeshSetup,
+    bodies: PairCompliance,
     force: Array,
     film: Film | None,
     flanks: FlanksInPlace,

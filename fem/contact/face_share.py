@@ -26,8 +26,8 @@ from fem.pair.face_shafts import HeldShafts
 
 if TYPE_CHECKING:
     from fem.laws.contact_candidates import ContactCandidates
-    from fem.laws.setting import Setting
-    from fem.pair.bodies import Compliance
+    from fem.laws.mesh_setup import MeshSetup
+    from fem.pair.pair_compliance import PairCompliance
     from gears import LoadShare
 
 __all__ = ["FaceShare", "of_pairs", "settled_gaps", "share_over_face", "yielding_over_face"]
@@ -85,8 +85,8 @@ class FaceShare:
 
 
 def share_over_face(
-    given: Setting,
-    bodies: Compliance,
+    given: MeshSetup,
+    bodies: PairCompliance,
     whole: Array,
     where: ContactCandidates,
     kappa: Array,
@@ -112,8 +112,8 @@ def share_over_face(
     plane = share_load(whole, matrix, laws, gaps, oil, levers)
     few, _ = half_as_many(given.face)
     coarse = over.shared(few, plane.forces[..., None], held=False)
-    coarse = over.shared(few, coarse.forces, over.rises(few, coarse))
-    fine = over.shared(given.face, coarse.forces, over.rises(given.face, coarse))
+    coarse = over.shared(few, coarse.forces, over.gap_drops(few, coarse))
+    fine = over.shared(given.face, coarse.forces, over.gap_drops(given.face, coarse))
     errors = cell_errors(over, given.face, fine, coarse)
     share, left = of_pairs(fine.share, given.face.cells), settled_gaps(fine.left, fine.forces)
     return share, FaceShare(

@@ -11,11 +11,11 @@ from fem.laws.contact_candidates import ContactCandidates, contact_candidates
 from fem.laws.cut_off import cut_offs
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.local_law import Film, FilmLaw, PairLaws
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 
 if TYPE_CHECKING:
     from fem.influence.gear_compliance import GearCompliance
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["FlanksInPlace", "LoadedFlanks", "flanks_in_place", "greatest_force", "hub_lever", "loaded_flanks"]
 
@@ -62,7 +62,7 @@ class LoadedFlanks(FlanksInPlace):
     largest: Array
 
 
-def flanks_in_place(given: Setting, film: Film | None, reach: float) -> FlanksInPlace:
+def flanks_in_place(given: MeshSetup, film: Film | None, reach: float) -> FlanksInPlace:
     """Place the flanks that bear in a setting; arguments as of ``loaded_flanks``."""
     where = contact_candidates(given, reach)
     kappa = np.where(where.touchable, where.lever[0, : given.positions], 1.0)
@@ -73,14 +73,19 @@ def flanks_in_place(given: Setting, film: Film | None, reach: float) -> FlanksIn
 
 
 def loaded_flanks(
-    given: Setting, bodies: Compliance, film: Film | None, reach: float, force: float, tables: EdgeTables
+    given: MeshSetup,
+    bodies: PairCompliance,
+    film: Film | None,
+    reach: float,
+    force: float,
+    tables: EdgeTables,
 ) -> LoadedFlanks:
     """Put together what the flanks yield that bear in a setting.
 
     Parameters
     ----------
-    given : Setting
-    bodies : Compliance
+    given : MeshSetup
+    bodies : PairCompliance
     film : Film or None
     reach : float
         Base pitches outside the path within which tip edges are looked for.
@@ -107,14 +112,14 @@ def loaded_flanks(
     return LoadedFlanks(where, kappa, placed.oil, placed.levers, matrix, laws, largest)
 
 
-def greatest_force(bodies: Compliance, where: ContactCandidates, force: float) -> float:
+def greatest_force(bodies: PairCompliance, where: ContactCandidates, force: float) -> float:
     """Maximum force on a pair by a torque's force [N]: teeth that overlap are pressed on both sides without one."""
     overlap, points = -float(np.min(where.back_gap)), bodies.pair.points
     middle = np.array([0.5 * float(points.A + points.E)])
     return force + (overlap / float(bodies.own(middle)[0]) if overlap > 0.0 else 0.0)
 
 
-def _levers(given: Setting, where: ContactCandidates) -> Array:
+def _levers(given: MeshSetup, where: ContactCandidates) -> Array:
     """Levers about the pinion's axis of forces tilted by friction, over r_b1 (positions, pairs); 1 if none can act."""
     lever, arm = where.lever[:, : given.positions], where.tangent_arm[:, : given.positions]
     first, second = given.pair.base_radii
@@ -125,7 +130,7 @@ def _levers(given: Setting, where: ContactCandidates) -> Array:
     return np.asarray(np.where(where.touchable, lever[0], 1.0) + turning * slip * arm[0] / first)
 
 
-def _leave_out_corner(bodies: Compliance, matrix: Array, where: ContactCandidates) -> None:
+def _leave_out_corner(bodies: PairCompliance, matrix: Array, where: ContactCandidates) -> None:
     """Keep of the corner's gear only its turn on the hub: the edge's law holds its tooth and body already.
 
     The turn stays with that of the other pairs, so that with a weak hub the matrix remains definite.
@@ -142,6 +147,6 @@ def _leave_out_corner(bodies: Compliance, matrix: Array, where: ContactCandidate
 def hub_lever(gear: GearCompliance, rho: Array, leaning: Array) -> Array:
     """Lever about a gear's axis, over its base radius, of forces that lean from its flank's normal.
 
-    It is that of the cross terms along flank and tangent (``Compliance.bulk``), at the last place that these know.
+    It is that of the cross terms along flank and tangent (``PairCompliance.bulk``), at the last place that these know.
     """
     return np.asarray(np.cos(leaning) - np.sin(leaning) * np.clip(rho, *gear.rho_range) / gear.base_radius)

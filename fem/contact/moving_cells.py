@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fem.contact.cell_laws import CellLaws
     from fem.contact.moving_contact import ContactMoves
     from fem.contact.moving_corners import MovedFlanks
-    from fem.contact.part_cells import PartCells
+    from fem.contact.partial_cells import PartialCells
 
 __all__ = ["MovingCells"]
 
@@ -62,7 +62,7 @@ class MovingCells:
     cells: int
     coupling: CellCoupling
     roll: CellCoupling
-    laws: PartCells
+    laws: PartialCells
     film: CellLaws | None
     clear: Array
     along: Array

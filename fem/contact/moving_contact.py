@@ -25,14 +25,14 @@ import numpy as np
 from base import Array, Booleans, record
 from fem.contact.moving_newton import Linearised, moved_forces
 from fem.elasticity.flamant import hertz_half_width
-from fem.elasticity.third_order import half_plane, large_strain
+from fem.elasticity.nonlinear_energy import half_plane, large_strain
 
 if TYPE_CHECKING:
     from fem.contact.moving_corners import MovedFlanks
-    from fem.elasticity.elasticity import PlaneElasticity
+    from fem.elasticity.plane_elasticity import PlaneElasticity
     from fem.laws.contact_candidates import ContactCandidates
     from fem.laws.local_law import FilmLaw, PairLaws
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
     from gears import GearPair, LoadShare
 
 __all__ = [
@@ -114,7 +114,7 @@ class ContactMoves:
         return np.asarray((self.roll @ force[..., None])[..., 0])
 
 
-def contact_moves(bodies: Compliance, where: ContactCandidates, corners: bool = False) -> ContactMoves:
+def contact_moves(bodies: PairCompliance, where: ContactCandidates, corners: bool = False) -> ContactMoves:
     """Moves of the contacts of a pair at all positions.
 
     With ``corners`` those of tip edges too, with energies of the flanks' ends, and B' without the flanks' own part
@@ -168,7 +168,7 @@ def contact_moves(bodies: Compliance, where: ContactCandidates, corners: bool = 
 
 
 def _of_the_width(
-    bodies: Compliance, rho: Array, tilt: list[Array], along: list[Array], half_width: Array
+    bodies: PairCompliance, rho: Array, tilt: list[Array], along: list[Array], half_width: Array
 ) -> tuple[Array, Array]:
     """What Hertz's law at a held place leaves out of D, over the line load's square [m per (N/m)^2].
 

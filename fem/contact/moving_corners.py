@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from fem.contact.loaded_flanks import LoadedFlanks
     from fem.influence.gear_compliance import GearCompliance
     from fem.laws.edge_tables import EdgeTables
-    from fem.laws.setting import Setting
-    from fem.pair.bodies import Compliance
+    from fem.laws.mesh_setup import MeshSetup
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["MovedFlanks", "moved_flanks"]
 
@@ -131,7 +131,7 @@ class MovedFlanks:
             one.stiff + two.stiff,
         )
 
-    def edge_rho(self, flanks: LoadedFlanks, given: Setting, approach: Array) -> Array:
+    def edge_rho(self, flanks: LoadedFlanks, given: MeshSetup, approach: Array) -> Array:
         """Curvature radii at which tip edges touch pinion and wheel (2, ..., pairs) under a deflection (...) [m]."""
         where, pair, turned = flanks.where, given.pair, approach[..., None]
         rho = np.broadcast_to(where.rho[:, None], (2, *self.base.shape)) + 0.0 * turned
@@ -151,7 +151,7 @@ class MovedFlanks:
 
 
 def moved_flanks(
-    given: Setting, bodies: Compliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
+    given: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
 ) -> MovedFlanks:
     """Laws for contacts that move, from those for contacts that stay; arguments as for ``loaded_flanks``.
 

@@ -10,16 +10,16 @@ import numpy as np
 from base import Array, Booleans
 from fem.contact.cell_coupling import CellCoupling
 from fem.contact.cell_matrix import MOST_KEPT, cell_matrix, in_blocks
-from fem.influence.solved_gear import Gears
+from fem.influence.gear_store import GearStore
 from fem.pair.face_compliance import waves_of
 from fem.pair.face_setting import SLICES
-from fem.pair.overhang import cosines
+from fem.pair.unequal_widths import cosines
 
 if TYPE_CHECKING:
     from fem.contact.moving_contact import ContactMoves
     from fem.laws.contact_candidates import ContactCandidates
-    from fem.pair.bodies import Compliance
     from fem.pair.face_setting import FaceSetting
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["cell_roll", "other_pairs", "tooth_smoothing"]
 
@@ -28,7 +28,7 @@ STEP = 1e-3
 
 
 def cell_roll(
-    face: FaceSetting, bodies: Compliance, where: ContactCandidates, moves: ContactMoves
+    face: FaceSetting, bodies: PairCompliance, where: ContactCandidates, moves: ContactMoves
 ) -> CellCoupling:
     """C' between cells of pairs that may touch [1/N], kept for loads and alignments that follow."""
     held = replace(face, strip=0.0)  # which does not change with the place
@@ -57,7 +57,7 @@ def cell_roll(
 
     if np.sum((where.touchable.sum(axis=-1) * face.cells) ** 2) > MOST_KEPT:
         return cut()
-    return Gears().over_face("roll", key, cut)
+    return GearStore().over_face("roll", key, cut)
 
 
 def other_pairs(
@@ -88,7 +88,7 @@ def other_pairs(
     return CellCoupling(held.cells, tuple(blocks), held.unknowns)
 
 
-def tooth_smoothing(face: FaceSetting, bodies: Compliance, where: ContactCandidates) -> Array:
+def tooth_smoothing(face: FaceSetting, bodies: PairCompliance, where: ContactCandidates) -> Array:
     """S of each pair (positions, pairs, cells, cells): how the tilt of both its flanks follows the load.
 
     Slices tilt by their own load alone.
@@ -102,7 +102,7 @@ def tooth_smoothing(face: FaceSetting, bodies: Compliance, where: ContactCandida
     for gear, meshed, motion, place in gears:
         rho = np.where(where.touchable, np.clip(place, *motion.rho_range), motion.rho_range[0])
         lever, at = gear.base_radius / rho, rho / pair.module
-        waves = waves_of(meshed, Gears())
+        waves = waves_of(meshed, GearStore())
         slope = (waves.own_at(at + step, wave) - waves.own_at(at - step, wave)) / (2 * step * pair.module)
         even = gear.own_slope(rho) * lever
         slow += even

@@ -15,22 +15,22 @@ from fem.contact.face_share import FaceShare, of_pairs, settled_gaps
 from fem.contact.moving_cells import MovingCells
 from fem.contact.moving_coupling import cell_roll, other_pairs, tooth_smoothing
 from fem.contact.moving_newton import moved_forces
-from fem.contact.part_cells import PartCells, part_cells
+from fem.contact.partial_cells import PartialCells, partial_cells
 from fem.pair.face_shafts import joined, shafts_under_face
 
 if TYPE_CHECKING:
     from fem.contact.loaded_flanks import LoadedFlanks
     from fem.contact.moving_contact import MovingPairs
-    from fem.laws.setting import Setting
-    from fem.pair.bodies import Compliance
+    from fem.laws.mesh_setup import MeshSetup
+    from fem.pair.pair_compliance import PairCompliance
     from gears import LoadShare
 
 __all__ = ["moved_over_face", "moving_cells"]
 
 
 def moved_over_face(
-    given: Setting,
-    bodies: Compliance,
+    given: MeshSetup,
+    bodies: PairCompliance,
     whole: Array,
     flanks: LoadedFlanks,
     kappa: Array,
@@ -41,8 +41,8 @@ def moved_over_face(
 
     Parameters
     ----------
-    given : Setting
-    bodies : Compliance
+    given : MeshSetup
+    bodies : PairCompliance
     whole : (torques, 1, 1) array
         Torques over the base radius [N].
     flanks : LoadedFlanks
@@ -116,8 +116,8 @@ def _found(cells: MovingCells, whole: Array, near: Array) -> LoadShare | None:
 
 
 def moving_cells(
-    given: Setting,
-    bodies: Compliance,
+    given: MeshSetup,
+    bodies: PairCompliance,
     flanks: LoadedFlanks,
     kappa: Array,
     pairs: MovingPairs,
@@ -142,12 +142,12 @@ def moving_cells(
     flat, short = (*along.shape[:-2], -1), rise.reshape(*rise.shape[:-2], -1)
     clear = (pairs.clear[..., None] + along).reshape(*pairs.clear.shape[:-1], -1) - short
     stiff = cell_coupling(face, bodies, where, flanks.kappa, flanks.matrix)
-    stays = part_cells(CellLaws(flanks.laws, face.cells), stiff, short)
+    stays = partial_cells(CellLaws(flanks.laws, face.cells), stiff, short)
     return MovingCells(
         face.cells,
         other_pairs(stiff, where.touchable, flanks.kappa / kappa, flanks.matrix, pairs.bulk),
         cell_roll(face, bodies, where, pairs.moves),
-        PartCells(CellLaws(pairs.laws, face.cells), short, stays.whole),
+        PartialCells(CellLaws(pairs.laws, face.cells), short, stays.whole),
         None if pairs.film is None else CellLaws(pairs.film, face.cells),
         np.where(touchable, clear, 0.0),
         along.reshape(flat),

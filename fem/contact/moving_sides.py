@@ -30,8 +30,8 @@ from gears import LoadShare
 if TYPE_CHECKING:
     from fem.laws.edge_tables import EdgeTables
     from fem.laws.local_law import Film
-    from fem.laws.setting import Setting
-    from fem.pair.bodies import Compliance
+    from fem.laws.mesh_setup import MeshSetup
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["BothMoved", "MovedSide", "MovingSides", "both_moved", "moved_side", "moving_sides"]
 
@@ -68,7 +68,7 @@ class MovedSide:
 
 
 def moved_side(
-    given: Setting, bodies: Compliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
+    given: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
 ) -> MovedSide:
     """Flanks of one side with contacts that move; arguments as for ``loaded_flanks``."""
     where, kappa, levers = flanks.where, flanks.kappa, flanks.levers
@@ -171,7 +171,7 @@ class MovingSides:
         )
 
 
-def moving_sides(given: Setting, bodies: Compliance, front: MovedSide, back: MovedSide) -> MovingSides:
+def moving_sides(given: MeshSetup, bodies: PairCompliance, front: MovedSide, back: MovedSide) -> MovingSides:
     """Put both sides together; the setting is that of the loaded one."""
     step, turn = STEP * given.pair.module, np.array([1.0, 0.0])[:, None, None]
     levers = (front.flanks.kappa / front.kappa)[:, :, None] * (back.flanks.kappa / back.kappa)[:, None, :]
@@ -270,8 +270,8 @@ class BothMoved:
 
 
 def both_moved(
-    given: Setting,
-    bodies: Compliance,
+    given: MeshSetup,
+    bodies: PairCompliance,
     force: Array,
     film: Film | None,
     flanks: LoadedFlanks,

@@ -21,12 +21,12 @@ from fem.contact.loaded_flanks import FlanksInPlace, LoadedFlanks, hub_lever, lo
 from fem.laws.contact_candidates import ContactCandidates
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.local_law import Film
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from gears import LoadShare
 from gears.tooth.errors import LoadSharingError
 
 if TYPE_CHECKING:
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
     from gears.sharing.load_sharing import DeflectionLaw
 
 __all__ = ["BothSides", "OppositeFlanks", "OppositeShare", "between", "both_sides", "share_with_opposite"]
@@ -159,7 +159,7 @@ class _Joined:
 
 
 def across(
-    bodies: Compliance, front: ContactCandidates, back: ContactCandidates, before: bool = False
+    bodies: PairCompliance, front: ContactCandidates, back: ContactCandidates, before: bool = False
 ) -> Array:
     """Compliance between contacts of front and back flanks (positions, front pairs, back pairs) [m/N].
 
@@ -225,7 +225,11 @@ class BothSides:
 
 
 def between(
-    given: Setting, bodies: Compliance, flanks: FlanksInPlace, other: FlanksInPlace, before: bool = False
+    given: MeshSetup,
+    bodies: PairCompliance,
+    flanks: FlanksInPlace,
+    other: FlanksInPlace,
+    before: bool = False,
 ) -> Array:
     """Compliance between the loaded flanks and the others, for F' = kappa F (positions, pairs, others) [m/N]."""
     front, back = (other, flanks) if given.back else (flanks, other)
@@ -235,7 +239,9 @@ def between(
     return np.swapaxes(found, 1, 2) if given.back else found
 
 
-def both_sides(given: Setting, bodies: Compliance, flanks: LoadedFlanks, other: LoadedFlanks) -> BothSides:
+def both_sides(
+    given: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, other: LoadedFlanks
+) -> BothSides:
     """Put the loaded flanks of a setting and the others together."""
     count, more = len(flanks.where.offset), len(other.where.offset)
     matrix = np.zeros((given.positions, count + more, count + more))
@@ -266,8 +272,8 @@ def _lost(both: BothSides, force: Array) -> bool:
 
 
 def share_with_opposite(
-    given: Setting,
-    bodies: Compliance,
+    given: MeshSetup,
+    bodies: PairCompliance,
     force: Array,
     film: Film | None,
     flanks: LoadedFlanks,

@@ -12,13 +12,13 @@ import numpy as np
 from base import Array
 
 if TYPE_CHECKING:
-    from fem.cycle.cycle import MeshCycle
-    from fem.pair.bodies import Compliance
+    from fem.cycle.result import MeshCycle
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["deflection_parts"]
 
 
-def deflection_parts(cycle: MeshCycle, bodies: Compliance) -> Mapping[str, Array]:
+def deflection_parts(cycle: MeshCycle, bodies: PairCompliance) -> Mapping[str, Array]:
     """Parts of the deflection against the bores at every position, which add up to it (n,) [m].
 
     For every loaded pair D = sum_j B_ij F_j + Hertz(F_i) + gap_i; weighted by the shares of the load these are as
@@ -29,7 +29,7 @@ def deflection_parts(cycle: MeshCycle, bodies: Compliance) -> Mapping[str, Array
     Parameters
     ----------
     cycle : MeshCycle
-    bodies : Compliance
+    bodies : PairCompliance
         That it was computed with.
 
     Returns

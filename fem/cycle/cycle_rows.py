@@ -9,7 +9,7 @@ import numpy as np
 from base import Faults, Limit
 
 if TYPE_CHECKING:
-    from fem.cycle.cycle import MeshCycle
+    from fem.cycle.result import MeshCycle
 
 __all__ = ["check_row", "require_row"]
 

@@ -10,12 +10,12 @@ import numpy as np
 from base import Array, SolverError
 from fem.contact.face_errors import half_as_many
 from fem.contact.face_share import yielding_over_face
-from fem.contact.sharing import Solution, solve
+from fem.contact.solver import ContactState, solve_contact
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.local_law import Film, film_yielding
+from fem.laws.mesh_setup import MeshSetup
 from fem.laws.relieved_flanks import ends_of_flanks, starts_of_relief
-from fem.laws.setting import Setting
-from fem.pair.bodies import Compliance
+from fem.pair.pair_compliance import PairCompliance
 from gears.sharing.arcs import Arcs
 from gears.sharing.events import Division, Sampled, Sampler, arcs_alike, arcs_between_events
 from gears.sharing.mesh_figures import CURVES, FewerCells, MeshArcs, Scatter
@@ -38,8 +38,8 @@ class ContactProblem:
 
     Attributes
     ----------
-    given : Setting
-    bodies : Compliance
+    given : MeshSetup
+    bodies : PairCompliance
     force : float
         Torque over the pinion's base radius [N], negative where back flanks bear.
     film : Film or None
@@ -61,8 +61,8 @@ class ContactProblem:
         Relative, of stiffness and deflection by free ends of the face.
     """
 
-    given: Setting
-    bodies: Compliance
+    given: MeshSetup
+    bodies: PairCompliance
     force: float
     film: Film | None = None
     tolerance: float = 1e-3
@@ -102,12 +102,14 @@ class ContactProblem:
         """Arcs and events on the mesh in use alone."""
         return self._divided(self.bodies)
 
-    def _sampler(self, bodies: Compliance) -> Sampler:
+    def _sampler(self, bodies: PairCompliance) -> Sampler:
         known = self.tables
         tables = EdgeTables(self.given, bodies) if known is None else known.serving(bodies)
 
         def sample(position: Array) -> Sampled:
-            found = solve(self.given.at(position), bodies, np.array([abs(self.force)]), self.film, tables)
+            found = solve_contact(
+                self.given.at(position), bodies, np.array([abs(self.force)]), self.film, tables
+            )
             if why := found.refusal(0):
                 raise SolverError(f"between the positions of the mesh cycle {why}")
             reserve = _reserve(found, abs(self.force), self.given)
@@ -115,17 +117,17 @@ class ContactProblem:
 
         return sample
 
-    def _alike(self, bodies: Compliance, known: Division) -> Arcs:
+    def _alike(self, bodies: PairCompliance, known: Division) -> Arcs:
         """Arcs with another mesh, whose events are close to those that are known, but for a very near miss."""
         found = arcs_alike(self._sampler(bodies), NAMES, known, self.given.pitches)
         return self._divided(bodies).arcs if found is None else found
 
-    def _divided(self, bodies: Compliance) -> Division:
+    def _divided(self, bodies: PairCompliance) -> Division:
         """Arcs with a mesh."""
         sample, tolerance = self._sampler(bodies), SAMPLING * self.tolerance
         return arcs_between_events(sample, NAMES, self._corners(bodies), self.given.pitches, tolerance)
 
-    def _corners(self, bodies: Compliance) -> Array:
+    def _corners(self, bodies: PairCompliance) -> Array:
         """Corners of the geometry, and places near the tips that part what the compliance does there.
 
         Nearer to a tip corner than its fit goes, a flank's compliance stays the same; up to there it grows as a
@@ -149,7 +151,7 @@ class ContactProblem:
         film = np.zeros(0) if self.corners is None else self.corners
         return self.given.seen(np.concatenate([self.given.corners, more, film]))
 
-    def _pairs(self, found: Solution) -> Array | None:
+    def _pairs(self, found: ContactState) -> Array | None:
         """Share, normal force, places and line loads of every pair (positions, pairs, kinds), as of `arcs.Arc`.
 
         None without a torque to share.
@@ -164,7 +166,7 @@ class ContactProblem:
         cells = found.face.forces[0, 0] / found.kappa[..., None]
         return np.concatenate([whole, cells * cells.shape[-1] / self.given.pair.face_width], axis=-1)
 
-    def _curves(self, found: Solution) -> Array:
+    def _curves(self, found: ContactState) -> Array:
         """Transmission error, tangent and secant stiffness, moments and their slopes (7, positions)."""
         share, where, turned = found.share, found.where, found.share.forces[0, 0]
         size, deflection = abs(self.force), found.deflection(0)[0]
@@ -235,7 +237,7 @@ def _less(curves: Array, force: float, turn: Array, pressed: bool) -> Array:
     return np.stack([moved - shift, tangent / slope, secant, *moments, *(slopes / slope)])
 
 
-def _reserve(found: Solution, force: float, given: Setting) -> Array:
+def _reserve(found: ContactState, force: float, given: MeshSetup) -> Array:
     """Reserves of contacts by force or gap, and of the nearest pair by its lead over the next one.
 
     Which pair is nearest without load changes between pairs on the path only where flanks deviate.

@@ -11,14 +11,14 @@ from base import Array, described, part, quantity, record
 from base.results import EXACT
 from fem.contact.face_errors import face_load_factors
 from fem.cycle.face_cells import IN_SINGLE_CELLS, FaceCells
-from fem.elasticity.elasticity import reduced_modulus
+from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.pair.face_setting import FaceSetting
 from gears.pair.hertz import peak_pressure
 
 if TYPE_CHECKING:
     from fem.contact.face_share import FaceShare
-    from fem.contact.sharing import Solution
-    from fem.laws.setting import Setting
+    from fem.contact.solver import ContactState
+    from fem.laws.mesh_setup import MeshSetup
 
 __all__ = ["FaceLoads", "face_loads"]
 
@@ -144,13 +144,13 @@ class FaceLoads(FaceCells):
         return float(np.mean(np.any(self.line_load > 0.0, axis=(0, 1))))
 
 
-def face_loads(given: Setting, contact: Solution, number: int, plane: str) -> FaceLoads | None:
+def face_loads(given: MeshSetup, contact: ContactState, number: int, plane: str) -> FaceLoads | None:
     """Line loads of one torque of a solution; None where the face has no cells.
 
     Parameters
     ----------
-    given : Setting
-    contact : Solution
+    given : MeshSetup
+    contact : ContactState
     number : int
         Of the torque.
     plane : {"strain", "stress"}
@@ -180,7 +180,7 @@ def face_loads(given: Setting, contact: Solution, number: int, plane: str) -> Fa
     )
 
 
-def _shafts(given: Setting, over: FaceShare, number: int) -> dict[str, Any]:
+def _shafts(given: MeshSetup, over: FaceShare, number: int) -> dict[str, Any]:
     """What the shafts do, as fields of the record."""
     if over.shafts is None:
         return {"shaft_misalignment": np.zeros((2, over.bent(number).size))}

@@ -10,15 +10,15 @@ import numpy as np
 from base import Array, record
 from fem.contact.loaded_flanks import loaded_flanks
 from fem.contact.moving_contact import ContactMoves, contact_moves, model_error
-from fem.contact.sharing import one_sided, solve
+from fem.contact.solver import solve_contact, solve_one_side
 from fem.laws.contact_candidates import REACHES
 from fem.laws.edge_tables import EdgeTables
 from fem.pair.references import held_turns
 
 if TYPE_CHECKING:
     from fem.laws.contact_candidates import ContactCandidates
-    from fem.laws.setting import Setting
-    from fem.pair.bodies import Compliance
+    from fem.laws.mesh_setup import MeshSetup
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["LoadedContacts"]
 
@@ -29,8 +29,8 @@ class LoadedContacts:
 
     Attributes
     ----------
-    given : Setting
-    bodies : Compliance
+    given : MeshSetup
+    bodies : PairCompliance
     where : ContactCandidates
     force : (..., pairs) array, or (cells, ..., pairs) array
         Forces times their levers over the base radius [N]; of whole faces at the line loads of the cells.
@@ -42,8 +42,8 @@ class LoadedContacts:
         The flanks on the other side and their forces, where they bear.
     """
 
-    given: Setting
-    bodies: Compliance
+    given: MeshSetup
+    bodies: PairCompliance
     where: ContactCandidates
     force: Array
     approach: Array
@@ -92,10 +92,10 @@ class LoadedContacts:
             given = replace(self.given, moving_contact=moving, pitches=1, both=both)
             tables = EdgeTables(given, self.bodies)
             if both:
-                solution = solve(given, self.bodies, force, None, tables)
+                solution = solve_contact(given, self.bodies, force, None, tables)
             else:
                 flanks = loaded_flanks(given, self.bodies, None, REACHES[0], float(force[0]), tables)
-                solution = one_sided(given, self.bodies, force, flanks, tables)
+                solution = solve_one_side(given, self.bodies, force, flanks, tables)
             if not solution.settled:
                 return 1.0
             found.append(solution.share)

@@ -8,7 +8,7 @@ from base import Array, described
 from base.results import EXACT
 from fem.contact.opposite_flanks import OppositeFlanks
 from fem.cycle.face_loads import FaceLoads
-from fem.elasticity.elasticity import reduced_modulus
+from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.laws.contact_candidates import ContactCandidates
 from gears import GearPair, half_width, peak_pressure
 

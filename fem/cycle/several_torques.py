@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, overload
 import numpy as np
 
 from base import Array, Faults
-from fem.cycle.cycle import MeshCycle
+from fem.cycle.result import MeshCycle
 from fem.pair.checked import check_pair, numbers_of
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Integers, record
-from fem.elasticity.elasticity import MIRROR, PlaneElasticity
+from fem.elasticity.plane_elasticity import MIRROR, PlaneElasticity
 from meshes import SectorMesh
 
 if TYPE_CHECKING:

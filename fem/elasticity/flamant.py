@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 
 from base import Array
-from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.plane_elasticity import PlaneElasticity
 
 __all__ = [
     "displacement",

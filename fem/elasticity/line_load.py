@@ -17,8 +17,8 @@ import numpy as np
 
 from base import Array, Fault, InputError, Integers, record
 from fem.elasticity import flamant
-from fem.elasticity.edge_work import LineForces, edge_points, nodal, traction_integrals
 from fem.elasticity.ring import Ring
+from fem.elasticity.singular_tractions import LineForces, edge_points, nodal, traction_integrals
 from meshes import SectorMesh
 from meshes.sector import STEPS
 

@@ -6,8 +6,8 @@ With the triangles' shape functions N over the section and any functions psi ove
 
 the energy of the solid needs no more of the section than the integrals
 
-    K_(ia)(jb) of plane strain (``fem.elasticity.elasticity``), M_ij = Int N_i N_j, L_ij = Int grad N_i . grad N_j,
-    D_iaj = Int d_a N_i N_j ,
+    K_(ia)(jb) of plane strain (``fem.elasticity.plane_elasticity``), M_ij = Int N_i N_j,
+    L_ij = Int grad N_i . grad N_j,  D_iaj = Int d_a N_i N_j ,
 
 and no more of the face than products of psi, phi and their derivatives:
 
@@ -26,10 +26,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Integers, record, unclocked
-from fem.elasticity.chain import RingOfLinks, ring_of_links
 from fem.elasticity.condensation import Condensation, condensation
-from fem.elasticity.elasticity import INTEGRATION, PlaneElasticity, element_matrices, physical_gradients
+from fem.elasticity.cyclic_structure import CyclicStructure, cyclic_structure
 from fem.elasticity.line_load import FlankPoints
+from fem.elasticity.plane_elasticity import INTEGRATION, PlaneElasticity, element_matrices, physical_gradients
 from fem.elasticity.ring import held_and_cut, polar_components
 from meshes.triangle import shape
 
@@ -160,7 +160,7 @@ class Prism:
     condensed : Condensation
     polar : (cut, cut) sparse matrix
         From polar to Cartesian components on the cuts.
-    links : RingOfLinks
+    links : CyclicStructure
         The closed ring, in polar components.
     """
 
@@ -170,7 +170,7 @@ class Prism:
     inner: Integers
     condensed: Condensation
     polar: csc_array
-    links: RingOfLinks
+    links: CyclicStructure
 
     def influence(self, at: FlankPoints, reach: int) -> tuple[Array, Array]:
         """Displacements along line loads psi(z) at places of tooth 0, by nodal forces that stand for the loads.
@@ -251,5 +251,5 @@ def prism(over: Section, face: Face) -> Prism:
     stiffness = polar.T @ (polar.T @ condensed.stiffness).T
     nodes = np.setdiff1d(np.arange(len(mesh.points)), np.concatenate([cut, hub]))
     inner = (n * nodes[:, None] + np.arange(n)).ravel()
-    links = ring_of_links(0.5 * (stiffness + stiffness.T), mesh.teeth)
+    links = cyclic_structure(0.5 * (stiffness + stiffness.T), mesh.teeth)
     return Prism(mesh, psi, phi, inner, condensed, polar, links)

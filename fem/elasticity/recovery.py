@@ -15,8 +15,8 @@ import numpy as np
 
 from base import Array, Integers, record
 from fem.elasticity import flamant
-from fem.elasticity.elasticity import PlaneElasticity, nodal_stress_matrix
 from fem.elasticity.fillet import GAUSS, edge_strain_matrix, local_cubic
+from fem.elasticity.plane_elasticity import PlaneElasticity, nodal_stress_matrix
 from meshes import SectorMesh
 
 if TYPE_CHECKING:

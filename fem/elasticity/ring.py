@@ -2,8 +2,9 @@
 
 All sectors of a gear are copies of one another. The sector's stiffness matrix is factorised once, its inner
 unknowns are condensed onto the two cuts to its neighbours (``fem.elasticity.condensation``), and the ring of z such
-sectors, in polar components, is closed by ``fem.elasticity.chain``. The result is that of the whole annulus with the
-same elements in every sector, to rounding. Where a web is thinner than the face its elements are softer in proportion.
+sectors, in polar components, is closed by ``fem.elasticity.cyclic_structure``. The result is that of the whole
+annulus with the same elements in every sector, to rounding. Where a web is thinner than the face its elements are
+softer in proportion.
 
 Notation: sector j (counted anticlockwise) lies between interface j on its right and interface j + 1 on its
 left; the hub (bore) is held.
@@ -18,9 +19,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Cost, Integers, Stopwatch, record, unclocked
-from fem.elasticity.chain import RingOfLinks, ring_of_links
 from fem.elasticity.condensation import Condensation, condensation, unknowns_of
-from fem.elasticity.elasticity import PlaneElasticity, element_matrices
+from fem.elasticity.cyclic_structure import CyclicStructure, cyclic_structure
+from fem.elasticity.plane_elasticity import PlaneElasticity, element_matrices
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
@@ -49,7 +50,7 @@ class Ring:
         From polar to Cartesian components on the cuts.
     schur : (cut, cut) array
         Stiffness of the sector as seen from its cuts, polar components.
-    links : RingOfLinks
+    links : CyclicStructure
         The closed ring, in polar components of the cuts.
     cost : Cost
         Of assembly, factorisation and condensation.
@@ -64,7 +65,7 @@ class Ring:
     by_border: csc_array
     polar: csc_array
     schur: Array
-    links: RingOfLinks
+    links: CyclicStructure
     cost: Cost
 
     @property
@@ -133,7 +134,7 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
     polar = polar_components(mesh.points[cut_nodes])
     schur = polar.T @ (polar.T @ condensed.stiffness).T
     schur = 0.5 * (schur + schur.T)
-    links = ring_of_links(schur, mesh.teeth)
+    links = cyclic_structure(schur, mesh.teeth)
     seconds = watch.seconds
     return Ring(
         mesh,

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base import Array, Integers, quantity, record
-from fem.cycle.cycle import MeshCycle
 from fem.cycle.cycle_rows import require_row
-from fem.elasticity.elasticity import MIRROR
-from fem.fields.fields import contact_half_width, of_axis
-from gears.tooth.plane import turned
+from fem.cycle.result import MeshCycle
+from fem.elasticity.plane_elasticity import MIRROR
+from fem.fields.stress_fields import contact_half_width, of_axis
+from gears.tooth.rotation import turned
 
 if TYPE_CHECKING:
     from gears import GearPair

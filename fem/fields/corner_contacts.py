@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem.cycle.cycle import MeshCycle
+from fem.cycle.result import MeshCycle
 from fem.elasticity import flamant
-from fem.elasticity.elasticity import reduced_modulus
 from fem.elasticity.line_load import flank_points
+from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.elasticity.ring import Ring
 from fem.elasticity.support import held_profiles
 from fem.fields.near_field import Contact
 from fem.fields.tip_sector import tip_sector
 from fem.laws.tip_pressure import TipPressure, tip_pressure
-from fem.pair.bodies import Compliance
+from fem.pair.pair_compliance import PairCompliance
 
 if TYPE_CHECKING:
     from gears import ToothProfile
@@ -31,7 +31,9 @@ UNBOUNDED, LEAST_UNRESOLVED = 1.2, 0.01
 [modules] up to which they are."""
 
 
-def near_corner(cycle: MeshCycle, row: int, column: int, half_width: float, bodies: Compliance) -> int | None:
+def near_corner(
+    cycle: MeshCycle, row: int, column: int, half_width: float, bodies: PairCompliance
+) -> int | None:
     """Gear whose corner presses or cuts off the pressure; None where it does neither, or its law is another."""
     for corner, gear in enumerate((bodies.pinion, bodies.wheel)):
         rho = cycle.flank_rho[corner][row, column]
@@ -42,7 +44,7 @@ def near_corner(cycle: MeshCycle, row: int, column: int, half_width: float, bodi
 
 
 def corner_contact(
-    cycle: MeshCycle, row: int, column: int, bodies: Compliance, ring: Ring, gear: int, corner: int
+    cycle: MeshCycle, row: int, column: int, bodies: PairCompliance, ring: Ring, gear: int, corner: int
 ) -> Contact:
     """Contact on one gear, by the strips that bear.
 
@@ -51,7 +53,7 @@ def corner_contact(
     cycle : MeshCycle
     row, column : int
         Of the cycle.
-    bodies : Compliance
+    bodies : PairCompliance
     ring : Ring
         Of the gear.
     gear, corner : {0, 1}
@@ -81,7 +83,7 @@ def _unresolved(pressure: TipPressure, hertz: float, module: float) -> float:
 
 
 def _on_corner(
-    tooth: int, ring: Ring, profile: ToothProfile, bodies: Compliance, pressure: TipPressure
+    tooth: int, ring: Ring, profile: ToothProfile, bodies: PairCompliance, pressure: TipPressure
 ) -> Contact:
     """Contact on the gear with the corner: its resultant on the ring, its strips on a separate sector."""
     middle = np.sqrt(profile.flank_rho[1] ** 2 - 2 * profile.base_radius * pressure.mean(pressure.distance))
@@ -94,7 +96,7 @@ def _on_corner(
 
 
 def _on_flank(
-    tooth: int, ring: Ring, profile: ToothProfile, bodies: Compliance, pressure: TipPressure
+    tooth: int, ring: Ring, profile: ToothProfile, bodies: PairCompliance, pressure: TipPressure
 ) -> Contact:
     """Contact on the gear whose flank the corner touches: the strips' pressure on a half-plane."""
     arc = pressure.touched**2 / (2 * profile.base_radius)

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Fault, Faults, InputError, Limit, replacing
-from fem.cycle.contact import mesh_cycle
+from fem.cycle.mesh_cycle import mesh_cycle
 from fem.fields.loaded_gears import LoadedGear, loaded_gears, placed_gears
-from fem.pair.bodies import Compliance
+from fem.pair.pair_compliance import PairCompliance
 from meshes.abaqus import mesh_text, number
 from meshes.exchange import FORMATS as OF_MESHIO
 from meshes.exchange import write_blocks, write_by_meshio
@@ -206,7 +206,7 @@ def export_position(
     torque: float,
     position: float,
     form: str = "inp",
-    compliance: Compliance | None = None,
+    compliance: PairCompliance | None = None,
     plane: str = "strain",
     refinements: int = 1,
 ) -> tuple[Path, ...]:
@@ -222,7 +222,7 @@ def export_position(
         Base pitches from A, 0 to 1, of the pair that entered last; the nearest of 500 midpoints is taken.
     form : str
         As of `export_pair`.
-    compliance : Compliance, optional
+    compliance : PairCompliance, optional
         Of this pair; computed in ``plane`` unless given.
     plane : {"strain", "stress"}
     refinements : int

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Faults, Integers, quantity, record
-from fem.cycle.cycle import MeshCycle
 from fem.cycle.cycle_rows import check_row
+from fem.cycle.result import MeshCycle
 from fem.fields.face_waves import BESIDE, FaceWaves, GearPrisms, gear_prisms, on_flank
 from fem.fields.flank_patches import FlankField, FlankPatch, Place, joined
 from fem.fields.loaded_gears import frames
 
 if TYPE_CHECKING:
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
     from gears import GearPair
 
 __all__ = ["FaceField", "ToothField", "face_fields"]
@@ -56,7 +56,7 @@ def face_fields(
     pair: GearPair,
     cycle: MeshCycle,
     row: int,
-    bodies: Compliance,
+    bodies: PairCompliance,
     prisms: tuple[GearPrisms, GearPrisms] | None = None,
 ) -> tuple[FaceField, FaceField]:
     """Teeth and flanks of pinion and wheel at one position of a mesh cycle with cells of the face.
@@ -68,7 +68,7 @@ def face_fields(
         With cells.
     row : int
         Of the cycle.
-    bodies : Compliance
+    bodies : PairCompliance
         The one that the cycle was computed with.
     prisms : tuple of GearPrisms, optional
         Of ``gear_prisms``, to save time over several positions.
@@ -91,7 +91,7 @@ def face_fields(
 
 
 def _face_field(
-    pair: GearPair, cycle: MeshCycle, row: int, bodies: Compliance, gear: int, ready: GearPrisms
+    pair: GearPair, cycle: MeshCycle, row: int, bodies: PairCompliance, gear: int, ready: GearPrisms
 ) -> FaceField:
     module, flexible = pair.module, (bodies.pinion, bodies.wheel)[gear]
     loaded = np.flatnonzero(cycle.forces[row] > 0.0)

@@ -6,24 +6,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem.cycle.cycle import MeshCycle
+from fem.cycle.result import MeshCycle
 from fem.fields.face_fields import FaceField, ToothField, face_fields
-from fem.fields.fields import of_axis
 from fem.fields.flank_patches import FlankField
 from fem.fields.grids import rounded, single_precision
-from fem.pair.pair_compliance import compliance as _compliance
+from fem.fields.stress_fields import of_axis
+from fem.pair.compliance import compliance as _compliance
 
 if TYPE_CHECKING:
     import pyvista
 
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
     from gears import GearPair
 
 __all__ = ["face_blocks", "face_grids"]
 
 
 def face_blocks(
-    pair: GearPair, cycle: MeshCycle, row: int, compliance: Compliance | None = None
+    pair: GearPair, cycle: MeshCycle, row: int, compliance: PairCompliance | None = None
 ) -> pyvista.MultiBlock:
     """Teeth and flanks of both gears at one position, as named blocks of pyvista.
 
@@ -31,7 +31,7 @@ def face_blocks(
     ----------
     pair, cycle, row
         As of `fem.fields.face_fields.face_fields`.
-    compliance : Compliance, optional
+    compliance : PairCompliance, optional
         The one that the cycle was computed with.
 
     Returns

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Integers, record
-from fem.cycle.cycle import MeshCycle
+from fem.cycle.result import MeshCycle
 from fem.elasticity.line_load import FlankPoints, flank_points
 from fem.elasticity.prism import Face, Prism, prism
 from fem.influence.face_ends import EndFields, end_fields
@@ -29,7 +29,7 @@ from meshes import SectorMesh
 from meshes.outline import Sizes
 
 if TYPE_CHECKING:
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
     from gears import GearPair
 
 __all__ = ["BESIDE", "FaceWaves", "GearPrisms", "gear_prisms", "layers_of", "on_flank"]
@@ -82,12 +82,12 @@ class GearPrisms:
         return found
 
 
-def gear_prisms(bodies: Compliance, cycle: MeshCycle) -> tuple[GearPrisms, GearPrisms]:
+def gear_prisms(bodies: PairCompliance, cycle: MeshCycle) -> tuple[GearPrisms, GearPrisms]:
     """Factorise both gears for waves along the face, on a coarse mesh; with free ends if its cells have these.
 
     Parameters
     ----------
-    bodies : Compliance
+    bodies : PairCompliance
     cycle : MeshCycle
         With cells.
     """
@@ -100,7 +100,7 @@ def layers_of(pair: GearPair, cells: int) -> Array:
     return np.asarray(np.linspace(-0.5, 0.5, min(LAYERS, cells) + 1) * pair.face_width)
 
 
-def _gear_prisms(bodies: Compliance, cycle: MeshCycle, gear: int) -> GearPrisms:
+def _gear_prisms(bodies: PairCompliance, cycle: MeshCycle, gear: int) -> GearPrisms:
     assert cycle.face is not None
     meshed, setting, pair = bodies.meshed[gear], cycle.face.setting, bodies.pair
     free = setting.model == FREE_ENDS

@@ -10,13 +10,13 @@ import numpy as np
 
 from base import Array, Integers, quantity, record
 from base.results import EXACT
-from fem.cycle.cycle import MeshCycle
-from fem.elasticity.elasticity import reduced_modulus
+from fem.cycle.result import MeshCycle
 from fem.elasticity.flank_samples import CORNER_CLEARANCE
 from fem.elasticity.line_load import FlankPoints
+from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.fields.face_waves import on_flank
 from gears.pair.hertz import half_width
-from gears.tooth.plane import turned
+from gears.tooth.rotation import turned
 from meshes import SectorMesh
 
 if TYPE_CHECKING:

@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Faults, record
-from fem.cycle.cycle import MeshCycle
 from fem.cycle.cycle_rows import check_row
-from fem.elasticity.elasticity import MIRROR, PlaneElasticity, reduced_modulus
+from fem.cycle.result import MeshCycle
 from fem.elasticity.flamant import hertz_half_width
 from fem.elasticity.flank_samples import CORNER_CLEARANCE
 from fem.elasticity.line_load import flank_points
-from gears.tooth.plane import turned
+from fem.elasticity.plane_elasticity import MIRROR, PlaneElasticity, reduced_modulus
+from gears.tooth.rotation import turned
 from meshes import GearMesh, SectorMesh, Sizes, gear_mesh, mesh_sector
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ import numpy as np
 
 from base import Array, record
 from fem.elasticity import flamant
-from fem.elasticity.elasticity import PlaneElasticity
 from fem.elasticity.line_load import FlankPoints
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.fields.tip_sector import TipSector
 
 __all__ = ["Contact", "near_field"]

@@ -15,8 +15,8 @@ from base import replacing
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fem.cycle.cycle import MeshCycle
-    from fem.fields.fields import GearField
+    from fem.cycle.result import MeshCycle
+    from fem.fields.stress_fields import GearField
     from gears import GearPair
 
 __all__ = ["STATE", "fillet_stress", "write_paraview_state"]
@@ -25,7 +25,7 @@ STATE = "paraview_state.py"
 """Name of the file, beside ``mesh_cycle.pvd``."""
 
 FILLET = 1
-"""Number of the cells between the root and the form circle in `fem.fields.fields.GearField.region`."""
+"""Number of the cells between the root and the form circle in `fem.fields.stress_fields.GearField.region`."""
 
 HALF_HEIGHT = 4.0
 """Of the view, in modules: a tooth of either gear above and below the pitch point, and the body under it."""

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Integers, record
-from fem.elasticity.elasticity import PlaneElasticity, stiffness_matrix
 from fem.elasticity.line_load import FlankPoints, flank_points
+from fem.elasticity.plane_elasticity import PlaneElasticity, stiffness_matrix
 from fem.elasticity.recovery import nodal_stress
 from fem.laws.tip_pressure import TipPressure
 from meshes import SectorMesh, Sizes, mesh_sector

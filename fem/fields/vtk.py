@@ -11,16 +11,16 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from base import replacing
-from fem.cycle.cycle import MeshCycle
+from fem.cycle.result import MeshCycle
 from fem.fields.contact_forces import ContactForces, contact_forces
 from fem.fields.drawing import GearDrawing
 from fem.fields.face_fields import face_fields
 from fem.fields.face_vtk import face_blocks, face_grids
 from fem.fields.face_waves import gear_prisms
-from fem.fields.fields import GearField, draw_gears, loaded_fields
 from fem.fields.grids import active, rounded, single_precision, write_grid
 from fem.fields.paraview_state import fillet_stress, write_paraview_state
-from fem.pair.bodies import Compliance
+from fem.fields.stress_fields import GearField, draw_gears, loaded_fields
+from fem.pair.pair_compliance import PairCompliance
 
 if TYPE_CHECKING:
     import pyvista
@@ -39,7 +39,7 @@ def field_blocks(
     pair: GearPair,
     cycle: MeshCycle,
     row: int,
-    compliance: Compliance | None = None,
+    compliance: PairCompliance | None = None,
     drawings: tuple[GearDrawing, GearDrawing] | None = None,
 ) -> pyvista.MultiBlock:
     """Fields of both gears and the contact forces at one position, as named blocks of pyvista.
@@ -47,7 +47,7 @@ def field_blocks(
     Parameters
     ----------
     pair, cycle, row, compliance, drawings
-        As of `fem.fields.fields.loaded_fields`.
+        As of `fem.fields.stress_fields.loaded_fields`.
 
     Returns
     -------
@@ -78,7 +78,7 @@ def write_vtk_series(
     folder: Path,
     pair: GearPair,
     cycle: MeshCycle,
-    bodies: Compliance,
+    bodies: PairCompliance,
     positions: Sequence[int] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:
@@ -93,7 +93,7 @@ def write_vtk_series(
         in view and colours up to the stress of the fillets.
     pair : gears.GearPair
     cycle : MeshCycle
-    bodies : Compliance
+    bodies : PairCompliance
         The one that the cycle was computed with.
     positions : sequence of int, optional
         Rows of the cycle; all of them unless given.
@@ -124,7 +124,7 @@ def write_vtk_series(
 
 
 def _even(
-    pair: GearPair, cycle: MeshCycle, bodies: Compliance, stresses: list[float]
+    pair: GearPair, cycle: MeshCycle, bodies: PairCompliance, stresses: list[float]
 ) -> Callable[[int], Mapping[str, Any]]:
     """Blocks of rows of a cycle that is even along the face; notes the stress of the fillets."""
     drawings = draw_gears(pair, bodies, min(bodies.refinements, PICTURE_REFINEMENTS))
@@ -137,7 +137,7 @@ def _even(
     return at
 
 
-def _uneven(pair: GearPair, cycle: MeshCycle, bodies: Compliance) -> Callable[[int], Mapping[str, Any]]:
+def _uneven(pair: GearPair, cycle: MeshCycle, bodies: PairCompliance) -> Callable[[int], Mapping[str, Any]]:
     """Blocks of rows of a cycle with cells of the face."""
     prisms = gear_prisms(bodies, cycle)
     return lambda row: face_grids(*face_fields(pair, cycle, row, bodies, prisms))

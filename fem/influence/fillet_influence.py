@@ -16,10 +16,10 @@ from numpy.polynomial import chebyshev
 
 from base import Array, Integers, record
 from fem.elasticity import flamant
-from fem.elasticity.elasticity import MIRROR, PlaneElasticity
 from fem.elasticity.fillet import FilletLine, fillet_line, fillet_stress_matrix
 from fem.elasticity.flank_samples import CORNER_CLEARANCE
 from fem.elasticity.line_load import LineLoads, flank_points, line_loads
+from fem.elasticity.plane_elasticity import MIRROR, PlaneElasticity
 from fem.elasticity.ring import Ring
 
 if TYPE_CHECKING:

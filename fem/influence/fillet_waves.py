@@ -17,9 +17,9 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from base import Array, record
-from fem.elasticity.elasticity import PlaneElasticity
 from fem.elasticity.fillet_strain import FilletStrain, fillet_strains
 from fem.elasticity.line_load import FlankPoints, flank_points
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.prism import Face, prism, section
 from fem.influence.gear_face import solved_waves
 

@@ -4,7 +4,7 @@ Per unit line load at rho, without the local field of the contact: t, the flank'
 towards the tip, and tau = (r_b/rho) (1/2) d own/d rho, the slope of its displacement into the gear along the flank
 towards the tip (half, since by Maxwell and Betti the place of the load and that of the displacement count alike).
 A contact that carries w has, with third-order energies per face width of gear and half-plane
-(``fem.elasticity.third_order``),
+(``fem.elasticity.nonlinear_energy``),
 
     U_3 = w^3 [sum (alpha + t tau + t^2/(2 rho)) + (R/2) (tau_1 - tau_2)^2] + w^3/a sum c + local
 
@@ -26,10 +26,10 @@ from numpy.polynomial import chebyshev
 
 from base import Array, record
 from fem.elasticity.line_load import flank_points, line_loads
-from fem.elasticity.third_order import third_order
+from fem.elasticity.nonlinear_energy import third_order
 
 if TYPE_CHECKING:
-    from fem.elasticity.elasticity import PlaneElasticity
+    from fem.elasticity.plane_elasticity import PlaneElasticity
     from fem.elasticity.ring import Ring
 
 __all__ = ["FlankMotion", "flank_motion"]
@@ -52,7 +52,7 @@ class FlankMotion:
     tangential_series : (n,) array
         Chebyshev coefficients of t [m per N/m].
     energy_series : (3, n) array
-        Of the gear's third-order integrals per load cubed and face width (``fem.elasticity.third_order``).
+        Of the gear's third-order integrals per load cubed and face width (``fem.elasticity.nonlinear_energy``).
     """
 
     rho_range: tuple[float, float]

@@ -2,10 +2,10 @@
 
 Per unit line load, u_r at the load (``own``) holds everything but the local indentation: bending, shear,
 root, body and hub. Near the tip corner it grows as a logarithm of the distance d from the corner, because a
-wedge yields more than a half-plane (``fem.elasticity.wedge``). That part is taken out before the rest is interpolated
-by Chebyshev polynomials. What is left of ``own`` begins as d ln d at the corner, close beyond the last load: it is a
-polynomial in the root of rho_end - rho, which moves that singularity away and brings loads close to it. Cross terms
-have no such part, and are fitted in rho itself.
+wedge yields more than a half-plane (``fem.elasticity.corner_singularity``). That part is taken out before the rest
+is interpolated by Chebyshev polynomials. What is left of ``own`` begins as d ln d at the corner, close beyond the
+last load: it is a polynomial in the root of rho_end - rho, which moves that singularity away and brings loads close
+to it. Cross terms have no such part, and are fitted in rho itself.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from base import Array, record
-from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.corner_singularity import corner_logarithm
 from fem.elasticity.flank_samples import FlankSamples
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.ring import Ring
-from fem.elasticity.wedge import corner_logarithm
 
 if TYPE_CHECKING:
     from gears import ToothProfile

@@ -15,21 +15,21 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from base import Array, record
-from fem.elasticity.elasticity import PlaneElasticity
 from fem.elasticity.flank_samples import sample_places
 from fem.elasticity.free_ends import FreeEnds, HalfFace, free_ends, half_face, over_cells
 from fem.elasticity.line_load import flank_points
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.prism import Face, Section, prism, section
 from fem.influence.gear_shape import MeshedShape
 from meshes.outline import Sizes
 
 __all__ = [
-    "EndsOverCells",
-    "FlankEnds",
-    "FlankWaves",
+    "AxialHarmonics",
+    "EndCorrection",
+    "EndCorrectionOfCells",
+    "axial_harmonics",
     "between_waves",
-    "flank_ends",
-    "flank_waves",
+    "end_correction",
     "section_of",
     "solved_waves",
 ]
@@ -45,7 +45,7 @@ ENDS_SIZES = Sizes(flank=0.3, fillet=0.35, root=0.4, corner=0.3, top=1.2, growth
 
 
 @record
-class FlankWaves:
+class AxialHarmonics:
     """What waves of line load along the face yield beyond such loads without a wave, in modules and E*.
 
     Attributes
@@ -137,7 +137,7 @@ def section_of(meshed: MeshedShape, sizes: Sizes, refinements: int) -> Section:
     return section(mesh_sector(meshed.shape.profile, sizes, refinements), _solid(meshed))
 
 
-def flank_waves(meshed: MeshedShape) -> FlankWaves:
+def axial_harmonics(meshed: MeshedShape) -> AxialHarmonics:
     """Solve a gear of module 1 and E* = 1 for waves along the face."""
     over = section_of(meshed, meshed.sizes, meshed.refinements)
     profile, reach = meshed.shape.profile, meshed.shape.reach
@@ -154,17 +154,17 @@ def flank_waves(meshed: MeshedShape) -> FlankWaves:
     by_root = np.linalg.inv(_by_root(rho, (low, high), end, PLACES))
     by_place = np.linalg.pinv(_by_place(rho, (low, high), 2 * PLACES // 3 + 1))
     series = np.einsum("kw,wrij,ai,bj->rabk", by_wave, cross, by_place, by_place, optimize=True)
-    return FlankWaves((low, high), end, by_root @ (by_wave @ own).T, series)
+    return AxialHarmonics((low, high), end, by_root @ (by_wave @ own).T, series)
 
 
 @record
-class FlankEnds:
+class EndCorrection:
     """What free ends add to the answer of one gear between walls, in modules and E*, by functions over half its face.
 
     Attributes
     ----------
     rho_range, rho_end
-        As of ``FlankWaves``.
+        As of ``AxialHarmonics``.
     half : HalfFace
     own : two arrays (places, psi, psi)
         Chebyshev coefficients over (rho_end - rho)^(1/2), of loads that are equal and opposite on both halves.
@@ -178,20 +178,22 @@ class FlankEnds:
     own: tuple[Array, Array]
     cross: tuple[Array, Array]
 
-    def over(self, edges: Array) -> EndsOverCells:
+    def over(self, edges: Array) -> EndCorrectionOfCells:
         """Put loads on cells between edges (cells + 1,), growing, from mid-face."""
         cross = over_cells(self.half, *self.cross, edges)
-        return EndsOverCells(self.rho_range, self.rho_end, over_cells(self.half, *self.own, edges), cross)
+        return EndCorrectionOfCells(
+            self.rho_range, self.rho_end, over_cells(self.half, *self.own, edges), cross
+        )
 
 
 @record
-class EndsOverCells:
+class EndCorrectionOfCells:
     """What free ends add between cells, in modules and E*: [module per E* module^2 of force].
 
     Attributes
     ----------
     rho_range, rho_end
-        As of ``FlankWaves``.
+        As of ``AxialHarmonics``.
     own : (places, cells, cells) array
         Chebyshev coefficients over (rho_end - rho)^(1/2).
     cross : (reach, places, places, cells, cells) array
@@ -217,7 +219,7 @@ class EndsOverCells:
         return np.asarray(np.tensordot(both, series, axes=1))
 
 
-def flank_ends(meshed: MeshedShape, face_width: float) -> FlankEnds:
+def end_correction(meshed: MeshedShape, face_width: float) -> EndCorrection:
     """Solve a gear of module 1 and E* = 1 with free ends; its face width in modules."""
     over, profile, reach = section_of(meshed, ENDS_SIZES, 0), meshed.shape.profile, meshed.shape.reach
     rho, end = sample_places(profile, END_PLACES), profile.flank_rho[1]
@@ -228,4 +230,4 @@ def flank_ends(meshed: MeshedShape, face_width: float) -> FlankEnds:
     by_place = np.linalg.pinv(_by_place(rho, ends, 2 * END_PLACES // 3 + 1))
     own = [np.einsum("ai,ipq->apq", by_root, one) for one in found.own]
     cross = [np.einsum("ai,bj,rijpq->rabpq", by_place, by_place, one, optimize=True) for one in found.cross]
-    return FlankEnds(ends, end, half, (own[0], own[1]), (cross[0], cross[1]))
+    return EndCorrection(ends, end, half, (own[0], own[1]), (cross[0], cross[1]))

@@ -12,7 +12,7 @@ from functools import partial
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
-from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from gears import BasicRack, Blank, Gear
 from gears.tooth.face import STRAIGHT
 

@@ -2,7 +2,7 @@
 
 By finite elements: half-plane plus regular part, which knows the free edge beyond the corner. Near the corner
 only the wedge is seen, whose answer is the same at every scale but for c_ab ln(scale), c_ab the tensor of
-``fem.elasticity.wedge.wedge_logarithms``.
+``fem.elasticity.corner_singularity.wedge_logarithms``.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, record
-from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.corner_singularity import corner_logarithm, wedge_logarithms
 from fem.elasticity.line_load import FlankPoints, flank_points, joined, line_loads
-from fem.elasticity.wedge import corner_logarithm, wedge_logarithms
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.influence.gear_compliance import hub_windup
 from fem.influence.strip_contact import flat_kernels
 

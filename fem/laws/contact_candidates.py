@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Booleans, Faults, Integers, record
+from fem.laws.mesh_setup import Deviations, MeshSetup
 from fem.laws.relieved_flanks import gentle, touch
-from fem.laws.setting import Deviations, Setting
 from fem.laws.tip_contact import nearest_gap
 from fem.laws.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_gap
 
@@ -84,7 +84,7 @@ class ContactCandidates:
         return (1, before), (0, self.edge & ~before)
 
 
-def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCandidates:
+def contact_candidates(given: MeshSetup, reach: float = REACHES[0]) -> ContactCandidates:
     """Candidates for contact at midpoints of equal intervals of each base pitch, and their unloaded gaps."""
     pair, positions = given.pair, given.positions
     start, end = given.ends
@@ -164,7 +164,7 @@ def contact_candidates(given: Setting, reach: float = REACHES[0]) -> ContactCand
     )
 
 
-def _reach_gap(given: Setting, reach: float) -> float:
+def _reach_gap(given: MeshSetup, reach: float) -> float:
     """Smaller gap of the two contacts at the ends of the reach; farther out gaps are larger."""
     start, end = given.ends
     apart = reach * given.pair.base_pitch
@@ -184,7 +184,7 @@ class _Edges:
     chamfered: Booleans
 
 
-def _edges(given: Setting, corner: int, place: Array) -> _Edges:
+def _edges(given: MeshSetup, corner: int, place: Array) -> _Edges:
     pair, rounding = given.pair, given.rounds[corner]
     radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
     touched = place if corner == 1 else pair.line_of_action - place
@@ -232,7 +232,7 @@ def unloaded_transmission_error(
     >>> unloaded_transmission_error(pair, positions=3)
     array([0., 0., 0.])
     """
-    given = Setting(pair, positions, beyond_path, deviations, pitches, first_teeth, tip_rounding)
+    given = MeshSetup(pair, positions, beyond_path, deviations, pitches, first_teeth, tip_rounding)
     found = Faults()
     given.check(found)
     found.raise_if_any()

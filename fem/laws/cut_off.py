@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fem.laws.contact_candidates import ContactCandidates
-    from fem.laws.setting import Setting
+    from fem.laws.mesh_setup import MeshSetup
     from fem.laws.tip_contact import Removed
     from fem.laws.tip_geometry import TipRound
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["cut_off", "cut_offs"]
 
@@ -60,8 +60,8 @@ BELOW, ABOVE = 16, 32
 
 
 def cut_offs(
-    given: Setting,
-    bodies: Compliance,
+    given: MeshSetup,
+    bodies: PairCompliance,
     where: ContactCandidates,
     force: float,
     slid: tuple[float, float] = (0.0, 0.0),
@@ -112,7 +112,7 @@ class _Relieved:
 
 
 def cut_off(
-    bodies: Compliance,
+    bodies: PairCompliance,
     corner: int,
     rho1: Array,
     at: Booleans,
@@ -125,7 +125,7 @@ def cut_off(
 
     Parameters
     ----------
-    bodies : Compliance
+    bodies : PairCompliance
     corner : {0, 1}
         The gear whose corner is near: 1 (the wheel) after A, 0 (the pinion) before E.
     rho1 : (n,) array
@@ -196,7 +196,7 @@ def cut_off(
     return CutOff(at, start + logs, fade[:, None] * quotient, fade[:, None] * slope)
 
 
-def _leaning(bodies: Compliance, corner: int, distance: Array, rho: Array, lean: Array) -> Array:
+def _leaning(bodies: PairCompliance, corner: int, distance: Array, rho: Array, lean: Array) -> Array:
     """What a gear yields more along a normal that leans from its involute's own [m per N/m], its turn left out."""
     gear, strips = (bodies.pinion, bodies.wheel)[corner], bodies.tips[corner]
     if not np.any(lean):
@@ -210,7 +210,7 @@ def _leaning(bodies: Compliance, corner: int, distance: Array, rho: Array, lean:
     return np.asarray(own - gear.hub_windup * (lever**2 - 1))
 
 
-def _reduced(bodies: Compliance) -> float:
+def _reduced(bodies: PairCompliance) -> float:
     return 2 / (1 / bodies.pinion.law.plane_modulus + 1 / bodies.wheel.law.plane_modulus)
 
 

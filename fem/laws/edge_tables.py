@@ -16,8 +16,8 @@ from fem.laws.tip_contact import edge_laws
 
 if TYPE_CHECKING:
     from fem.laws.contact_candidates import ContactCandidates
-    from fem.laws.setting import Setting
-    from fem.pair.bodies import Compliance
+    from fem.laws.mesh_setup import MeshSetup
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["EdgeTables", "edge_tables"]
 
@@ -81,18 +81,18 @@ class EdgeTables:
 
     Parameters
     ----------
-    given : Setting
+    given : MeshSetup
         At any positions: what counts is how the gears are set up.
-    bodies : Compliance
+    bodies : PairCompliance
         On any of its meshes that share the answer of the tips; others have separate tables (`serving`).
     """
 
-    def __init__(self, given: Setting, bodies: Compliance) -> None:
+    def __init__(self, given: MeshSetup, bodies: PairCompliance) -> None:
         self.given, self.bodies = given, bodies
         self._kept: dict[int, _Laws] = {}
         self._other: EdgeTables | None = None
 
-    def serving(self, bodies: Compliance) -> EdgeTables:
+    def serving(self, bodies: PairCompliance) -> EdgeTables:
         """Tables of the same pair with the tips of other bodies: these, or others that are kept here as well."""
         strips = bodies.tip_strips
         if bodies is self.bodies or strips is None or strips is self.bodies.tips:
@@ -166,13 +166,13 @@ class EdgeTables:
 _TABLES: Memo[EdgeTables] = Memo(4)
 
 
-def edge_tables(given: Setting, bodies: Compliance) -> EdgeTables:
+def edge_tables(given: MeshSetup, bodies: PairCompliance) -> EdgeTables:
     """Tables of a face set up likewise, with what loads before have left in them; new ones of flanks with relief.
 
     Parameters
     ----------
-    given : Setting
-    bodies : Compliance
+    given : MeshSetup
+    bodies : PairCompliance
         The very record: tables that are kept hold theirs, so that no other one can take its place.
     """
     if given.removed is not None or given.face is None:

@@ -19,8 +19,8 @@ from fem.laws.tip_contact import edge_laws
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline, RectBivariateSpline
 
-    from fem.laws.setting import Setting
-    from fem.pair.bodies import Compliance
+    from fem.laws.mesh_setup import MeshSetup
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["PlaceSurface", "Pushed", "place_surface", "slid", "up_to"]
 
@@ -141,7 +141,7 @@ class PlaceSurface:
         )
 
 
-def place_surface(given: Setting, bodies: Compliance, corner: int, slid: float) -> PlaceSurface:
+def place_surface(given: MeshSetup, bodies: PairCompliance, corner: int, slid: float) -> PlaceSurface:
     """Surface beside a corner of true involutes: of the wheel (1) beside A, of the pinion (0) beside E.
 
     ``slid`` as for ``fem.laws.cut_off.cut_off``.
@@ -184,14 +184,14 @@ def place_surface(given: Setting, bodies: Compliance, corner: int, slid: float) 
     return PlaceSurface(unit, fit, CubicSpline(xi, gaps), *limits, sliding)
 
 
-def _tilt(bodies: Compliance, gear: int, rho: float) -> float:
+def _tilt(bodies: PairCompliance, gear: int, rho: float) -> float:
     """Slope of a flank's displacement into the gear towards its tip, per unit line load [1 per N/m]."""
     flank = (bodies.pinion, bodies.wheel)[gear]
     at = float(np.clip(rho, *bodies.motions[gear].rho_range))
     return 0.5 * float(flank.own_slope(np.array(at))) * flank.base_radius / at
 
 
-def slid(bodies: Compliance) -> tuple[float, float]:
+def slid(bodies: PairCompliance) -> tuple[float, float]:
     """Energies over the force cubed [m/N^2] by which strips let contacts slide on pinion and wheel, at their tips.
 
     (R/2)(tau + t/R)^2 for a unit line load: strips know tilt and motion of the corner's tooth, to the second order in

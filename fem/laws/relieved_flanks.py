@@ -23,7 +23,7 @@ from fem.laws.tip_geometry import gap_at, opening_at
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fem.laws.setting import Setting
+    from fem.laws.mesh_setup import MeshSetup
     from fem.laws.tip_contact import Removed
 
 __all__ = ["Touch", "ends_of_flanks", "gentle", "starts_of_relief", "touch"]
@@ -75,7 +75,7 @@ class Touch:
     beyond: Booleans
 
 
-def touch(given: Setting, place: Array, removed: tuple[Removed, Removed]) -> Touch:
+def touch(given: MeshSetup, place: Array, removed: tuple[Removed, Removed]) -> Touch:
     """Where flanks touch whose unlimited involutes touch at ``place`` (n,) of the line of action [m]."""
     pair, line = given.pair, given.pair.line_of_action
     first, second = pair.base_radii
@@ -144,7 +144,7 @@ def _least(slope: Callable[[Array], Array], low: Array, high: Array, close: floa
     return least, beyond
 
 
-def gentle(given: Setting) -> bool:
+def gentle(given: MeshSetup) -> bool:
     """Whether all teeth of a gear have one profile, without hollows that no single contact fills.
 
     Otherwise flanks are taken to touch where involutes do.
@@ -170,7 +170,7 @@ def gentle(given: Setting) -> bool:
     return bool(np.all(1 + place * (line - place) / line * bent >= CURVATURES[0]))
 
 
-def ends_of_flanks(given: Setting) -> tuple[float, float]:
+def ends_of_flanks(given: MeshSetup) -> tuple[float, float]:
     """Places on the line of action [m] between which flanks touch beside their corners, under no load.
 
     A and E, or those of roundings; with relief farther out.
@@ -191,7 +191,7 @@ def ends_of_flanks(given: Setting) -> tuple[float, float]:
     return found[0], found[1]
 
 
-def starts_of_relief(given: Setting) -> list[float]:
+def starts_of_relief(given: MeshSetup) -> list[float]:
     """Places on the line of action [m] at which the law of touch changes at kinks, such as starts of tip relief.
 
     A flank stays on such a kink for a while; its slope and curvature, differences over ``SPAN``, know it from before

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Booleans, record
-from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.influence.strip_contact import (
     begun,
     by_the_far_end,

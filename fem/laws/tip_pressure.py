@@ -16,7 +16,7 @@ from fem.laws.tip_contact import strips_of
 from fem.laws.tip_geometry import TipRound
 
 if TYPE_CHECKING:
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["TipPressure", "tip_pressure"]
 
@@ -64,13 +64,13 @@ class TipPressure:
 
 
 def tip_pressure(
-    bodies: Compliance, corner: int, rho1: float, line_load: float, rounding: TipRound | None = None
+    bodies: PairCompliance, corner: int, rho1: float, line_load: float, rounding: TipRound | None = None
 ) -> TipPressure:
     """Pressure under a force.
 
     Parameters
     ----------
-    bodies : Compliance
+    bodies : PairCompliance
     corner : {0, 1}
         The gear whose corner is near.
     rho1 : float

@@ -9,13 +9,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array
-from fem.influence.gear_face import EndsOverCells, FlankEnds, FlankWaves, flank_ends, flank_waves
+from fem.influence.gear_face import (
+    AxialHarmonics,
+    EndCorrection,
+    EndCorrectionOfCells,
+    axial_harmonics,
+    end_correction,
+)
 from fem.influence.gear_shape import MeshedShape
-from fem.influence.solved_gear import Gears
+from fem.influence.gear_store import GearStore
 from fem.pair.wide_contact import beyond_logarithm
 
 if TYPE_CHECKING:
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["ends_of", "even_loads", "gear_waves", "pair_ends", "pair_waves", "waves_of"]
 
@@ -27,25 +33,25 @@ DIGITS = 12
 """Of lengths over the module, by which what is solved of a face is known."""
 
 
-def waves_of(meshed: MeshedShape, gears: Gears) -> FlankWaves:
+def waves_of(meshed: MeshedShape, gears: GearStore) -> AxialHarmonics:
     """Answer of a gear to waves of load, solved where it is kept nowhere."""
-    return gears.record("waves", (meshed,), partial(flank_waves, meshed))
+    return gears.record("waves", (meshed,), partial(axial_harmonics, meshed))
 
 
-def ends_of(meshed: MeshedShape, width: float, gears: Gears) -> FlankEnds:
+def ends_of(meshed: MeshedShape, width: float, gears: GearStore) -> EndCorrection:
     """What free ends add to it over a face of some width in modules, solved where it is kept nowhere."""
     long = float(f"{width:.{DIGITS}g}")
-    return gears.record("ends", (meshed, long), partial(flank_ends, meshed, long))
+    return gears.record("ends", (meshed, long), partial(end_correction, meshed, long))
 
 
 def pair_waves(
-    bodies: Compliance, rho: Array, cells: int, strip: float = 0.0, gears: Sequence[int] = (0, 1)
+    bodies: PairCompliance, rho: Array, cells: int, strip: float = 0.0, gears: Sequence[int] = (0, 1)
 ) -> Array:
     """What waves of load yield beyond even loads (..., n, n, cells - 1), per force on the whole face [m/N].
 
     Parameters
     ----------
-    bodies : Compliance
+    bodies : PairCompliance
     rho : (2, ..., n) array
         Curvature radii of n pairs on pinion and wheel, in order of rho1, one tooth apart [m].
     cells : int
@@ -66,13 +72,13 @@ def pair_waves(
 
 
 def gear_waves(
-    bodies: Compliance, gear: int, rho: Array, wavenumber: Array, half_width: float = 0.0
+    bodies: PairCompliance, gear: int, rho: Array, wavenumber: Array, half_width: float = 0.0
 ) -> Array:
     """What waves of line load yield beyond even ones on one gear (..., n, n, waves) [m per N/m].
 
     Parameters
     ----------
-    bodies : Compliance
+    bodies : PairCompliance
     gear : int
         0 is the pinion, 1 the wheel.
     rho : (..., n) array
@@ -83,7 +89,7 @@ def gear_waves(
         Of strips of pressure, over the module; 0 is a line.
     """
     meshed, flexible = bodies.meshed[gear], (bodies.pinion, bodies.wheel)[gear]
-    waves = waves_of(meshed, Gears())
+    waves = waves_of(meshed, GearStore())
     n = rho.shape[-1]
     found: Array = np.zeros((*rho.shape, n, len(wavenumber)))
     diagonal = np.arange(n)
@@ -101,7 +107,7 @@ def gear_waves(
     return found
 
 
-def even_loads(bodies: Compliance, gear: int, rho: Array) -> Array:
+def even_loads(bodies: PairCompliance, gear: int, rho: Array) -> Array:
     """What even line loads yield on one gear (..., n, n) [m per N/m], without the local indentation.
 
     Parameters
@@ -122,7 +128,7 @@ def even_loads(bodies: Compliance, gear: int, rho: Array) -> Array:
 
 
 def pair_ends(
-    bodies: Compliance,
+    bodies: PairCompliance,
     rho: Array,
     edges: tuple[Array, Array],
     widths: tuple[float, float],
@@ -132,7 +138,7 @@ def pair_ends(
 
     Parameters
     ----------
-    bodies : Compliance
+    bodies : PairCompliance
     rho : (2, ..., n) array
         As of ``pair_waves``.
     edges : two (cells + 1,) arrays
@@ -161,12 +167,12 @@ def pair_ends(
     return found
 
 
-def _ends(meshed: MeshedShape, width: float, edges: Array) -> EndsOverCells:
+def _ends(meshed: MeshedShape, width: float, edges: Array) -> EndCorrectionOfCells:
     """Free ends of a gear over cells, width and edges in modules."""
-    gears = Gears()
+    gears = GearStore()
     long = float(f"{width:.{DIGITS}g}")
 
-    def over() -> EndsOverCells:
+    def over() -> EndCorrectionOfCells:
         whole = ends_of(meshed, width, gears)
         # the face that was solved ends where the cells do, to the last bit
         return whole.over(np.clip(edges, -whole.half.ends[-1], whole.half.ends[-1]))

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from base import Cost, Stopwatch, record
-from fem.influence.gear_face import FlankEnds, FlankWaves
-from fem.influence.solved_gear import Gears, Kept
+from fem.influence.gear_face import AxialHarmonics, EndCorrection
+from fem.influence.gear_store import GearStore, ResultStore
 from fem.pair.face_compliance import ends_of, waves_of
 from fem.pair.face_setting import FREE_ENDS, SLICES
 
 if TYPE_CHECKING:
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["FaceGears", "face_gears"]
 
@@ -22,25 +22,27 @@ class FaceGears:
 
     Attributes
     ----------
-    waves : (FlankWaves, FlankWaves)
+    waves : (AxialHarmonics, AxialHarmonics)
         Of pinion and wheel.
-    ends : (FlankEnds, FlankEnds) or None
+    ends : (EndCorrection, EndCorrection) or None
         What free ends add; None between walls.
     cost : Cost
         Of what was not there already.
     """
 
-    waves: tuple[FlankWaves, FlankWaves]
-    ends: tuple[FlankEnds, FlankEnds] | None
+    waves: tuple[AxialHarmonics, AxialHarmonics]
+    ends: tuple[EndCorrection, EndCorrection] | None
     cost: Cost
 
 
-def face_gears(bodies: Compliance, model: str = FREE_ENDS, kept: Kept | None = None) -> FaceGears | None:
+def face_gears(
+    bodies: PairCompliance, model: str = FREE_ENDS, kept: ResultStore | None = None
+) -> FaceGears | None:
     """Solve both gears of a pair for loads along the face; contacts that are asked for later find them in the process.
 
     Parameters
     ----------
-    bodies : Compliance
+    bodies : PairCompliance
     model : {"free-ends", "walls", "slices"}
         What couples the cells; None is the answer for slices, which need nothing.
     kept : callable, optional
@@ -56,7 +58,7 @@ def face_gears(bodies: Compliance, model: str = FREE_ENDS, kept: Kept | None = N
     """
     if model == SLICES:
         return None
-    watch, gears = Stopwatch(), Gears(kept)
+    watch, gears = Stopwatch(), GearStore(kept)
     pinion, wheel = bodies.meshed
     waves = waves_of(pinion, gears), waves_of(wheel, gears)
     ends = None

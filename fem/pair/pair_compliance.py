@@ -1,218 +1,224 @@
-"""Compliance of both gears of a pair to a tolerance: choice of the mesh, estimate of its error.
-
-The displacement at a load along the load is an energy, so its error is the square of the energy norm of the
-finite elements' error: it falls nearly with the fourth power of the edge length (curved second-order elements;
-see ``fem.elasticity.line_load``), always has the same sign, and hardly depends on the load's place. Two nested meshes
-show it: with the order p, the finer one's error is their difference over 2^p - 1.
-"""
+"""Compliance of a pair, which does not depend on the load, put together from its named parts."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from math import ceil, floor, log2
-from typing import TYPE_CHECKING
+from math import cos
+from types import MappingProxyType
 
 import numpy as np
 
-from base import Cost, Faults, Limit, Stopwatch
-from base.results import WORST
-from fem.elasticity.elasticity import PlaneElasticity, check_plane
-from fem.elasticity.flamant import hertz_indentation
-from fem.elasticity.support import Support, held_profiles, on_both
-from fem.influence.gear_shape import MeshedShape, shapes
-from fem.influence.solved_gear import Gears, Kept, SolvedFlanks
-from fem.influence.tip_strips import gain_beside
-from fem.pair.bodies import Compliance
-from fem.pair.checked import check_pair
+from base import Array, Faults, described, part, record
+from fem.elasticity.flamant import hertz_half_width, hertz_indentation
+from fem.elasticity.support import held_profiles
+from fem.elasticity.torsion import step_wind_up
+from fem.pair.hertz_approach import HertzApproach
+from fem.pair.solved_pair import SolvedPair
 
-if TYPE_CHECKING:
-    from gears import GearPair
-    from meshes import Sizes
+__all__ = ["PARTS", "PairCompliance"]
 
-__all__ = ["Compliance", "compliance"]
-
-ORDER = 3.0
-"""Order of convergence of the displacement at a load: 4 in the limit, 3 to 3.7 on meshes in use, lowest at the tip."""
-
-FINEST = 4
-"""Most refinements that a tolerance may ask for."""
-
-TOLERANCE = Limit(2e-6, remedy="0.001 is 0.1 %")
-"""The smallest one can be met with those refinements."""
-
-REFINEMENTS = Limit(1, FINEST + 1, remedy="leave it out", whole=True)
-
-SAMPLES, FIT = (32, 48, 64), 0.03
-"""Loads along a flank, more of them where the fit leaves more than this part of the tolerance.
-
-So little that errors are those of the mesh, whose sign and place nested meshes show; those of a fit wave.
-"""
-
-STEPS = 4
-"""Of the edge length when it is halved for a tolerance: so few meshes are tried that pairs share their gears'."""
+PARTS = ("hub_windup", "coupling", "support")
+"""Parts that ``PairCompliance.without`` can leave out."""
 
 
-def compliance(
-    pair: GearPair,
-    tolerance: float = 0.001,
-    plane: str = "strain",
-    sizes: Sizes | None = None,
-    refinements: int | None = None,
-    supports: Support | tuple[Support, Support] | None = None,
-    *,
-    tip_edges: bool = False,
-    motion: bool = False,
-    kept: Kept | None = None,
-) -> Compliance:
-    """Compliance of both gears, on the coarsest mesh that meets a tolerance.
+@record
+class PairCompliance(SolvedPair):
+    """Compliance of both gears of a pair as functions of the contact's place."""
 
-    Two nested meshes are solved and the finer one is used. Its error is taken from the difference of the two
-    with the order of convergence 3, plus what the fit along the flank leaves out. Where that is above the
-    tolerance, edge lengths and number of loads follow from it for the next attempt.
+    left_out: frozenset[str] = part("names of what was left out", default=frozenset())
 
-    Each gear is solved in modules and E*, by itself. The process keeps what it has solved: a gear of the same shape,
-    held at the same radius and with the same Poisson's ratio is used again, to the last bit, in any pair, of any size,
-    modulus, face width and mate (`fem.forget_gears` forgets them).
+    def without(self, *parts: str) -> PairCompliance:
+        """Leave parts out, to compare with models that do not have them.
 
-    Parameters
-    ----------
-    pair : gears.GearPair
-    tolerance : float
-        Relative, on the deflection of a pair anywhere on the path; at least 2e-6.
-    plane : {"strain", "stress"}
-        Plane strain for gears wider than a few modules.
-    sizes : meshes.Sizes, optional
-        Of the mesh to begin with, before it is refined.
-    refinements : int, optional
-        Fixes the mesh instead of the tolerance: 1 to 5.
-    supports : Support or (Support, Support), optional
-        Rigid hubs of both gears, or of pinion and wheel; held on the bores unless given.
-    tip_edges : bool
-        Solve the tip edges now. Contact outside the path needs them; they are solved when it first does.
-    motion : bool
-        Solve the flanks' motion now. Contacts that move need it; it is solved when they first do.
-    kept : callable, optional
-        Where solved gears are kept beyond the process: called with a name, with plain inputs, and with what computes
-        the record where it has none.
+        Parameters
+        ----------
+        *parts : {"hub_windup", "coupling", "support"}
+            Turning of the bodies on their hubs, in ``own`` and in every cross term; all cross terms between
+            teeth; the supports of rigid hubs.
 
-    Returns
-    -------
-    Compliance
-        Converged where its error is below 20 % (`base.results.WORST`), be it above the tolerance, or where
-        `refinements` are given; errors above the tolerance are in its message.
+        Returns
+        -------
+        Compliance
+            The same finite-element solution; only what ``own`` and ``bulk`` add up differs.
 
-    Raises
-    ------
-    base.InputError
-        Tolerance or plane that make no sense, a hub that does not fit.
+        Raises
+        ------
+        base.InputError
+            A name that is no part.
+        """
+        found = Faults()
+        for name in parts:
+            found.choice("parts", name, PARTS, "name a part")
+        found.raise_if_any()
+        return replace(self, left_out=self.left_out | set(parts))
 
-    Examples
-    --------
-    >>> from fem import compliance
-    >>> from gears import Gear, GearPair
-    >>> pair = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
-    >>> bodies = compliance(pair, tolerance=0.05)
-    >>> bodies.converged and bodies.error < 0.05
-    True
-    """
-    from meshes import Sizes
-
-    found = Faults()
-    check_pair(found, pair)
-    found.number("tolerance", tolerance, TOLERANCE)
-    check_plane(found, plane)
-    if refinements is not None:
-        found.number("refinements", refinements, REFINEMENTS)
-    found.raise_if_any()
-    watch = Stopwatch()
-    held = on_both(supports)
-    profiles = held_profiles(pair, held)
-    both = shapes(pair, profiles, plane)
-    laws = [PlaneElasticity.of(material, plane) for material in pair.materials]
-    sizes, level = sizes or Sizes(), refinements or 1
-    gears = Gears(kept)
-    while True:
+    @described("m/N", "gear")
+    def hub_windup(self) -> tuple[float, float]:
+        """Turn of pinion's and wheel's body on its hub, along the line of action, at the pair's face width."""
         first, second = (
-            _fitted(gears, MeshedShape(shape, sizes, level), tolerance).scaled(pair.module, law)
-            for shape, law in zip(both, laws, strict=True)
+            plane + steps for plane, steps in zip(self.plane_windup, self.step_windup, strict=True)
         )
-        mesh_error, fit_error = _errors(pair, (first, second), sizes.corner * 0.5**level)
-        error = mesh_error + fit_error
-        finer = _finer(sizes, level, mesh_error, tolerance - min(fit_error, 0.5 * tolerance))
-        if refinements is not None or error <= tolerance or finer is None:
-            break
-        sizes, level = finer
-    message = f"mesh refined {level} time{'' if level == 1 else 's'}, error {error:.1e}"
-    if error > tolerance and refinements is None:
-        message = f"error {error:.1e} above the tolerance {tolerance:.1e}: the mesh is the finest allowed"
-    settled = error < WORST or refinements is not None
-    if not settled:
-        message += (
-            f"; from {WORST:.0%} on no figure is believed: lower the tolerance, or give the refinements"
+        return first, second
+
+    @described("m/N", "gear", kept=True)
+    def step_windup(self) -> tuple[float, float]:
+        """Part of that turn by steps of pinion's and wheel's thickness, where rim and hub meet a narrower web."""
+        first, second = (
+            step_wind_up(profile, width, gear.law.shear_modulus) / width
+            for profile, gear, width in zip(
+                held_profiles(self.pair, self.supports),
+                (self.pinion, self.wheel),
+                self.pair.face_widths,
+                strict=True,
+            )
         )
-    bodies = Compliance(
-        pair,
-        plane,
-        first.flexible,
-        second.flexible,
-        level,
-        sizes,
-        # every tooth that may touch together with another one, tip edges outside the path at both ends included
-        min(ceil(pair.contact_ratio) + 1, *(len(one.flexible.cross_series) for one in (first, second))),
-        error,
-        Cost(0.0),
-        settled,
-        message,
-        supports=held,
-        fit_error=fit_error,
-        gain=2**ORDER - 1,
-        before=(first.before, second.before),
-        back_before=(first.back_before, second.back_before),
-    )
-    tips, coarse_tips = (bodies.tips_of(gears, before) if tip_edges else None for before in (False, True))
-    motions = bodies.motions_of(gears) if motion else None
-    parts = sum(gears.costs, Cost(0.0)).parts
-    counts = {"annulus_unknowns": first.annulus_unknowns + second.annulus_unknowns}
-    cost = Cost(watch.seconds, first.unknowns + second.unknowns, parts=parts, counts=counts)
-    return replace(bodies, tip_strips=tips, tip_strips_before=coarse_tips, flank_motions=motions, cost=cost)
+        return first, second
 
+    @property
+    def plane_windup(self) -> tuple[float, float]:
+        """The part that the finite elements of the plane hold, in ``own`` and cross terms of the gears [m/N]."""
+        width = self.pair.face_width
+        return self.pinion.hub_windup / width, self.wheel.hub_windup / width
 
-def _fitted(gears: Gears, meshed: MeshedShape, tolerance: float) -> SolvedFlanks:
-    """Solve one gear in modules and E*, with as many loads as the fit needs."""
-    local = float(hertz_indentation(0.1, meshed.shape.law, 1.0))
-    for count in SAMPLES:
-        found = gears.flanks(meshed, count)
-        least = local + float(np.min(found.flexible.own(found.rho)))
-        if found.flexible.fit_error <= FIT * tolerance * least:
-            break
-    return found
+    @described("m/N", "gear")
+    def support(self) -> tuple[float, float]:
+        """Compliance of pinion's and wheel's rigid hubs along the line of action."""
+        first, second = (s.compliance(r) for s, r in zip(self.supports, self.pair.base_radii, strict=True))
+        return first, second
 
+    @described("m", "gear", shown="mm")
+    def rim_thickness(self) -> tuple[float, float]:
+        """Thickness of pinion's and wheel's rim below the root circle; of a disc down to where it is held."""
+        first, second = (profile.rim_thickness for profile in held_profiles(self.pair, self.supports))
+        return first, second
 
-def _errors(pair: GearPair, gears: tuple[SolvedFlanks, SolvedFlanks], edge: float) -> tuple[float, float]:
-    """Errors by the mesh and by the fit, relative to the deflection of a pair, largest along the path.
+    @property
+    def _common(self) -> float:
+        """What all contacts yield alike beyond the compliances of the flanks [m/N]; less what is left out."""
+        support = 0.0 if "support" in self.left_out else sum(self.support)
+        if "hub_windup" in self.left_out:
+            return support - sum(self.plane_windup)
+        return support + sum(self.step_windup)
 
-    The element at the corner has a length ``edge`` [modules]; beside it a refinement gains less.
-    """
-    gain = 2**ORDER - 1
-    rho1 = np.linspace(pair.points.A, pair.points.E, 60)
-    own, change = np.zeros_like(rho1), np.zeros_like(rho1)
-    for gear, rho in zip(gears, (rho1, pair.line_of_action - rho1), strict=True):
-        flexible = gear.flexible
-        own += flexible.own(rho) + hertz_indentation(0.1 * pair.module, flexible.law, pair.module)
-        away = (flexible.rho_end**2 - np.clip(rho, *flexible.rho_range) ** 2) / (2 * flexible.base_radius)
-        change += gear.change_at(rho) / gain_beside(away / (edge * pair.module), gain)
-    crossed = sum(gear.cross_change for gear in gears) / float(np.min(own))
-    fit = sum(gear.flexible.fit_error for gear in gears) / float(np.min(own))
-    return max(float(np.max(np.abs(change / own))), crossed / gain), fit
+    @property
+    def common_across(self) -> float:
+        """What all contacts of one side yield by those of the other, beyond the flanks' compliances [m/N].
 
+        Torques of the two sides are opposed; their normals are 2 alpha_w apart.
+        """
+        windup = sum(self.hub_windup) if "hub_windup" in self.left_out else 0.0
+        if "support" in self.left_out:
+            return windup
+        apart = cos(2 * self.pair.working_pressure_angle)
+        for support, radius in zip(self.supports, self.pair.base_radii, strict=True):
+            windup -= support.turn(radius) + apart / support.radial_stiffness
+        return windup
 
-def _finer(sizes: Sizes, level: int, error: float, tolerance: float) -> tuple[Sizes, int] | None:
-    """Edge lengths and refinements that should bring an error below a tolerance; None beyond the finest."""
-    if error <= tolerance:  # it is the fit that errs, or nothing
-        return None
-    factor = (0.6 * tolerance / error) ** (1 / ORDER) if np.isfinite(error) else 0.5
-    halvings = max(0, floor(-log2(factor) + 0.3))
-    factor = 2 ** (floor(STEPS * log2(factor)) / STEPS)
-    if level + halvings > FINEST:
-        return None
-    return sizes.scaled(min(factor * 2**halvings, 1.0)), level + halvings
+    @described("m/N")
+    def turning(self) -> float:
+        """What hubs and supports move all teeth by alike, which closes no gap, unless it is left out."""
+        if "coupling" in self.left_out:
+            return 0.0
+        windup = 0.0 if "hub_windup" in self.left_out else sum(self.hub_windup)
+        return windup + (0.0 if "support" in self.left_out else sum(self.support))
+
+    def parts(self, rho1: Array) -> Mapping[str, Array]:
+        """Deflection of a pair per force without the local indentation, part by part [m/N], at rho1 (n,) [m].
+
+        ``pinion`` and ``wheel`` (teeth with the bodies' deformation under them), ``hub_windup`` and
+        ``support`` add up to ``own``, whatever is left out. ``coupling`` stands apart: the deflection by the
+        force on the pair one base pitch ahead; nan where that pair would be beyond the path.
+        """
+        rho1 = np.asarray(rho1, dtype=float)
+        width, ahead = self.pair.face_width, rho1 + self.pair.base_pitch
+        every = replace(self, left_out=frozenset())
+        coupling = every.bulk(np.stack([rho1, ahead], axis=-1))[..., 0, 1]
+        windup, support = sum(self.hub_windup), sum(self.support)
+        return MappingProxyType(
+            {
+                "pinion": self.pinion.own(rho1) / width - self.plane_windup[0],
+                "wheel": self.wheel.own(self.pair.line_of_action - rho1) / width - self.plane_windup[1],
+                "hub_windup": np.full(rho1.shape, windup),
+                "support": np.full(rho1.shape, support),
+                "coupling": np.where(ahead <= self.pair.points.E, coupling, np.nan),
+            }
+        )
+
+    def own(self, rho1: Array) -> Array:
+        """Deflection of a pair per force without the local indentation [m/N], at rho1 [m]."""
+        rho1 = np.asarray(rho1, dtype=float)
+        total = self.pinion.own(rho1) + self.wheel.own(self.pair.line_of_action - rho1)
+        return np.asarray(total / self.pair.face_width + self._common)
+
+    def bulk(self, rho1: Array, rho2: Array | None = None, leaning: Array | None = None) -> Array:
+        """Bulk compliance of pairs in order of their rho1, one tooth apart.
+
+        Parameters
+        ----------
+        rho1 : (..., n) array
+            Curvature radii on the pinion [m].
+        rho2 : (..., n) array, optional
+            On the wheel; those of the line of action unless given.
+        leaning : (2, ..., n) array, optional
+            Angles by which forces lean from pinion's and wheel's own normal, away from the tip [rad]: not zero
+            only where that gear's tip corner is in contact. Cross terms alone; the own compliance of a
+            corner belongs to its law (``fem.laws.tip_contact``).
+
+        Returns
+        -------
+        (..., n, n) array
+            Symmetric [m/N].
+        """
+        rho1 = np.asarray(rho1, dtype=float)
+        rho2 = self.pair.line_of_action - rho1 if rho2 is None else rho2
+        n = rho1.shape[-1]
+        width, common = self.pair.face_width, self._common
+        reach = 0 if "coupling" in self.left_out else self.reach
+        matrix = np.zeros((*rho1.shape, n))
+        own, diagonal = self.pinion.own(rho1) + self.wheel.own(rho2), np.arange(n)
+        matrix[..., diagonal, diagonal] = own / width + common
+        for apart in range(1, min(n, reach + 1)):
+            # the pair ahead has the smaller rho2, and the cross term is symmetric (Maxwell and Betti)
+            behind, ahead = diagonal[:-apart], diagonal[apart:]
+            first = self.pinion.cross(apart, rho1[..., behind], rho1[..., ahead])
+            second = self.wheel.cross(apart, rho2[..., ahead], rho2[..., behind])
+            if leaning is not None:
+                # corners are the places of largest rho
+                angles = leaning[0][..., ahead], leaning[1][..., behind]
+                corners = (
+                    self.pinion.corner(apart, rho1[..., behind]),
+                    self.wheel.corner(apart, rho2[..., ahead]),
+                )
+                first = np.cos(angles[0]) * first - np.sin(angles[0]) * corners[0]
+                second = np.cos(angles[1]) * second - np.sin(angles[1]) * corners[1]
+            cross = (first + second) / width + common
+            matrix[..., behind, ahead] = matrix[..., ahead, behind] = cross
+        return matrix
+
+    def hertz(self, rho1: Array, curvature: Array | float = 1.0, lever: Array | float = 1.0) -> HertzApproach:
+        """Local indentation of pairs at rho1 [m] as a function of their forces.
+
+        Parameters
+        ----------
+        rho1 : array
+            [m]
+        curvature : array or float
+            Of relieved flanks over that of the involutes.
+        lever : array or float
+            Lever kappa of the normal about the pinion's axis over its base radius, where forces are kappa F and
+            the indentation is what turns the pinion.
+        """
+        path = self.pair.path_at(np.clip(rho1, 0.0, self.pair.line_of_action))
+        width = self.pair.face_width
+        first, second = self.pinion.law, self.wheel.law
+        reduced = 2 / (1 / first.plane_modulus + 1 / second.plane_modulus)
+        half_width = hertz_half_width(
+            1.0 / (width * lever), path.radius / curvature, reduced
+        )  # of kappa F = 1 N
+        length = self.pair.module
+        constant = (
+            hertz_indentation(half_width, first, length) + hertz_indentation(half_width, second, length)
+        ) / width
+        per_log = (1 / first.plane_modulus + 1 / second.plane_modulus) / (np.pi * width)
+        return HertzApproach(constant / lever**2, per_log / np.square(lever))

@@ -12,11 +12,11 @@ import numpy as np
 
 from base import Array, Cost, Faults, Limit, RangeWarning, Stopwatch, described, part, quantity, record
 from base.results import ITSELF, WORST
-from fem.elasticity.elasticity import PlaneElasticity, check_plane
+from fem.elasticity.plane_elasticity import PlaneElasticity, check_plane
 from fem.elasticity.ring import ring_of
 from fem.influence.fillet_influence import FilletInfluence, fillet_influence
 from fem.influence.gear_shape import GearShape, shapes
-from fem.influence.solved_gear import Gears, Kept
+from fem.influence.gear_store import GearStore, ResultStore
 from gears.closed_form.root_stress import THIN_RIM, rim_factor
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ class LoadedShape:
     shape: GearShape
     low: float
 
-    def solved(self, gears: Gears, edge: float = COARSEST) -> SolvedFillets:
+    def solved(self, gears: GearStore, edge: float = COARSEST) -> SolvedFillets:
         """Influence on a mesh with edges on the fillets, and on its refinement, solved where it is kept nowhere."""
         key = (self.shape, edge, self.low)
         found: SolvedFillets = gears.record(
@@ -118,7 +118,7 @@ def fillets(
     plane: str = "strain",
     fillet_edge: float | None = None,
     *,
-    kept: Kept | None = None,
+    kept: ResultStore | None = None,
 ) -> Fillets:
     """Influence functions of both gears on a mesh whose fillets are as fine as the tolerance asks for.
 
@@ -168,7 +168,7 @@ def fillets(
     watch = Stopwatch()
     edge = COARSEST if fillet_edge is None else fillet_edge
     smallest = edge if fillet_edge is not None else COARSEST / 2**HALVINGS
-    gears, results = Gears(kept), []
+    gears, results = GearStore(kept), []
     profiles = pair.teeth_profiles
     starts = pair.points.A, pair.line_of_action - pair.points.E
     first, second = (
@@ -219,7 +219,7 @@ def _warn_of_held_rims(pair: GearPair) -> None:
         warnings.warn(f"{message}. Give the gear its rim and web (blank)", RangeWarning, stacklevel=3)
 
 
-def _two_meshes(gears: Gears, shape: GearShape, edge: float, low: float) -> SolvedFillets:
+def _two_meshes(gears: GearStore, shape: GearShape, edge: float, low: float) -> SolvedFillets:
     """Influence of loads from a curvature radius on, on a refined mesh, and its error against the mesh it refines."""
     from meshes import mesh_sector, refined
 

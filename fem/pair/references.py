@@ -28,13 +28,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Faults, Limit
-from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.support import Support, held_profiles
 from fem.elasticity.torsion import step_wind_up
 from gears.closed_form import body_wind_up, inertial_wind_up
 
 if TYPE_CHECKING:
-    from fem.pair.bodies import Compliance
+    from fem.pair.pair_compliance import PairCompliance
     from gears import GearPair
 
 __all__ = ["REFERENCES", "check_reference", "default_reference", "held_turns", "turns"]
@@ -79,7 +79,7 @@ def turns(
     return np.array(found)
 
 
-def held_turns(bodies: Compliance) -> tuple[str, tuple[Support, Support]]:
+def held_turns(bodies: PairCompliance) -> tuple[str, tuple[Support, Support]]:
     """What a compliance measures against, and the supports whose turn it holds.
 
     Without the hub wind-up that is the teeth. Empty where the turn is not alike for all pairs: without coupling it
@@ -97,7 +97,7 @@ def held_turns(bodies: Compliance) -> tuple[str, tuple[Support, Support]]:
     return ("" if sprung else "teeth"), supports
 
 
-def default_reference(bodies: Compliance) -> str:
+def default_reference(bodies: PairCompliance) -> str:
     """What a deflection is measured against unless something else is asked for: the bodies.
 
     A compliance without hubs or coupling is made to see what these do, and measures its own way ("bore").

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Faults, Limit
-from fem.pair.bodies import Compliance
 from fem.pair.checked import check_pair, numbers_of
-from fem.pair.pair_compliance import compliance as _compliance
+from fem.pair.compliance import compliance as _compliance
+from fem.pair.pair_compliance import PairCompliance
 from fem.pair.references import REFERENCES, check_reference, held_turns, turns
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def single_pair_stiffness(
     pair: GearPair,
     force: float,
     rho1: Array,
-    compliance: Compliance | None = None,
+    compliance: PairCompliance | None = None,
     tolerance: float = 0.001,
     plane: str = "strain",
     *,
@@ -42,7 +42,7 @@ def single_pair_stiffness(
     rho1 : (n,) array
         Curvature radii on the pinion [m]. Within ``0.01`` modules of a tip corner, A and E included, the
         load stands at that distance: a line load on the corner itself would have no finite displacement.
-    compliance : Compliance, optional
+    compliance : PairCompliance, optional
         Of this pair.
     reference : {"bore", "body", "teeth"}
         What the deflection is measured against, as of `mesh_cycle`; unlike there, the bores unless given.
@@ -71,7 +71,7 @@ def single_pair_stiffness(
     found = Faults()
     check_pair(found, pair)
     rho1 = np.atleast_1d(numbers_of(found, "rho1", rho1, "give metres"))
-    found.instance("compliance", compliance, Compliance, "as of fem.compliance", optional=True)
+    found.instance("compliance", compliance, PairCompliance, "as of fem.compliance", optional=True)
     found.raise_if_any()
     bodies = compliance or _compliance(pair, tolerance, plane)
     points = pair.points

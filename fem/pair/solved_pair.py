@@ -14,7 +14,7 @@ from fem.influence.back_compliance import BackCompliance
 from fem.influence.flank_motion import FlankMotion
 from fem.influence.gear_compliance import GearCompliance
 from fem.influence.gear_shape import MeshedShape, shapes
-from fem.influence.solved_gear import Gears
+from fem.influence.gear_store import GearStore
 from fem.influence.tip_strips import TipStrips
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ class SolvedPair:
     @cached_property
     def tips(self) -> tuple[TipStrips, TipStrips]:
         """Tip edges of both gears, for contact outside the path; solved where they were not."""
-        return self.tip_strips or self.tips_of(Gears())
+        return self.tip_strips or self.tips_of(GearStore())
 
     @cached_property
     def _tips_before(self) -> tuple[TipStrips, TipStrips]:
@@ -101,7 +101,7 @@ class SolvedPair:
         first, second = (
             fine.towards(before, edge, self.gain)
             for fine, before in zip(
-                self.tips, self.tip_strips_before or self.tips_of(Gears(), before=True), strict=True
+                self.tips, self.tip_strips_before or self.tips_of(GearStore(), before=True), strict=True
             )
         )
         return first, second
@@ -117,7 +117,7 @@ class SolvedPair:
         )
         return first, second
 
-    def tips_of(self, gears: Gears, before: bool = False) -> tuple[TipStrips, TipStrips]:
+    def tips_of(self, gears: GearStore, before: bool = False) -> tuple[TipStrips, TipStrips]:
         """Tip edges of both gears from where solved gears are, or on the mesh before the last refinement."""
         first, second = (
             gears.tips(meshed, before).scaled(self.pair.module, flexible.law)
@@ -128,9 +128,9 @@ class SolvedPair:
     @cached_property
     def motions(self) -> tuple[FlankMotion, FlankMotion]:
         """How the flanks of both gears move beyond yielding along their normals; solved where it was not."""
-        return self.flank_motions or self.motions_of(Gears())
+        return self.flank_motions or self.motions_of(GearStore())
 
-    def motions_of(self, gears: Gears) -> tuple[FlankMotion, FlankMotion]:
+    def motions_of(self, gears: GearStore) -> tuple[FlankMotion, FlankMotion]:
         """How the flanks of both gears move, from where solved gears are."""
         first, second = (
             gears.motion(meshed).scaled(self.pair.module, flexible.law)
@@ -143,7 +143,7 @@ class SolvedPair:
         """What loads on the front flanks of both gears do to their back flanks; solved where it was not."""
         if self.back_series is not None:
             return self.back_series
-        gears = Gears()
+        gears = GearStore()
         first, second = (
             gears.backs(meshed).scaled(self.pair.module, flexible.law.plane_modulus)
             for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
@@ -156,7 +156,7 @@ class SolvedPair:
 
     @cached_property
     def _rings(self) -> tuple[Ring, Ring]:
-        gears = Gears()
+        gears = GearStore()
         first, second = (
             gears.rings(meshed)[1].scaled(self.pair.module, flexible.law)
             for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)

@@ -10,7 +10,7 @@ from fem.influence.fillet_ends import FilletEnds, fillet_ends
 from fem.influence.fillet_face import FilletFace
 from fem.influence.fillet_waves import FilletWaves, fillet_waves
 from fem.influence.gear_shape import DIGITS
-from fem.influence.solved_gear import Gears, Kept
+from fem.influence.gear_store import GearStore, ResultStore
 from fem.pair.face_setting import FREE_ENDS, FaceSetting
 from fem.pair.pair_fillets import Fillets, LoadedShape
 
@@ -43,7 +43,7 @@ class FaceFillets:
 
 
 def face_fillets(
-    fillets: Fillets, pair: GearPair, model: str = FREE_ENDS, kept: Kept | None = None
+    fillets: Fillets, pair: GearPair, model: str = FREE_ENDS, kept: ResultStore | None = None
 ) -> FaceFillets:
     """Solve the fillets of both gears for loads along the face; root stresses that are asked for later find them.
 
@@ -65,7 +65,7 @@ def face_fillets(
     >>> face_fillets(fillets(pair, tolerance=0.1), pair, "walls").ends is None
     True
     """
-    watch, gears = Stopwatch(), Gears(kept)
+    watch, gears = Stopwatch(), GearStore(kept)
     pinion, wheel = fillets.shapes
     ends = None
     if model == FREE_ENDS:
@@ -75,14 +75,14 @@ def face_fillets(
     return FaceFillets((_waves(pinion, gears), _waves(wheel, gears)), ends, errors, Cost(watch.seconds))
 
 
-def _waves(loaded: LoadedShape, gears: Gears) -> FilletWaves:
+def _waves(loaded: LoadedShape, gears: GearStore) -> FilletWaves:
     def solve() -> FilletWaves:
         return fillet_waves(loaded.mesh(), loaded.solved(gears).influence)
 
     return gears.record("fillet waves", (loaded,), solve)
 
 
-def _ends(loaded: LoadedShape, width: float, gears: Gears) -> FilletEnds:
+def _ends(loaded: LoadedShape, width: float, gears: GearStore) -> FilletEnds:
     long = float(f"{width:.{DIGITS}g}")
     return gears.record("fillet ends", (loaded, long), partial(fillet_ends, loaded.shape, long, loaded.low))
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from base import Array, Integers, described, part, quantity, record
 from base.results import ITSELF
-from fem.elasticity.elasticity import PlaneElasticity
 from fem.elasticity.fillet import FilletLine
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.stress.face_root import FaceRootStress
 from fem.stress.root_peaks import LOADED, OTHER, RootPeak, extreme
 

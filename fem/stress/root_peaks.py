@@ -9,8 +9,8 @@ from numpy.polynomial import chebyshev
 
 from base import Array, Integers, quantity, record
 from base.results import ITSELF
-from fem.elasticity.elasticity import MIRROR
 from fem.elasticity.fillet import FilletLine
+from fem.elasticity.plane_elasticity import MIRROR
 from fem.influence.fillet_influence import FilletInfluence
 from gears.sharing.arc_series import OVERSHOOT, left_out, to_series
 from gears.sharing.arcs import Arcs

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Cost, Faults, InputError, Integers, Stopwatch, described, part, quantity, record
-from fem.cycle.contact import MeshCycle
+from fem.cycle.mesh_cycle import MeshCycle
 from fem.influence.fillet_influence import FilletInfluence
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from fem.pair.pair_fillets import Fillets
 from fem.pair.pair_fillets import fillets as _fillets
 from fem.stress.face_fillets import face_fillets, over_face
@@ -244,5 +244,5 @@ def _positions(cycle: MeshCycle, arcs: Arcs) -> Array:
     found = []
     for arc in arcs.arcs:
         middle = arc.low + 0.5 * arc.width  # ends of arcs may be where the path starts anew
-        found.append((Setting(cycle.pair).mirror - middle) % 1.0 + middle - arc.position)
+        found.append((MeshSetup(cycle.pair).mirror - middle) % 1.0 + middle - arc.position)
     return np.concatenate(found)

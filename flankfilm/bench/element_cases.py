@@ -54,7 +54,7 @@ def sector_energy(mesh: SectorMesh, kind: str) -> tuple[float, int]:
     from skfem import Basis, ElementTriP1, ElementTriP2, ElementTriP3, ElementVector, LinearForm
     from skfem.models.elasticity import linear_elasticity
 
-    from fem.elasticity.elasticity import PlaneElasticity
+    from fem.elasticity.plane_elasticity import PlaneElasticity
 
     grid = _grid(mesh, straight=kind in ("P1", "P2 straight"))
     element = {"P1": ElementTriP1, "P3 curved": ElementTriP3}.get(kind, ElementTriP2)()
@@ -84,7 +84,7 @@ def _grid(mesh: SectorMesh, straight: bool) -> Any:
     """One tooth as a mesh of scikit-fem, its sides straight or curved."""
     from skfem import MeshTri1
 
-    from fem.elasticity.elasticity import curved_mesh
+    from fem.elasticity.plane_elasticity import curved_mesh
     from meshes import gear_mesh
 
     whole = gear_mesh(mesh, teeth=[0])

@@ -40,13 +40,13 @@ def motion_flow(quick: bool) -> Levels:
     0.2. The estimate is the change with half the cells, as the sweep has it.
     """
     from dynamics import period_map
-    from dynamics.flow.flow import tables
+    from dynamics.flow.exact_flow import exact_flow
 
     osc = oscillator()
     degrees = (6, 8, 10, 13) if quick else (6, 7, 8, 9, 10, 11, 12, 13)
     refinements = {1: "exact flow"} if quick else {1: "exact flow", 2: "half the cells"}
     at_hand = {
-        (r, d): tables(osc, r, d) for r, d in [(4, 30), *((r, d) for r in refinements for d in degrees)]
+        (r, d): exact_flow(osc, r, d) for r, d in [(4, 30), *((r, d) for r in refinements for d in degrees)]
     }
 
     def follow(refinement: int, degree: int) -> tuple[int, int]:
@@ -56,7 +56,7 @@ def motion_flow(quick: bool) -> Levels:
     def state(resolution: tuple[int, int]) -> Answer:
         refinement, degree = resolution
         found, halved = (
-            period_map(tables(osc, cells, degree), START, PERIODS).state
+            period_map(exact_flow(osc, cells, degree), START, PERIODS).state
             for cells in (refinement, 2 * refinement)
         )
         estimate = float(np.max(np.abs(found - halved)) / np.max(np.abs(halved)))
@@ -126,10 +126,10 @@ def motion_orbit(quick: bool) -> Levels:
     transient has died out (which has no estimate). Error of the state, over its largest component.
     """
     from dynamics import find_orbit, period_map
-    from dynamics.flow.flow import tables
+    from dynamics.flow.exact_flow import exact_flow
 
     osc = oscillator()
-    table, exact = tables(osc), tables(osc, 4, 30)
+    table, exact = exact_flow(osc), exact_flow(osc, 4, 30)
 
     def newton() -> Orbit:
         return find_orbit(osc, START)

@@ -18,7 +18,7 @@ import numpy as np
 from numba import njit
 
 from base import Array
-from ehl.kernels.kernels import log_potential
+from ehl.kernels.film_kernels import log_potential
 from flankfilm.bench.examples import DOMAIN
 
 if TYPE_CHECKING:

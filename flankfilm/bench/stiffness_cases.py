@@ -25,7 +25,7 @@ from flankfilm.bench.work_cases import anew, work_contact
 
 if TYPE_CHECKING:
     from base import Array
-    from fem import Compliance, Fillets, MeshCycle, RootStress
+    from fem import Fillets, MeshCycle, PairCompliance, RootStress
     from gears import GearPair
     from gears.sharing.events import Division
 
@@ -40,7 +40,7 @@ def compliances(quick: bool) -> tuple[Case, ...]:
     return compliance(quick), *others
 
 
-def _single(pair: GearPair, bodies: Compliance) -> Array:
+def _single(pair: GearPair, bodies: PairCompliance) -> Array:
     """Stiffness of one pair at 39 places inside the path of contact."""
     import fem
 
@@ -61,11 +61,11 @@ def compliance(quick: bool) -> Levels:
 
     pair = example_pair()
 
-    def cycle(**how: Any) -> tuple[Compliance, MeshCycle]:
+    def cycle(**how: Any) -> tuple[PairCompliance, MeshCycle]:
         bodies = anew(pair, **how)
         return bodies, fem.mesh_cycle(pair, TORQUE, POSITIONS, bodies, beyond_path=False)
 
-    def both(found: tuple[Compliance, MeshCycle]) -> Answer:
+    def both(found: tuple[PairCompliance, MeshCycle]) -> Answer:
         bodies, held = found
         values = {
             MEAN: value(held.secant_stiffness.mean(), held.error),
@@ -73,7 +73,7 @@ def compliance(quick: bool) -> Levels:
         }
         return answer(bodies.cost.unknowns, values, bodies)
 
-    def edges(factor: float, refinements: int = 1, **how: Any) -> tuple[Compliance, MeshCycle]:
+    def edges(factor: float, refinements: int = 1, **how: Any) -> tuple[PairCompliance, MeshCycle]:
         return cycle(sizes=Sizes().scaled(factor), refinements=refinements, **how)
 
     factors = (2.0, 1.4, 1.0) if quick else (2.0, 1.4, 1.0, 0.7, 0.5)
@@ -100,7 +100,7 @@ def compliance_of(z1: int, z2: int) -> Levels:
 
     pair = GearPair(Gear(z1), Gear(z2), 2e-3, 0.04)
 
-    def both(bodies: Compliance) -> Answer:
+    def both(bodies: PairCompliance) -> Answer:
         held = fem.mesh_cycle(pair, 0.5 * TORQUE, POSITIONS, bodies, beyond_path=False)
         values = {
             SINGLE: value(_single(pair, bodies), bodies.error),

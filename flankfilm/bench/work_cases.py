@@ -15,7 +15,7 @@ from flankfilm.bench.examples import TORQUE, contacts_along_path, example_pair, 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fem import Compliance
+    from fem import PairCompliance
     from gears import GearPair
 
 
@@ -57,7 +57,7 @@ class _LogarithmicContact:
         return np.where(force > 0, 2.8e-11 * np.log(1e9 / safe), np.inf)
 
 
-def anew(pair: GearPair, *args: Any, **options: Any) -> Compliance:
+def anew(pair: GearPair, *args: Any, **options: Any) -> PairCompliance:
     """Compliance of a pair whose gears this process has not solved."""
     import fem
 
@@ -146,7 +146,7 @@ def work_motion() -> Levels:
     The oscillator of the exact flow, kernels compiled: what is built on its period map.
     """
     import dynamics
-    from dynamics.flow.flow import tables
+    from dynamics.flow.exact_flow import exact_flow
 
     osc = oscillator()
     values = np.linspace(0.1, 2.1, 2000)
@@ -160,7 +160,7 @@ def work_motion() -> Levels:
             dynamics.sweep(osc, values=values, direction=direction)
 
     series = (
-        work("tables of the flow", lambda: tables(osc)),
+        work("tables of the flow", lambda: exact_flow(osc)),
         work("sweep up and down", swept, 4000),
         work("branch", lambda: dynamics.continue_branch(start, "frequency", (0.5, 1.2)), len(branch.values)),
         work(

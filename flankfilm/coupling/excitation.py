@@ -20,7 +20,7 @@ import gears
 from base import Array, Cost, Faults, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
 from dynamics.model.stiffness import MAX_ORDER
-from fem.laws.setting import Deviations, Setting
+from fem.laws.mesh_setup import Deviations, MeshSetup
 
 SAMPLES = 4096
 """Samples of a curve that is given at unequal positions, and of a sum of harmonics whose range is looked for."""
@@ -225,7 +225,7 @@ def unloaded_error(
     )
     places = (np.arange(curve.size) + 0.5) / positions
     if back:  # their path is the mirror of that of the flanks in front
-        mirrored = Setting(pair).mirror - places
+        mirrored = MeshSetup(pair).mirror - places
         curve, places = -curve[::-1], mirrored[::-1]
     return error_series(
         curve,

@@ -28,7 +28,7 @@ class TeethOptions(TypedDict, total=False):
 
     model: str
     pairs: str
-    compliance: fem.Compliance | None
+    compliance: fem.PairCompliance | None
     flanks: Flanks
     reference: str | None
     bore_inertia: tuple[float, float]
@@ -49,7 +49,7 @@ class LoadedTeeth:
         ``"coupled"``: one approach for all loaded pairs, with the gaps that tip relief leaves and the film's
         separation as a function of its force; the gear body couples them in finite elements alone.
         ``"independent"``: each pair's secant stiffness, in series with its film's, the force in proportion.
-    compliance : fem.Compliance, optional
+    compliance : fem.PairCompliance, optional
         For finite elements; see `meshed`.
     flanks : Flanks
         For finite elements of coupled pairs.
@@ -65,7 +65,7 @@ class LoadedTeeth:
     torque: float
     model: str = "fem"
     pairs: str = "coupled"
-    compliance: fem.Compliance | None = None
+    compliance: fem.PairCompliance | None = None
     flanks: Flanks = PLAIN_FLANKS
     reference: str | None = None
     bore_inertia: tuple[float, float] = (0.0, 0.0)
@@ -76,7 +76,7 @@ class LoadedTeeth:
             faults.instance("pair", self.pair, gears.GearPair)
             faults.number("torque", self.torque, Limit(unit="N m", remedy="give the pinion's torque"))
             faults.instance(
-                "compliance", self.compliance, fem.Compliance, "as of fem.compliance", optional=True
+                "compliance", self.compliance, fem.PairCompliance, "as of fem.compliance", optional=True
             )
             faults.instance("flanks", self.flanks, Flanks)
             faults.choice("model", self.model, tuple(MODELS))

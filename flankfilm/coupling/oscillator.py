@@ -218,7 +218,8 @@ def pair_oscillator(
     which it was.
 
     On the far side of the backlash the flanks that the load does not press bear with the same k(t). Theirs is its
-    mirror image, k(c - t) with c of `fem.laws.setting.Setting.mirror`: of the same mean and harmonics, in other phases.
+    mirror image, k(c - t) with c of `fem.laws.mesh_setup.MeshSetup.mirror`: of the same mean and harmonics, in other
+    phases.
 
     Parameters
     ----------

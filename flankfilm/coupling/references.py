@@ -100,7 +100,7 @@ class StiffnessReferences:
 def stiffness_references(
     pair: gears.GearPair,
     cycle: MeshCycle,
-    compliance: fem.Compliance,
+    compliance: fem.PairCompliance,
     bore_inertia: tuple[float, float] = (0.0, 0.0),
 ) -> StiffnessReferences:
     """Measure the deflection of a loaded contact against bodies, bores and teeth; the forces are the same.
@@ -110,7 +110,7 @@ def stiffness_references(
     pair : gears.GearPair
     cycle : MeshCycle
         Of coupled pairs by finite elements, dry.
-    compliance : fem.Compliance
+    compliance : fem.PairCompliance
         That it was computed with.
     bore_inertia : (float, float)
         What turns with the bores of pinion and wheel beside their own bodies [kg m2].

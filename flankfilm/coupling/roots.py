@@ -14,8 +14,8 @@ from flankfilm.coupling.believed import believed
 from flankfilm.coupling.face_models import left_out_by_iso
 
 if TYPE_CHECKING:
-    from fem import Kept
-    from fem.fields.fields import GearField
+    from fem import ResultStore
+    from fem.fields.stress_fields import GearField
 
 
 @record
@@ -97,7 +97,7 @@ def root_stresses(pair: gears.GearPair, cycle: fem.MeshCycle, fillets: fem.Fille
 
 
 def fillets_over_face(
-    fillets: fem.Fillets, pair: gears.GearPair, model: str, kept: Kept | None = None
+    fillets: fem.Fillets, pair: gears.GearPair, model: str, kept: ResultStore | None = None
 ) -> fem.FaceFillets:
     """Fillets of both gears under loads that vary along the face; `root_stresses` finds them in the process.
 
@@ -124,7 +124,7 @@ def fillets_over_face(
 
 
 def fillets_of(
-    pair: gears.GearPair, tolerance: float, plane: str = "strain", kept: Kept | None = None
+    pair: gears.GearPair, tolerance: float, plane: str = "strain", kept: ResultStore | None = None
 ) -> fem.Fillets:
     """What loads anywhere on the flanks do to the fillets, by a mesh made for them.
 
@@ -155,7 +155,7 @@ def fillets_of(
 
 
 def pitch_point_fields(
-    pair: gears.GearPair, cycle: fem.MeshCycle, compliance: fem.Compliance
+    pair: gears.GearPair, cycle: fem.MeshCycle, compliance: fem.PairCompliance
 ) -> LoadedFields:
     """Fields with a pair nearest to the pitch point.
 
@@ -164,7 +164,7 @@ def pitch_point_fields(
     pair : gears.GearPair
     cycle : fem.MeshCycle
         Loaded contact that the fields belong to.
-    compliance : fem.Compliance
+    compliance : fem.PairCompliance
 
     Examples
     --------
@@ -177,7 +177,7 @@ def pitch_point_fields(
     6
     """
     with unclocked():
-        from fem.fields.fields import loaded_fields
+        from fem.fields.stress_fields import loaded_fields
     watch = Stopwatch()
     distance = np.abs(np.where(np.isfinite(cycle.rho1), cycle.rho1, np.inf) - pair.points.C)
     position = int(np.argmin(distance.min(axis=1)))

@@ -10,7 +10,7 @@ import fem
 import gears
 from base import Array, Cost, Stopwatch
 from fem.laws.local_law import film_yielding
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.film_law import FilmLaw, Placed
 from flankfilm.coupling.single_pairs import MODELS, single_pair_stiffness
@@ -34,7 +34,7 @@ class SharingPairs:
         Of one pair's stiffness, as of `single_pair_stiffness`.
     pairs : {"coupled", "independent"}
         As of `LoadedTeeth`.
-    compliance : fem.Compliance or None
+    compliance : fem.PairCompliance or None
         For finite elements.
     film : FilmLaw or None
         Films in series.
@@ -48,7 +48,7 @@ class SharingPairs:
     torque: float
     model: str
     pairs: str
-    compliance: fem.Compliance | None = None
+    compliance: fem.PairCompliance | None = None
     film: FilmLaw | None = None
     tolerance: float = 1e-3
     varied: tuple[tuple[FilmLaw, float], ...] = ()
@@ -86,7 +86,7 @@ class SharingPairs:
 
     def _on_path(self, position: Array) -> Array:
         """Positions at which the loaded flanks stand on the path of contact: back flanks in the mirror."""
-        return position if self.torque > 0.0 else (Setting(self.pair).mirror - position) % 1.0
+        return position if self.torque > 0.0 else (MeshSetup(self.pair).mirror - position) % 1.0
 
     def _lag(self, approach: Array) -> Array:
         """Transmission error [m] of an approach of the loaded flanks; beyond the backlash on back flanks."""

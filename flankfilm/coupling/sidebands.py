@@ -19,7 +19,7 @@ from base import Array, Cost, InputError, Stopwatch, part, quantity, record
 from base.results import EXACT, ITSELF
 from dynamics.model.protocol import PeriodicOscillator, settling_periods
 from dynamics.model.stiffness import MAX_ORDER
-from fem.laws.setting import Deviations
+from fem.laws.mesh_setup import Deviations
 from flankfilm.coupling.carried import output_rows, part_figures
 from flankfilm.coupling.drive import PairDrive
 from flankfilm.coupling.excitation import ErrorSeries, peak_to_peak, unloaded_error

@@ -68,7 +68,7 @@ def single_pair_stiffness(
     force: float,
     rho1: ArrayLike,
     model: str = "fem",
-    compliance: fem.Compliance | None = None,
+    compliance: fem.PairCompliance | None = None,
     *,
     reference: str = "bore",
     bore_inertia: tuple[float, float] = (0.0, 0.0),
@@ -84,7 +84,7 @@ def single_pair_stiffness(
         Curvature radii of the pinion's flank at the contact [m]; nan stays nan.
     model : str
         ``"fem"``, ``"ishikawa"``, ``"weber-banaschek"`` or ``"potential-energy"``.
-    compliance : fem.Compliance, optional
+    compliance : fem.PairCompliance, optional
         For finite elements; computed unless given.
     reference, bore_inertia
         What the deflection by finite elements is measured against, as of `fem.single_pair_stiffness`: the bores unless
@@ -125,7 +125,7 @@ def single_pair_stiffness(
 def single_pairs(
     pair: gears.GearPair,
     torque: float,
-    compliance: fem.Compliance | None = None,
+    compliance: fem.PairCompliance | None = None,
     points: int = STATIONS,
     *,
     reference: str = "body",
@@ -138,7 +138,7 @@ def single_pairs(
     pair : gears.GearPair
     torque : float
         Of the pinion [N m].
-    compliance : fem.Compliance, optional
+    compliance : fem.PairCompliance, optional
         Finite elements are left out without it.
     points : int
         Of the path, A and E included.

@@ -159,7 +159,7 @@ def compare_closed_forms(
     pair: gears.GearPair,
     torque: float,
     tolerance: float = 0.005,
-    compliance: fem.Compliance | None = None,
+    compliance: fem.PairCompliance | None = None,
     beyond_path: bool = True,
     moving_contact: bool | None = None,
     *,
@@ -174,7 +174,7 @@ def compare_closed_forms(
         Of the pinion [N m].
     tolerance : float
         Relative, of the finite elements.
-    compliance : fem.Compliance, optional
+    compliance : fem.PairCompliance, optional
         Computed unless given.
     beyond_path : bool
         Whether tip edges may touch outside the path in the first of the references.
@@ -206,7 +206,7 @@ def compare_closed_forms(
 def verification_of(
     pair: gears.GearPair,
     torque: float,
-    compliance: fem.Compliance,
+    compliance: fem.PairCompliance,
     beyond_path: bool = True,
     moving_contact: bool | None = None,
     *,
@@ -261,7 +261,7 @@ def _closed_form_curves(pair: gears.GearPair, torque: float) -> Iterator[Curves]
 
 
 def _reference_curves(
-    measured: LoadedTeeth, compliance: fem.Compliance, beyond_path: bool, moving_contact: bool | None
+    measured: LoadedTeeth, compliance: fem.PairCompliance, beyond_path: bool, moving_contact: bool | None
 ) -> Iterator[Curves]:
     """Evaluate finite elements with all parts, and with the parts left out that closed forms lack."""
     for label, (whole, left_out) in REFERENCES.items():

@@ -14,7 +14,7 @@ from flankfilm.output.variables import figure_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from fem.fields.fields import GearField
+    from fem.fields.stress_fields import GearField
     from flankfilm.coupling.motion import Portrait
     from gears import GearPair
 

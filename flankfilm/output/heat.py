@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from base.results import EXACT
-from ehl.discrete.across import lobatto
+from ehl.discrete.collocation import lobatto
 from flankfilm.output.variables import figure_of, of_quantities, of_record
 
 if TYPE_CHECKING:

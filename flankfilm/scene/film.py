@@ -10,9 +10,9 @@ from pydantic import Field, model_validator
 from base import Limit
 from ehl.discrete.asperities import LIMITS as ROUGHNESS
 from ehl.discrete.regimes import BOUNDARY, BOUNDARY_FRICTION
-from ehl.oil.grades import LIMITS as GRADE
 from ehl.oil.lubricant import LIMITS as OIL
 from ehl.oil.lubricant import STRESS_LIMITS
+from ehl.oil.oil_grades import LIMITS as GRADE
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
 

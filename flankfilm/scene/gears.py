@@ -10,8 +10,8 @@ from base import InputError, Limit
 from flankfilm.scene.flank_sections import DeviationsSection, WearSection, wrong_counts
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
-from gears.pair.pair import BACKLASH
-from gears.pair.pair import LIMITS as PAIR
+from gears.pair.gear_pair import BACKLASH
+from gears.pair.gear_pair import LIMITS as PAIR
 from gears.tooth.blank import LIMITS as BLANK
 from gears.tooth.face import LEAD_LIMITS as LEAD
 from gears.tooth.gear import LIMITS as GEAR

@@ -9,7 +9,7 @@ from pydantic import model_validator
 from base import Limit
 from flankfilm.scene.key import key
 from flankfilm.scene.section import Limits, Section, refused
-from gears.pair.heat import LIMITS, TEMPERATURE
+from gears.pair.thermal_expansion import LIMITS, TEMPERATURE
 
 GROWTH = (
     "pinion_temperature_C",

@@ -89,7 +89,7 @@ def PLAN(run: Engine) -> Plan:
     of=plain_flanks,
     settings=decided(lambda plan: {"compliance": plan.resolution.compliance}),
 )
-def BODIES(run: Engine) -> fem.Compliance:
+def BODIES(run: Engine) -> fem.PairCompliance:
     """Compliance of the pair with plain flanks: no mesh shows relief, deviations or rounded edges.
 
     What the cache keeps are the gears: pairs of other mates, sizes or moduli have them too.
@@ -110,7 +110,7 @@ def BODIES(run: Engine) -> fem.Compliance:
 
 
 @stage("compliance", "compliance with relief", "", PAIR, BODIES)
-def COMPLIANCE(run: Engine) -> fem.Compliance:
+def COMPLIANCE(run: Engine) -> fem.PairCompliance:
     """Everything about the teeth that does not depend on load, by finite elements."""
     return replace(run[BODIES], pair=run[PAIR])
 

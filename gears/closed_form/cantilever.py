@@ -9,7 +9,7 @@ from gears.closed_form.contact import constant_contact_compliance, contact_compl
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
 from gears.closed_form.sainsot import sainsot_body
-from gears.pair.pair import GearPair
+from gears.pair.gear_pair import GearPair
 from gears.pair.path import PathOfContact
 
 SHEAR_FACTOR = 1.2

@@ -10,8 +10,8 @@ import numpy as np
 from base import Array, RangeWarning
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
+from gears.pair.gear_pair import GearPair
 from gears.pair.hertz import NORMAL_FORCE, depth_compliance, half_width
-from gears.pair.pair import GearPair
 from gears.pair.path import PathOfContact
 from gears.tooth.errors import GeometryError
 

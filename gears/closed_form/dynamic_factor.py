@@ -11,8 +11,8 @@ from base import Array, Faults, Limit, quantity, record
 from base.units import factor
 from gears.closed_form.record import STANDARD
 from gears.closed_form.tooth_stiffness import iso6336
+from gears.pair.gear_pair import GearPair
 from gears.pair.hertz import NORMAL_FORCE
-from gears.pair.pair import GearPair
 from gears.tooth.errors import GeometryError
 
 _AMOUNT = Limit(0.0, unit="m", remedy="give its amount in metres")

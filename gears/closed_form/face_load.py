@@ -8,7 +8,7 @@ from base import Faults, Limit, quantity, record
 from base.units import factor
 from gears.closed_form.record import STANDARD
 from gears.closed_form.tooth_stiffness import iso6336
-from gears.pair.pair import GearPair
+from gears.pair.gear_pair import GearPair
 from gears.tooth.errors import GeometryError
 
 FACE_STIFFNESS = 0.85

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from base import Faults, Limit
-from gears.pair.pair import GearPair
+from gears.pair.gear_pair import GearPair
 from gears.tooth.errors import GeometryError
 
 _LIMITS = {

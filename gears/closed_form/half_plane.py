@@ -10,7 +10,7 @@ from base import Array
 from gears.closed_form.contact import contact_compliances
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
-from gears.pair.pair import GearPair
+from gears.pair.gear_pair import GearPair
 from gears.pair.path import PathOfContact
 
 

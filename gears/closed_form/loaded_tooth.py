@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from base import Array, Faults, RangeWarning
-from gears.pair.pair import GearPair
+from gears.pair.gear_pair import GearPair
 from gears.pair.path import PathOfContact
 from gears.tooth.bisection import bisect
 from gears.tooth.errors import GeometryError

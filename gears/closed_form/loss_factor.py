@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from base import Faults
-from gears.pair.pair import GearPair
+from gears.pair.gear_pair import GearPair
 from gears.tooth.errors import GeometryError
 
 

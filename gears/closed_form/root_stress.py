@@ -7,8 +7,8 @@ import warnings
 
 from base import Faults, RangeWarning, described, part, quantity, record
 from gears.closed_form.record import STANDARD
+from gears.pair.gear_pair import GearPair
 from gears.pair.hertz import NORMAL_FORCE
-from gears.pair.pair import GearPair
 from gears.tooth.errors import GeometryError
 from gears.tooth.involute import involute_function
 from gears.tooth.profile import ToothProfile

@@ -8,8 +8,8 @@ import warnings
 from base import RangeWarning, described, quantity, record
 from base.units import factor
 from gears.closed_form.record import STANDARD
+from gears.pair.gear_pair import GearPair
 from gears.pair.hertz import NORMAL_FORCE
-from gears.pair.pair import GearPair
 from gears.tooth.errors import GeometryError
 from gears.tooth.profile import ToothProfile
 

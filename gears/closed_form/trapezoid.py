@@ -12,7 +12,7 @@ from base import Array, RangeWarning
 from gears.closed_form.contact import constant_contact_compliance
 from gears.closed_form.loaded_tooth import LoadedTooth, loaded_teeth
 from gears.closed_form.record import ClosedForm
-from gears.pair.pair import GearPair
+from gears.pair.gear_pair import GearPair
 from gears.pair.path import PathOfContact
 from gears.tooth.profile import ToothProfile
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from base import rounded_down, rounded_up
 
 if TYPE_CHECKING:
-    from gears.pair.guards import Findings
+    from gears.pair.mesh_checks import Findings
     from gears.pair.pair_geometry import PairGeometry
 
 __all__ = ["check_faces"]

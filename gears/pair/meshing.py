@@ -8,11 +8,11 @@ import numpy as np
 
 from base import Array, quantity, record
 from base.results import EXACT
-from gears.pair.pair import GearPair
+from gears.pair.gear_pair import GearPair
 from gears.tooth.errors import GeometryError
-from gears.tooth.plane import mirrored, turned
 from gears.tooth.polygon import tooth_side
 from gears.tooth.profile import ToothProfile
+from gears.tooth.rotation import mirrored, turned
 
 _NEIGHBOURS = np.arange(-3, 4)  # teeth on either side that can come near the mate
 _GRID = 33

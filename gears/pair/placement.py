@@ -9,7 +9,7 @@ import numpy as np
 
 from base import Array, quantity, record
 from base.results import EXACT
-from gears.tooth.plane import turned
+from gears.tooth.rotation import turned
 
 if TYPE_CHECKING:
     from gears.pair.pair_geometry import PairGeometry

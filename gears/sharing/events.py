@@ -16,7 +16,7 @@ import numpy as np
 
 from base import Array, Integers, part, quantity, record
 from gears.sharing.arcs import Arcs
-from gears.sharing.pieces import LOCATED, Bracket, End, Piece, Sampled
+from gears.sharing.curve_pieces import LOCATED, Bracket, End, Piece, Sampled
 
 __all__ = ["Events", "Sampled", "Sampler", "arcs_alike", "arcs_between_events"]
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from base import Array, Faults
 from gears.tooth.errors import GeometryError
-from gears.tooth.plane import mirrored, polar, turned
 from gears.tooth.profile import ToothProfile
+from gears.tooth.rotation import mirrored, polar, turned
 
 FINEST = 1e-10
 """Smallest chord error [m]; a thousandth of what the best machines hold."""

@@ -8,8 +8,8 @@ import numpy as np
 
 from base import Array, Faults
 from gears.tooth.errors import GeometryError
-from gears.tooth.plane import mirrored, polar, turned
 from gears.tooth.profile import ToothProfile
+from gears.tooth.rotation import mirrored, polar, turned
 
 
 def tooth_side(profile: ToothProfile, points_per_part: int = 24, relief_scale: float = 0.0) -> Array:

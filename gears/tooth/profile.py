@@ -11,8 +11,8 @@ from base import Array
 from gears.tooth.blank import Zone
 from gears.tooth.gear import Gear, TipRelief
 from gears.tooth.involute import involute_function
-from gears.tooth.plane import polar
 from gears.tooth.rack import BasicRack
+from gears.tooth.rotation import polar
 from gears.tooth.trochoid import Trochoid, form_point
 
 THINNEST_HUB = 0.05

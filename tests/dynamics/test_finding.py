@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator, find_orbits, period_map
-from dynamics.flow.flow import tables
+from dynamics.flow.exact_flow import exact_flow
 from dynamics.model.states import apart
 
 # eight orbits with all sums of indices right, and others of period 3 in pairs of opposite index
@@ -28,7 +28,7 @@ def random_oscillator(seed: int) -> GearOscillator:
 
 def newton(osc: GearOscillator, start: np.ndarray, n: int) -> np.ndarray | None:
     """Plain Newton's method from one start, by the period map alone."""
-    at, flow = start, tables(osc)
+    at, flow = start, exact_flow(osc)
     for _ in range(30):
         image = period_map(flow, at, n)
         gap = image.state - at

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 import dynamics
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, period_map, trajectory
-from dynamics.flow.flow import DEGREE, tables, turning_points
+from dynamics.flow.exact_flow import DEGREE, exact_flow, turning_points
 
 EPS = np.finfo(float).eps
 unit = st.floats(-1.0, 1.0)
@@ -135,7 +135,7 @@ def test_determinant_is_exact(osc, state):
 @given(oscillators(), states)
 def test_degree_and_cells_do_not_matter(osc, state):
     image = period_map(osc, state)
-    finer = period_map(tables(osc, refinement=3, degree=24), state)
+    finer = period_map(exact_flow(osc, refinement=3, degree=24), state)
     np.testing.assert_allclose(image.state, finer.state, rtol=0, atol=4 * EPS * osc.cells * size(image))
 
 
@@ -219,20 +219,20 @@ def test_first_exit_at_a_boundary_just_crossed():
 @settings(max_examples=60, deadline=None)
 @given(oscillators(), states, st.sampled_from([1e-4, 1e-6, 1e-8, 1e-10, 1e-12]))
 def test_a_stated_tolerance_is_kept(osc, state, tolerance):
-    image = period_map(tables(osc, tolerance=tolerance), state)
-    exact = period_map(tables(osc, refinement=3, degree=24), state)
+    image = period_map(exact_flow(osc, tolerance=tolerance), state)
+    exact = period_map(exact_flow(osc, refinement=3, degree=24), state)
     # an impact that a graze makes or misses moves the state by the depth times its root: no more than the tolerance
     np.testing.assert_allclose(image.state, exact.state, rtol=0, atol=tolerance * size(exact))
 
 
 def test_a_looser_tolerance_takes_fewer_terms(article):
-    lengths = [tables(article(), tolerance=t).coef.shape[2] for t in (1e-4, 1e-8, 1e-12, 1e-300)]
+    lengths = [exact_flow(article(), tolerance=t).coef.shape[2] for t in (1e-4, 1e-8, 1e-12, 1e-300)]
     assert lengths == sorted(lengths)
     assert lengths[0] < lengths[-1] == DEGREE + 1
     with pytest.raises(InputError, match="tolerance"):
-        tables(article(), degree=8, tolerance=1e-6)
+        exact_flow(article(), degree=8, tolerance=1e-6)
     with pytest.raises(InputError, match="tolerance"):
-        tables(article(), tolerance=0.0)
+        exact_flow(article(), tolerance=0.0)
 
 
 @settings(max_examples=150, deadline=None)
@@ -255,20 +255,21 @@ def test_sole_root_of_a_monotone_polynomial(low, shape, share, rising):
 
 def test_error_falls_with_the_degree_as_theory_says(article):
     osc = article()
-    exact = period_map(tables(osc, refinement=4, degree=30), (0.5, 0.2)).state
+    exact = period_map(exact_flow(osc, refinement=4, degree=30), (0.5, 0.2)).state
     errors = [
-        np.max(np.abs(period_map(tables(osc, degree=n), (0.5, 0.2)).state - exact)) for n in (6, 8, 10, 12)
+        np.max(np.abs(period_map(exact_flow(osc, degree=n), (0.5, 0.2)).state - exact))
+        for n in (6, 8, 10, 12)
     ]
     # two degrees more gain about (1/2)^2 / (n^2) and never less than a factor of 16
     assert all(later < earlier / 16 for earlier, later in itertools.pairwise(errors))
-    assert np.max(np.abs(period_map(tables(osc, degree=DEGREE), (0.5, 0.2)).state - exact)) < 5e-15
+    assert np.max(np.abs(period_map(exact_flow(osc, degree=DEGREE), (0.5, 0.2)).state - exact)) < 5e-15
 
 
 def test_halving_the_cell_gains_the_order(article):
     osc = article(half_backlash=0.0)
-    exact = period_map(tables(osc, refinement=4, degree=30), (0.5, 0.2)).state
+    exact = period_map(exact_flow(osc, refinement=4, degree=30), (0.5, 0.2)).state
     errors = [
-        np.max(np.abs(period_map(tables(osc, refinement=r, degree=6), (0.5, 0.2)).state - exact))
+        np.max(np.abs(period_map(exact_flow(osc, refinement=r, degree=6), (0.5, 0.2)).state - exact))
         for r in (2, 4)
     ]
     # the speed at either end of a cell is wrong by h^6, equally at both, which cancels in the map over it: h^7, and
@@ -411,7 +412,7 @@ def test_a_crossing_right_at_the_start_of_a_cell(force):
     """Forces far below the rounding of X: the motion leaves the limit and comes back between two cells."""
     osc = GearOscillator(FourierStiffness(1.0), 0.0, force, 2.0 * force, 0.25, half_backlash=1.0)
     for refinement in (1, 3):
-        image = period_map(tables(osc, refinement), (1.0, 0.0))
+        image = period_map(exact_flow(osc, refinement), (1.0, 0.0))
         np.testing.assert_allclose(image.state, (1.0, 0.0), rtol=0, atol=1e-15)
         assert np.linalg.det(image.jacobian) == pytest.approx(1.0, abs=1e-12)
         assert abs(image.counts[0, 1]) == 0

@@ -13,7 +13,7 @@ from base import InputError
 from dynamics import FourierStiffness, GearOscillator, find_orbit, period_map, trajectory
 from dynamics.attraction.manifolds import reversed_tables
 from dynamics.branches.sensitivity import map_derivatives
-from dynamics.flow.flow import carried, tables
+from dynamics.flow.exact_flow import exact_flow, propagated
 from tests.dynamics.conftest import step_by_step
 
 STATE = np.array([0.5, 0.2])
@@ -108,8 +108,8 @@ def test_free_flight_in_closed_form():
 
 def test_backwards_and_forwards_again():
     osc = oscillator(mean_force=0.0, error_amplitude=0.6)
-    ahead = carried(tables(osc), STATE, 1)
-    assert carried(reversed_tables(osc), ahead, 1, backwards=True)[0] == pytest.approx(STATE, abs=1e-12)
+    ahead = propagated(exact_flow(osc), STATE, 1)
+    assert propagated(reversed_tables(osc), ahead, 1, backwards=True)[0] == pytest.approx(STATE, abs=1e-12)
 
 
 def test_exponents_add_up_to_the_mean_damping():

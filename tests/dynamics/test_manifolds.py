@@ -17,7 +17,7 @@ from dynamics import (
 )
 from dynamics.attraction.manifolds import reversed_tables
 from dynamics.branches.branch import stretches
-from dynamics.flow.flow import carried, tables
+from dynamics.flow.exact_flow import exact_flow, propagated
 from tests.validation.article_motion import lubricated, starved
 
 
@@ -26,8 +26,8 @@ def test_running_backwards_undoes_the_map():
         FourierStiffness(1.0, (0.3, 0.1), (0.3, -1.0)), 0.05, 0.1, 0.3, 0.7, 0.25, error_phase=0.4
     )
     states = np.random.default_rng(1).normal(size=(100, 2))
-    ahead = carried(tables(osc), states, 3)
-    back = carried(reversed_tables(osc), ahead, 3, backwards=True)
+    ahead = propagated(exact_flow(osc), states, 3)
+    back = propagated(reversed_tables(osc), ahead, 3, backwards=True)
     stretch = max(np.max(np.abs(period_map(osc, s, 3).jacobian)) for s in states)
     assert np.max(np.abs(ahead - states)) > 0.1
     assert np.max(np.abs(back - states)) < 1e-13 * stretch / np.exp(-12 * np.pi * 0.05 / 0.7)
@@ -71,7 +71,7 @@ def test_manifolds_are_invariant():
     """The image of a curve's points lies on the curve, within the bend of its chords."""
     unstable, _ = saddle()
     curve = manifold(unstable, "unstable", length=4.0, spacing=0.002).curves[0]
-    images = carried(tables(lubricated()), curve[: len(curve) // 3], 1)
+    images = propagated(exact_flow(lubricated()), curve[: len(curve) // 3], 1)
     gap = [np.min(np.linalg.norm(curve - p, axis=1)) for p in images]
     assert max(gap) < 0.002 * 0.6
 

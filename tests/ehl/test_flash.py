@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ehl import STEEL, LineContact, Lubricant, Solid, blok_flash_temperature
-from ehl.discrete.bodies import surface_heating
+from ehl.discrete.solids import surface_heating
 
 OIL = Lubricant(0.075, 19.6e-9, 860.0)
 FRICTION = 0.03

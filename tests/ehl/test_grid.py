@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ehl.discrete.discrete import make_grid
+from ehl.discrete.equations import make_grid
 from ehl.discrete.grid import default_domain, face_weights, graded_nodes, hat_weights
 
 

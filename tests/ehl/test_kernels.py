@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from ehl import LineContact
-from ehl.discrete.discrete import Groups, Residual, film_gap, fluxes, inlet_pressure, make_grid
+from ehl.discrete.equations import Groups, Residual, film_gap, fluxes, inlet_pressure, make_grid
 from ehl.discrete.grid import face_weights, graded_nodes, upstream_share
-from ehl.kernels.kernels import log_potential, newton_matrix
+from ehl.kernels.film_kernels import log_potential, newton_matrix
 
 _spec = importlib.util.spec_from_file_location("ehl_twins", Path(__file__).with_name("twins.py"))
 twins = importlib.util.module_from_spec(_spec)

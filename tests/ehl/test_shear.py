@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import special
 
-from ehl.discrete.across import lobatto
-from ehl.discrete.bodies import Solid, surface_heating
+from ehl.discrete.collocation import lobatto
+from ehl.discrete.solids import Solid, surface_heating
 from ehl.kernels.heat_kernels import heat_across
 from ehl.kernels.shear_kernels import eyring, flow_across, gradient
 

@@ -8,8 +8,8 @@ import pytest
 
 from base import RangeWarning
 from ehl import LineContact, Lubricant, solve
-from ehl.films.outcome import pressure_error, teeth
-from ehl.solving.run import MOST_STEPS
+from ehl.films.result import pressure_error, teeth
+from ehl.solving.grid_search import MOST_STEPS
 from tests.ehl.films import quiet, sound
 from tests.hard.random_contacts import random_contact
 from tests.validation.article import PITCH, SECTION_2

@@ -15,16 +15,16 @@ from base import InputError
 from fem.contact.clear_flanks import stays_clear
 from fem.contact.loaded_flanks import loaded_flanks
 from fem.contact.opposite_flanks import both_sides, share_with_opposite
-from fem.contact.sharing import one_sided, solve
-from fem.elasticity.elasticity import PlaneElasticity, stiffness_matrix
+from fem.contact.solver import solve_contact, solve_one_side
 from fem.elasticity.flank_samples import sample_places
 from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.plane_elasticity import PlaneElasticity, stiffness_matrix
 from fem.elasticity.ring import ring_of
 from fem.influence.back_compliance import back_compliance
 from fem.laws.edge_tables import EdgeTables
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from gears import Alignment, Gear, GearDeviations, GearPair, PitchDeviations, TipRelief
-from gears.tooth.plane import turned
+from gears.tooth.rotation import turned
 from meshes import gear_mesh, mesh_sector
 
 
@@ -53,9 +53,9 @@ def test_reversal_is_the_mirrored_problem(loose, beyond):
     pair, bodies = loose
     position = np.linspace(0.01, 0.99, 23)
     force = np.array([600.0 / pair.base_radii[0]])
-    given = Setting(pair, beyond_path=beyond)
-    back = solve(replace(given, back=True).at(position), bodies, force, None)
-    front = solve(given.at((given.mirror - position) % 1.0), bodies, force, None)
+    given = MeshSetup(pair, beyond_path=beyond)
+    back = solve_contact(replace(given, back=True).at(position), bodies, force, None)
+    front = solve_contact(given.at((given.mirror - position) % 1.0), bodies, force, None)
     for name in ("forces", "transmission_error", "stiffness"):
         np.testing.assert_allclose(getattr(back.share, name), getattr(front.share, name), rtol=1e-12)
 
@@ -73,7 +73,7 @@ def test_a_braking_pinion(loose):
         assert getattr(brakes, name) == pytest.approx(getattr(drives, name), rel=3e-6)
     np.testing.assert_allclose(brakes.wheel_torque.mean(), -drives.wheel_torque.mean(), rtol=1e-2)
     # the phases of the harmonics are those of the mirror
-    c = Setting(pair).mirror
+    c = MeshSetup(pair).mirror
     first, mirrored = (one.arcs.harmonics("stiffness", np.array([1]))[0][0] for one in (drives, brakes))
     assert mirrored == pytest.approx(np.conj(first) * np.exp(-2j * np.pi * c), rel=1e-5)
     measured = brakes.against("body")
@@ -92,7 +92,7 @@ def test_a_braking_pinion(loose):
 def test_the_mirror_is_where_the_back_flanks_touch():
     # the wheel stands, the pinion turns back by its backlash: its back flank is at rho1' = L - rho2'
     pair = GearPair(Gear(23, 0.2), Gear(40, -0.1), 2e-3, 0.04).with_backlash(70e-6)
-    given = Setting(pair)
+    given = MeshSetup(pair)
     first, _ = pair.teeth_profiles
     placed = pair.placement(pair.points.A)
     turned = placed.pinion_angle - pair.backlash / first.base_radius
@@ -107,7 +107,7 @@ def test_pitch_deviations_open_one_side_and_close_the_other():
     late = np.zeros(12)
     late[3] = 10e-6
     deviations = (GearDeviations(None, PitchDeviations(tuple(late))), None)
-    front = Setting(pair, 1, deviations=deviations)
+    front = MeshSetup(pair, 1, deviations=deviations)
     teeth = np.array([[3, 4], [3, 4]])
     np.testing.assert_allclose(front.pitch_gap(teeth), [10e-6 * np.cos(pair.rack.alpha), 0.0])
     np.testing.assert_allclose(front.opposite.pitch_gap(teeth), -front.pitch_gap(teeth))
@@ -137,10 +137,10 @@ def test_large_backlash_costs_nothing_and_changes_nothing(loose):
     assert "back flanks" not in cycle.message
     close = GearPair(Gear(36, tip_relief=pair.pinion.tip_relief), Gear(40), 2e-3, 0.04)
     bodies = fem.compliance(close, tolerance=0.005)
-    given = Setting(close, 10)
+    given = MeshSetup(close, 10)
     force = np.array([600.0 / close.base_radii[0]])
     flanks = loaded_flanks(given, bodies, None, 0.6, float(force[0]), EdgeTables(given, bodies))
-    alone = one_sided(given, bodies, force, flanks, EdgeTables(given, bodies))
+    alone = solve_one_side(given, bodies, force, flanks, EdgeTables(given, bodies))
     cycle = fem.mesh_cycle(close, 600.0, 10, bodies)
     assert np.array_equal(cycle.forces, (alone.share.forces / alone.kappa).reshape(cycle.forces.shape))
     assert "back flanks stand clear by at least" in cycle.message
@@ -151,10 +151,10 @@ def test_flanks_that_stay_clear_are_known_without_their_laws(teeth):
     """The bound lies below the gaps of the finer mesh, and is none where less play is left than it doubts."""
     pair = GearPair(Gear(teeth[0]), Gear(teeth[1]), 2e-3, 0.04)
     bodies = fem.compliance(pair, tolerance=0.005)
-    given, force = Setting(pair, 12), np.array([50.0, 600.0]) / pair.base_radii[0]
+    given, force = MeshSetup(pair, 12), np.array([50.0, 600.0]) / pair.base_radii[0]
     tables = EdgeTables(given, bodies)
     flanks = loaded_flanks(given, bodies, None, 0.6, float(force[1]), tables)
-    alone = one_sided(given, bodies, force, flanks, tables).share
+    alone = solve_one_side(given, bodies, force, flanks, tables).share
     apart = np.zeros(2, dtype=bool)
     clear = stays_clear(given, bodies, force, None, flanks, alone, apart, 0.6)
     assert "back_flanks" not in vars(bodies)
@@ -197,9 +197,9 @@ def testboth_sides_balance_the_torque(tight):
 
 def test_pressed_gears_rest_in_the_middle_where_they_are_their_own_mirror(tight):
     pair, bodies = tight
-    given = Setting(pair)
+    given = MeshSetup(pair)
     middle = np.array([0.5 * given.mirror % 1.0, (0.5 * given.mirror + 0.5) % 1.0])
-    found = solve(given.at(middle), bodies, np.array([0.0]), None)
+    found = solve_contact(given.at(middle), bodies, np.array([0.0]), None)
     # the mean approach of both sides is zero, and both bear alike
     np.testing.assert_allclose(found.share.transmission_error[0, 0], -0.5 * pair.backlash, rtol=2e-4)
     both = found.share.forces[0, 0].sum(axis=-1), found.opposite.forces[0, 0].sum(axis=-1)
@@ -224,20 +224,20 @@ def test_cells_of_the_face_whereboth_sides_bear_are_refused(tight):
 def test_reversal_of_pressed_gears(tight):
     pair, bodies = tight
     position = np.linspace(0.02, 0.98, 9)
-    given, force = Setting(pair), np.array([100.0 / pair.base_radii[0]])
-    back = solve(replace(given, back=True).at(position), bodies, force, None)
-    front = solve(given.at((given.mirror - position) % 1.0), bodies, force, None)
+    given, force = MeshSetup(pair), np.array([100.0 / pair.base_radii[0]])
+    back = solve_contact(replace(given, back=True).at(position), bodies, force, None)
+    front = solve_contact(given.at((given.mirror - position) % 1.0), bodies, force, None)
     np.testing.assert_allclose(back.share.forces, front.share.forces, rtol=1e-9, atol=1e-6)
     np.testing.assert_allclose(back.opposite.forces, front.opposite.forces, rtol=1e-9, atol=1e-6)
 
 
 def test_forces_are_those_of_a_convex_program(tight):
     pair, bodies = tight
-    given, force = Setting(pair, 3), 100.0 / pair.base_radii[0]
+    given, force = MeshSetup(pair, 3), 100.0 / pair.base_radii[0]
     tables = EdgeTables(given, bodies)
     flanks, other = (loaded_flanks(one, bodies, None, 0.6, force, tables) for one in (given, given.opposite))
     both = both_sides(given, bodies, flanks, other)
-    found = solve(given, bodies, np.array([force]), None)
+    found = solve_contact(given, bodies, np.array([force]), None)
     forces = np.concatenate([found.share.forces, found.opposite.forces], axis=-1)[0, 0]
     length = 1e-6
     for row in range(3):

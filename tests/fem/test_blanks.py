@@ -12,9 +12,9 @@ from scipy.sparse.linalg import splu
 
 import fem
 from base import InputError, RangeWarning
-from fem.elasticity.elasticity import PlaneElasticity, stiffness_matrix
+from fem.elasticity.plane_elasticity import PlaneElasticity, stiffness_matrix
 from fem.elasticity.support import Support
-from fem.fields.fields import loaded_fields
+from fem.fields.stress_fields import loaded_fields
 from gears import Blank, Gear, GearPair
 from gears.closed_form import body_wind_up, ring_wind_up
 from meshes import gear_mesh, mesh_sector

@@ -9,13 +9,13 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import fem
-from fem.contact.sharing import solve
-from fem.elasticity.elasticity import PlaneElasticity
+from fem.contact.solver import solve_contact
 from fem.elasticity.flamant import hertz_half_width, hertz_indentation
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.influence.strip_contact import flat_kernel, from_the_corner, smoothed
 from fem.influence.tip_strips import sharp_layout
 from fem.laws.cut_off import FADE, FAR, cut_off
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from fem.laws.tip_geometry import lever_ratio, opening, unloaded_gap
 from gears import Gear, GearPair, Material
 
@@ -25,8 +25,8 @@ STEP = 5e-4
 
 def solved(pair, bodies, torque, position):
     """Deflection, tangent and forces at positions [base pitches from A]."""
-    found = solve(
-        Setting(pair, 1).at(np.asarray(position)), bodies, np.array([torque / pair.base_radii[0]]), None
+    found = solve_contact(
+        MeshSetup(pair, 1).at(np.asarray(position)), bodies, np.array([torque / pair.base_radii[0]]), None
     )
     assert not found.refusal(0)
     share = found.share
@@ -66,11 +66,13 @@ def test_nothing_steps_at_A_and_E(article_pair, article_bodies, torque):
 
 @pytest.mark.parametrize("radius", [1e-6, 20e-6, 100e-6])
 def test_nothing_steps_at_a_rounding(article_pair, article_bodies, radius):
-    given = Setting(article_pair, 1, tip_rounding=radius)
+    given = MeshSetup(article_pair, 1, tip_rounding=radius)
     for place in given.ends:
         at = (place - article_pair.points.A) / article_pair.base_pitch + np.array([-1e-6, 1e-6])
         force = np.array([600.0 / article_pair.base_radii[0]])
-        before, after = solve(given.at(at), article_bodies, force, None).share.transmission_error[0, 0]
+        before, after = solve_contact(given.at(at), article_bodies, force, None).share.transmission_error[
+            0, 0
+        ]
         assert after == pytest.approx(before, rel=STEP)
 
 

@@ -8,7 +8,7 @@ from scipy.sparse import csc_array
 from scipy.sparse.linalg import spsolve
 
 from base import InputError
-from fem.elasticity.elasticity import PlaneElasticity, nodal_stress_matrix, stiffness_matrix, stress_at
+from fem.elasticity.plane_elasticity import PlaneElasticity, nodal_stress_matrix, stiffness_matrix, stress_at
 from gears.closed_form import ring_wind_up
 from meshes import gear_mesh, mesh_sector
 from tests.fem.conftest import edge_load, quadratic_ring

@@ -8,7 +8,7 @@ from scipy.sparse.linalg import splu
 
 import fem
 from base import InputError
-from fem.elasticity.elasticity import stiffness_matrix
+from fem.elasticity.plane_elasticity import stiffness_matrix
 from fem.fields.export import export_pair, export_position, write_abaqus
 from fem.fields.loaded_gears import flank_forces, loaded_gears
 from meshes import Sizes

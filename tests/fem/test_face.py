@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from base import InputError
-from fem import Compliance, compliance, mesh_cycle
+from fem import PairCompliance, compliance, mesh_cycle
 from fem.contact.cell_matrix import cell_matrix
-from fem.influence.gear_face import FlankWaves
+from fem.influence.gear_face import AxialHarmonics
 from fem.pair.face_compliance import pair_ends, pair_waves
 from fem.pair.face_setting import FaceSetting
 from gears import Alignment, Gear, GearPair, Lead, LeadTrace
@@ -20,7 +20,7 @@ TORQUE = 100.0
 
 
 @pytest.fixture(scope="module")
-def bodies() -> Compliance:
+def bodies() -> PairCompliance:
     return compliance(PAIR, tolerance=0.02)
 
 
@@ -137,7 +137,7 @@ def test_waves_on_a_neighbour_are_those_of_the_neighbour_that_is_asked_for():
     """Chebyshev series over both places, for each of two neighbours by itself, as numpy sums them."""
     span, chance = (2.0, 4.0), np.random.default_rng(3)
     cross = chance.normal(size=(2, 3, 3, 2))
-    waves = FlankWaves(span, 5.0, np.zeros((2, 2)), cross)
+    waves = AxialHarmonics(span, 5.0, np.zeros((2, 2)), cross)
     load, point = np.array([2.3, 3.9]), np.array([3.1, 2.2])
     constant = replace(waves, cross=np.concatenate([cross[..., :1], np.zeros_like(cross[..., 1:])], axis=-1))
     for tooth in (1, 2):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem import Compliance, compliance, mesh_cycle
+from fem import PairCompliance, compliance, mesh_cycle
 from fem.contact import face_share
 from fem.contact.face_errors import LEFT, cell_errors, greatest_error, half_as_many
 from fem.pair.face_setting import FREE_ENDS, WALLS, FaceSetting
@@ -65,7 +65,7 @@ def test_half_as_many_cells_are_even_and_what_they_change_is_counted_by_their_nu
 
 
 @pytest.fixture(scope="module")
-def bodies() -> Compliance:
+def bodies() -> PairCompliance:
     return compliance(PAIR, tolerance=0.02)
 
 

@@ -10,14 +10,14 @@ import pytest
 from scipy.spatial import cKDTree
 
 from base import InputError
-from fem import Compliance, MeshCycle, compliance, field_blocks, mesh_cycle
+from fem import MeshCycle, PairCompliance, compliance, field_blocks, mesh_cycle
 from fem.elasticity.flank_samples import sample_places
 from fem.fields.face_fields import face_fields
 from fem.fields.face_waves import gear_prisms, on_flank
-from fem.fields.fields import draw_gears, loaded_fields
+from fem.fields.stress_fields import draw_gears, loaded_fields
 from fem.fields.vtk import write_vtk_series
 from fem.influence.face_ends import end_fields
-from fem.influence.gear_face import END_PLACES, ENDS_SIZES, flank_ends, section_of
+from fem.influence.gear_face import END_PLACES, ENDS_SIZES, end_correction, section_of
 from gears import Alignment, Gear, GearPair
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
@@ -26,17 +26,17 @@ ROWS = 8
 
 
 @pytest.fixture(scope="module")
-def bodies() -> Compliance:
+def bodies() -> PairCompliance:
     return compliance(PAIR, tolerance=0.02)
 
 
 @pytest.fixture(scope="module")
-def cycle(bodies: Compliance) -> MeshCycle:
+def cycle(bodies: PairCompliance) -> MeshCycle:
     return mesh_cycle(PAIR, TORQUE, ROWS, bodies, alignment=Alignment(40e-6), cells=16, face_model="walls")
 
 
 @pytest.fixture(scope="module")
-def prisms(bodies: Compliance, cycle: MeshCycle):
+def prisms(bodies: PairCompliance, cycle: MeshCycle):
     return gear_prisms(bodies, cycle)
 
 
@@ -116,7 +116,10 @@ def test_free_ends_move_the_solid_as_they_move_the_contact(bodies, monkeypatch, 
     s, weight = np.polynomial.legendre.leggauss(3)
     z = (middles[:, None] + 0.5 * np.diff(edges)[:, None] * s).ravel()
     fields = end_fields(meshed, over, width, z, 1, np.arange(len(over.mesh.points)))
-    solved, places = flank_ends(meshed, width).over(edges), sample_places(meshed.shape.profile, END_PLACES)
+    solved, places = (
+        end_correction(meshed, width).over(edges),
+        sample_places(meshed.shape.profile, END_PLACES),
+    )
     for rho in places[[3, 5]]:
         at, found = on_flank(over.mesh, rho), fields.moved(rho, forces, edges, [0])[0]
         along = np.einsum("k,lka,a->l", at.weights[0], found[:, at.nodes[0], :2], at.inward[0])

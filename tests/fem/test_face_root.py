@@ -11,13 +11,13 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 import fem
-from fem.elasticity.elasticity import PlaneElasticity, physical_gradients
 from fem.elasticity.fillet_strain import fillet_strains, von_mises
 from fem.elasticity.line_load import flank_points
+from fem.elasticity.plane_elasticity import PlaneElasticity, physical_gradients
 from fem.elasticity.prism import Face, prism, section
 from fem.influence.fillet_waves import _stress, solid_of
 from fem.influence.gear_face import between_waves, solved_waves
-from fem.influence.solved_gear import Gears
+from fem.influence.gear_store import GearStore
 from fem.pair.face_setting import FaceSetting
 from fem.pair.pair_fillets import fillets
 from fem.stress.face_fillets import face_fillets, over_face
@@ -85,7 +85,7 @@ def test_waves_by_themselves_are_what_is_interpolated(walls):
     """A wave between those that are solved, at a place between those that are loaded, on the same mesh."""
     over, wave = walls[0], 0.4
     loaded = face_shapes()[0]
-    influence = loaded.solved(Gears()).influence
+    influence = loaded.solved(GearStore()).influence
     mesh, law = loaded.mesh(), solid_of(influence.law.plane_poisson)
     section_, strains = section(mesh, law), fillet_strains(mesh, influence.profile, influence.line)
     low, high = influence.rho_range
@@ -109,7 +109,7 @@ def face_shapes():
 def test_strains_of_a_free_surface_give_hookes_stress():
     """Any displacement whose surface stress vanishes: stretched along the fillet's chord and along z."""
     loaded = face_shapes()[0]
-    influence = loaded.solved(Gears()).influence
+    influence = loaded.solved(GearStore()).influence
     mesh = loaded.mesh()
     strains = fillet_strains(mesh, influence.profile, influence.line)
     high = np.abs(mesh.points).max()
@@ -144,7 +144,7 @@ def test_a_section_through_the_tooth_bears_what_a_wave_puts_on_it(wave):
     (their nodal forces) and k times the integral of tau_xz over the part are the load.
     """
     loaded = face_shapes()[0]
-    influence = loaded.solved(Gears()).influence
+    influence = loaded.solved(GearStore()).influence
     mesh, law = loaded.mesh(), solid_of(influence.law.plane_poisson)
     over = section(mesh, law)
     at = flank_points(mesh, np.array([0.5 * sum(influence.rho_range)]))

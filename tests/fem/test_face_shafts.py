@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from base import InputError
-from fem import Compliance, MeshCycle, compliance, mesh_cycle
+from fem import MeshCycle, PairCompliance, compliance, mesh_cycle
 from fem.contact.cell_laws import CellLaws
 from fem.contact.cell_matrix import cell_coupling
 from fem.contact.loaded_flanks import loaded_flanks
-from fem.contact.sharing import solve
+from fem.contact.solver import solve_contact
 from fem.laws.edge_tables import EdgeTables
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import face_setting
 from gears import Alignment, Bearing, Gear, GearPair, Material, Shaft, ShaftSegment
 from gears.pair.shaft_face import shaft_over_face
@@ -27,7 +27,7 @@ STIFF = 10.0
 
 
 @pytest.fixture(scope="module")
-def bodies() -> Compliance:
+def bodies() -> PairCompliance:
     return compliance(PAIR, tolerance=0.02)
 
 
@@ -163,9 +163,9 @@ def test_the_torque_works_what_bodies_contacts_and_shafts_store(bodies, shafts, 
     """dU = T dtheta: the energies of teeth and bodies, of the contacts and of both beams, each by itself."""
     cells, change = 16, 1e-3
     face = face_setting(PAIR, None, cells, "walls", shafts)
-    given = Setting(PAIR, 1, False, face=face).at(np.array([position]))
+    given = MeshSetup(PAIR, 1, False, face=face).at(np.array([position]))
     force = PAIR.normal_force(TORQUE) * np.array([1.0 - change, 1.0 + change])
-    found = solve(given, bodies, force, None)
+    found = solve_contact(given, bodies, force, None)
     forces = found.face.forces[:, 0].reshape(2, 1, -1)
     assert np.all((forces > 0.0).sum(axis=-1) == cells * found.where.touchable.sum())
     assert np.abs(found.face.shafts.tilt_touch).min() > 1e-7

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from base import InputError
-from fem import Compliance, compliance, mesh_cycle
+from fem import PairCompliance, compliance, mesh_cycle
 from fem.contact.cell_matrix import cell_matrix
 from fem.pair.face_setting import FaceSetting
 from gears import Alignment, Bearing, Gear, GearPair, Heat, Lead, Shaft, ShaftSegment, warm_pair
@@ -18,7 +18,7 @@ TORQUE = 100.0
 
 
 @pytest.fixture(scope="module")
-def bodies() -> Compliance:
+def bodies() -> PairCompliance:
     return compliance(PAIR, tolerance=0.02)
 
 

@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
 from fem.elasticity import flamant
-from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.plane_elasticity import PlaneElasticity
 
 LAWS = [PlaneElasticity("strain", 206e9, 0.3), PlaneElasticity("stress", 206e9, 0.25)]
 LOAD, INWARD = np.array([0.3, -0.2]), np.array([np.cos(2.0), np.sin(2.0)])

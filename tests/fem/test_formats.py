@@ -6,7 +6,7 @@ import meshio
 import numpy as np
 import pytest
 
-import fem.elasticity.elasticity
+import fem.elasticity.plane_elasticity
 from base import InputError
 from fem.fields.export import FORMATS as ALL
 from fem.fields.export import write_mesh
@@ -27,7 +27,7 @@ def some_teeth(article_pair) -> GearMesh:
 def gear(some_teeth) -> LoadedGear:
     forces = np.zeros_like(some_teeth.points)
     forces[7] = 3.0, -4.0
-    law = fem.elasticity.elasticity.PlaneElasticity("strain", 2e11, 0.3)
+    law = fem.elasticity.plane_elasticity.PlaneElasticity("strain", 2e11, 0.3)
     return LoadedGear("pinion", some_teeth, np.zeros(2), law, 0.04, forces)
 
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from base import InputError
-from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity.corner_singularity import corner_logarithm, wedge_logarithms
 from fem.elasticity.flamant import hertz_indentation
 from fem.elasticity.flank_samples import sample_places, sampled
 from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.ring import ring_of
-from fem.elasticity.wedge import corner_logarithm, wedge_logarithms
 from fem.influence.gear_compliance import gear_compliance
 from gears import Gear, GearPair
 from meshes import mesh_sector

@@ -18,9 +18,9 @@ from fem.elasticity.line_load import flank_points
 from fem.elasticity.prism import Face, prism
 from fem.influence.gear_face import ENDS_SIZES, section_of
 from fem.laws.edge_tables import EdgeTables
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import face_setting
-from fem.pair.overhang import cosines
+from fem.pair.unequal_widths import cosines
 from gears import Alignment, Bearing, Gear, GearPair, Lead, Material, Shaft, ShaftSegment
 
 STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
@@ -104,7 +104,7 @@ def test_the_tangent_is_the_derivative(bodies, beyond, off):
 def problem(bodies, beyond=True):
     """Cells that move, some forces on them and a deflection."""
     face = face_setting(PLASTIC, Alignment(40e-6), CELLS, "walls")
-    given = Setting(PLASTIC, 4, beyond, moving_contact=True, face=face)
+    given = MeshSetup(PLASTIC, 4, beyond, moving_contact=True, face=face)
     force, tables = TORQUE / PLASTIC.base_radii[0], EdgeTables(given, bodies)
     flanks = loaded_flanks(given, bodies, None, 0.6, force, tables)
     own = moved_flanks(given, bodies, flanks, force, tables)
@@ -155,7 +155,7 @@ def test_newton_s_matrix_is_the_derivative(bodies):
 
 
 def test_compliance_between_cells_is_that_of_the_moved_pairs(bodies):
-    given = Setting(PLASTIC, 4, face=face_setting(PLASTIC, None, CELLS, "walls"))
+    given = MeshSetup(PLASTIC, 4, face=face_setting(PLASTIC, None, CELLS, "walls"))
     flanks = loaded_flanks(given, bodies, None, 0.6, 1e3, EdgeTables(given, bodies))
     own = moved_flanks(given, bodies, flanks, 1e3, EdgeTables(given, bodies))
     ones = np.ones_like(flanks.kappa)
@@ -171,7 +171,7 @@ def test_compliance_between_cells_is_that_of_the_moved_pairs(bodies):
 
 def test_smoothing_holds_even_loads_and_takes_short_waves_away(bodies):
     where = loaded_flanks(
-        Setting(PLASTIC, 4), bodies, None, 0.6, 1e3, EdgeTables(Setting(PLASTIC, 4), bodies)
+        MeshSetup(PLASTIC, 4), bodies, None, 0.6, 1e3, EdgeTables(MeshSetup(PLASTIC, 4), bodies)
     ).where
     face = face_setting(PLASTIC, None, 32, "walls")
     smooth = tooth_smoothing(face, bodies, where)
@@ -185,7 +185,7 @@ def test_smoothing_holds_even_loads_and_takes_short_waves_away(bodies):
 
 
 def test_slices_tilt_by_their_own_load(bodies):
-    given = Setting(PLASTIC, 4)
+    given = MeshSetup(PLASTIC, 4)
     where = loaded_flanks(given, bodies, None, 0.6, 1e3, EdgeTables(given, bodies)).where
     smooth = tooth_smoothing(face_setting(PLASTIC, None, CELLS, "slices"), bodies, where)
     np.testing.assert_array_equal(smooth, np.broadcast_to(np.eye(CELLS), smooth.shape))
@@ -228,7 +228,7 @@ def test_flanks_move_along_themselves_as_they_tilt(bodies):
         along = motion.tangential(place * PLASTIC.module) * unit
         follows = 1.0 + (waved - still) / along
         step = 1e-3
-        waves = fem.pair.face_compliance.waves_of(meshed, fem.influence.solved_gear.Gears())
+        waves = fem.pair.face_compliance.waves_of(meshed, fem.influence.gear_store.GearStore())
         slope = flexible.own_slope(place * PLASTIC.module) * unit * PLASTIC.module
         ahead, behind = (waves.own_at(place + by, np.array([0.5]))[:, 0] for by in (step, -step))
         np.testing.assert_allclose(follows, 1.0 + (ahead - behind) / (2 * step) / slope, atol=off)

@@ -9,14 +9,14 @@ import pytest
 
 import fem
 from fem.contact.moving_contact import contact_moves, contacts_move, model_error, moved_share, moving_pairs
-from fem.elasticity import flamant, third_order
-from fem.elasticity.elasticity import PlaneElasticity
+from fem.elasticity import flamant, nonlinear_energy
+from fem.elasticity.nonlinear_energy import densities, half_plane, hertz_rotation
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.ring import ring_of
-from fem.elasticity.third_order import densities, half_plane, hertz_rotation
 from fem.influence.flank_motion import flank_motion
 from fem.laws.contact_candidates import contact_candidates
 from fem.laws.local_law import PairLaws
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from gears import Gear, GearPair, Material, share_load
 from meshes import Sizes, mesh_sector
 
@@ -35,7 +35,7 @@ def alone(bodies, position, torque, staying=False):
     rho1 = pair.points.A + position * pair.base_pitch
     rho = np.array([[[rho1]], [[pair.line_of_action - rho1]]])
     yes, no = np.ones((1, 1), dtype=bool), np.zeros((1, 1), dtype=bool)
-    where = replace(contact_candidates(Setting(pair, 1, False)), rho=rho, touchable=yes, edge=no)
+    where = replace(contact_candidates(MeshSetup(pair, 1, False)), rho=rho, touchable=yes, edge=no)
     moves, laws = contact_moves(bodies, where), PairLaws(bodies.hertz(rho[0]), no)
     force, bulk, gaps = np.array([torque / pair.base_radii[0]]), bodies.bulk(rho[0]), np.zeros((1, 1))
     stays = share_load(force, bulk, laws, gaps)
@@ -94,15 +94,15 @@ def test_energy_of_a_gear_that_is_turned_as_a_whole(monkeypatch):
     """
     profile, law = PLASTIC.teeth_profiles[0], PlaneElasticity.of(PA66, "strain")
     ring = ring_of(mesh_sector(profile, Sizes(), 3), law)
-    monkeypatch.setattr(third_order, "NEIGHBOURS", 8)  # all teeth of the ring
-    straight, psi, found = third_order._strained, 1.0 / law.E, []
+    monkeypatch.setattr(nonlinear_energy, "NEIGHBOURS", 8)  # all teeth of the ring
+    straight, psi, found = nonlinear_energy._strained, 1.0 / law.E, []
     for sign in (1, -1):
 
         def turned(slopes, by=sign * psi):
             strain, turn = straight(slopes)
             return strain, turn + by
 
-        monkeypatch.setattr(third_order, "_strained", turned)
+        monkeypatch.setattr(nonlinear_energy, "_strained", turned)
         motion = flank_motion(ring)
         found.append(motion.energy(np.linspace(*motion.rho_range, 5)[1:])[0])
     along = motion.tangential(np.linspace(*motion.rho_range, 5)[1:])

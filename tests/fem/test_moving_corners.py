@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import fem
-from fem.contact.sharing import solve
+from fem.contact.solver import solve_contact
 from fem.laws.cut_off import cut_off
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.local_law import Table
+from fem.laws.mesh_setup import MeshSetup
 from fem.laws.place_surface import up_to
-from fem.laws.setting import Setting
 from fem.laws.tip_contact import edge_laws
 from fem.laws.tip_geometry import lever_ratio
 from gears import Gear, GearPair, Material
@@ -30,7 +30,7 @@ def pair_of(factor=1.0):
 def plastic():
     pair = pair_of()
     bodies = fem.compliance(pair, tolerance=0.01)
-    return pair, bodies, EdgeTables(Setting(pair, moving_contact=True), bodies)
+    return pair, bodies, EdgeTables(MeshSetup(pair, moving_contact=True), bodies)
 
 
 def ends(pair):
@@ -39,8 +39,10 @@ def ends(pair):
 
 
 def solved(pair, bodies, tables, position, torque, moving=True):
-    given = Setting(pair, 1, moving_contact=moving).at(np.atleast_1d(position))
-    found = solve(given, bodies, np.array([torque / pair.base_radii[0]]), None, tables if moving else None)
+    given = MeshSetup(pair, 1, moving_contact=moving).at(np.atleast_1d(position))
+    found = solve_contact(
+        given, bodies, np.array([torque / pair.base_radii[0]]), None, tables if moving else None
+    )
     assert not found.refusal(0)
     return found
 
@@ -59,7 +61,7 @@ def test_nothing_steps_at_A_where_the_flank_goes_on_below_it():
     pair = GearPair(Gear(60), Gear(18), 2e-3, 20e-3, material=PA66).with_backlash(600e-6)
     bodies = fem.compliance(pair, tolerance=0.01)
     assert bodies.pinion.rho_range[0] < pair.points.A - 0.5 * pair.module
-    tables = EdgeTables(Setting(pair, moving_contact=True), bodies)
+    tables = EdgeTables(MeshSetup(pair, moving_contact=True), bodies)
     before, after = solved(pair, bodies, tables, [-1e-6, 1e-6], 20.0).share.transmission_error[0, 0]
     assert after == pytest.approx(before, rel=5e-5)
 
@@ -99,7 +101,7 @@ def test_stiff_teeth_have_the_law_of_contacts_that_stay():
     for factor in (1.0, 40.0):
         pair = pair_of(factor)
         bodies = fem.compliance(pair, tolerance=0.01)
-        tables = EdgeTables(Setting(pair, moving_contact=True), bodies)
+        tables = EdgeTables(MeshSetup(pair, moving_contact=True), bodies)
         positions = [end + away for end in ends(pair) for away in (-0.02, -0.004, 0.004, 0.03)]
         moves, stays = (
             solved(pair, bodies, tables, positions, 10.0, moving).share.transmission_error[0, 0]

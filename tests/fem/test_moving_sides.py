@@ -12,10 +12,10 @@ import fem
 from fem.contact.clear_flanks import ROLLED
 from fem.contact.loaded_flanks import loaded_flanks
 from fem.contact.moving_sides import moved_side, moving_sides
-from fem.contact.sharing import solve
+from fem.contact.solver import solve_contact
 from fem.laws.contact_candidates import REACHES
 from fem.laws.edge_tables import EdgeTables
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from gears import Gear, GearPair, Material
 
 STEEL, POM = Material(206e9, 0.3, 7850.0), Material(2.8e9, 0.36, 1410.0)
@@ -42,7 +42,7 @@ def tight(request):
 
 
 def problem(bodies, beyond, positions=5):
-    given = Setting(bodies.pair, positions, beyond, moving_contact=True)
+    given = MeshSetup(bodies.pair, positions, beyond, moving_contact=True)
     tables, force = EdgeTables(given, bodies), 500.0
     sides = []
     for setting in (given, given.opposite):
@@ -118,10 +118,10 @@ def test_little_overlap_and_load_are_those_of_contacts_that_stay():
 
 def test_pressed_gears_rest_in_the_middle_where_they_are_their_own_mirror(tight):
     """Both sides roll on by as much, and bear alike; the transmission error is half the overlap."""
-    mirror = Setting(tight.pair).mirror
+    mirror = MeshSetup(tight.pair).mirror
     places = np.array([0.5 * mirror, 0.5 * mirror + 0.5]) % 1.0
-    given = Setting(tight.pair, moving_contact=True, both=True, beyond_path=False).at(places)
-    found = solve(given, tight, np.zeros(1), None)
+    given = MeshSetup(tight.pair, moving_contact=True, both=True, beyond_path=False).at(places)
+    found = solve_contact(given, tight, np.zeros(1), None)
     assert found.settled
     np.testing.assert_allclose(found.share.transmission_error[0, 0], 10e-6, rtol=2e-3)
     front, back = (np.sort(one[0, 0], axis=-1) for one in (found.share.forces, found.opposite.forces))

@@ -12,7 +12,7 @@ from fem.contact.loaded_flanks import loaded_flanks
 from fem.contact.opposite_flanks import both_sides
 from fem.laws.contact_candidates import REACHES
 from fem.laws.edge_tables import EdgeTables
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from gears import Gear, GearPair
 
 FORCE = 1e4
@@ -28,7 +28,7 @@ def held_by(bore: float, teeth: tuple[int, int] = (36, 40), shift: float = 0.0) 
 
 def energy_over_loads(pair: GearPair, reach: float) -> np.ndarray:
     """Smallest eigenvalue over the mean diagonal of what the contacts yield at a force, at every position."""
-    bodies, given = fem.compliance(pair, 0.01), Setting(pair, 12)
+    bodies, given = fem.compliance(pair, 0.01), MeshSetup(pair, 12)
     tables = EdgeTables(given, bodies)
     front, back = (loaded_flanks(one, bodies, None, reach, FORCE, tables) for one in (given, given.opposite))
     both = both_sides(given, bodies, front, back)
@@ -66,7 +66,7 @@ def test_far_teeth_feel_the_hub_alone():
     """Teeth farther than any that were looked at turn with the body."""
     pair = held_by(0.05)
     bodies = fem.compliance(pair, 0.01)
-    given = Setting(pair, 2)
+    given = MeshSetup(pair, 2)
     tables = EdgeTables(given, bodies)
     front, back = (loaded_flanks(one, bodies, None, 0.6, FORCE, tables) for one in (given, given.opposite))
     near = both_sides(given, bodies, front, back).matrix

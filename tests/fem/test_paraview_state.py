@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 import fem
-from fem.fields.fields import loaded_fields
 from fem.fields.paraview_state import STATE, fillet_stress
+from fem.fields.stress_fields import loaded_fields
 from fem.fields.vtk import write_vtk_series
 
 ROWS = [5, 20, 38]

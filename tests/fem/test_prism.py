@@ -9,8 +9,8 @@ import pytest
 from numpy.polynomial import legendre
 
 from base import Array
-from fem.elasticity.elasticity import PlaneElasticity, physical_gradients
 from fem.elasticity.line_load import FlankPoints, flank_points
+from fem.elasticity.plane_elasticity import PlaneElasticity, physical_gradients
 from fem.elasticity.prism import Face, Section, prism, section
 from gears import Gear, GearPair
 from meshes import SectorMesh, Sizes, mesh_sector

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem.contact.sharing import solve
+from fem.contact.solver import solve_contact
+from fem.laws.mesh_setup import MeshSetup
 from fem.laws.relieved_flanks import SPAN, ends_of_flanks, gentle, touch
-from fem.laws.setting import Setting
 from fem.laws.tip_geometry import gap_at, lever_ratio
 from gears import Gear, GearPair, TipRelief
 
@@ -26,7 +26,7 @@ def relieved(*numbers):
 def solved(pair, bodies, places, torque=600.0):
     """Deflection and tangent with the unloaded part, at places of the line of action [m]."""
     at = (np.asarray(places) - pair.points.A) / pair.base_pitch
-    found = solve(Setting(pair, 1).at(at), bodies, np.array([torque / pair.base_radii[0]]), None)
+    found = solve_contact(MeshSetup(pair, 1).at(at), bodies, np.array([torque / pair.base_radii[0]]), None)
     assert not found.refusal(0)
     return found.share.transmission_error[0, 0] + found.touch[0], found.share.stiffness[0, 0]
 
@@ -41,7 +41,7 @@ def bodies_of(article_bodies):
 @pytest.mark.parametrize(("length", "form"), [(1.5e-3, "linear"), (3e-3, "parabolic")])
 def test_nothing_steps_where_relieved_corners_begin_to_press(bodies_of, amount, length, form):
     pair = relieved(amount, length, form)
-    for end in {*Setting(pair, 1).ends, *ends_of_flanks(Setting(pair, 1))}:
+    for end in {*MeshSetup(pair, 1).ends, *ends_of_flanks(MeshSetup(pair, 1))}:
         for torque in (60.0, 600.0):
             (before, after), tangent = solved(pair, bodies_of(pair), end + np.array([-1e-9, 1e-9]), torque)
             assert after == pytest.approx(before, rel=0.5 * STEP)
@@ -50,7 +50,7 @@ def test_nothing_steps_where_relieved_corners_begin_to_press(bodies_of, amount, 
 
 def test_without_relief_left_it_is_the_plain_law(article_pair, article_bodies, bodies_of):
     pair = relieved(1e-15, 2e-3, "parabolic")
-    for end in Setting(pair, 1).ends:
+    for end in MeshSetup(pair, 1).ends:
         places = end + np.linspace(-0.4e-3, 0.4e-3, 7)
         plain, eased = solved(article_pair, article_bodies, places), solved(pair, bodies_of(pair), places)
         np.testing.assert_allclose(eased[0], plain[0], rtol=1e-9)
@@ -61,7 +61,7 @@ def test_without_relief_left_it_is_the_plain_law(article_pair, article_bodies, b
 def test_they_touch_where_the_gap_is_least(numbers):
     """By brute force over points of the wheel's flank, on the path and a little outside."""
     pair = relieved(*numbers)
-    given, line = Setting(pair, 1), pair.line_of_action
+    given, line = MeshSetup(pair, 1), pair.line_of_action
     # slope and curvature are differences over SPAN on either side: the kink at the start of linear relief is rounded by
     # a quarter of its slope over that length
     steepness = numbers[0] / numbers[1]
@@ -82,7 +82,7 @@ def test_they_touch_where_the_gap_is_least(numbers):
 def test_the_force_stands_on_the_flank_without_relief():
     """Before C the wheel's flank is relieved, so that the lever about the pinion stays; after C it is the other way."""
     pair = relieved(20e-6, 3e-3, "parabolic")
-    given = Setting(pair, 1)
+    given = MeshSetup(pair, 1)
     start, end = given.ends
     near = touch(given, np.array([start, end]) + np.array([0.3e-3, -0.3e-3]), given.removed)
     np.testing.assert_allclose([near.lever[0, 0], near.lever[1, 1]], 1.0, atol=5e-4)
@@ -93,7 +93,7 @@ def test_the_force_stands_on_the_flank_without_relief():
 def test_least_gap_is_well_below_that_of_the_nominal_place():
     """Reading relief where involutes would touch errs by R h'^2/2: a micrometre of twenty."""
     pair = relieved(20e-6, 3e-3, "parabolic")
-    given = Setting(pair, 1)
+    given = MeshSetup(pair, 1)
     place = np.array([given.ends[0]])
     nominal = given.removed[0](place) + given.removed[1](pair.line_of_action - place)
     assert 0.5e-6 < float(nominal[0] - touch(given, place, given.removed).gap[0]) < 2e-6
@@ -106,4 +106,4 @@ def test_flanks_that_begin_at_their_base_circle_have_no_hollow(shift):
     with np.errstate(invalid="raise"):
         for teeth in (17, 34, 40):
             gears = Gear(17, shift, tip_relief=relief), Gear(teeth, tip_relief=relief)
-            assert gentle(Setting(GearPair(*gears, 2e-3, 0.02), 8))
+            assert gentle(MeshSetup(GearPair(*gears, 2e-3, 0.02), 8))

@@ -8,14 +8,14 @@ from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
 from base import InputError
-from fem.elasticity.chain import ring_of_links
-from fem.elasticity.edge_work import edge_points
-from fem.elasticity.elasticity import PlaneElasticity, stiffness_matrix
+from fem.elasticity.cyclic_structure import cyclic_structure
 from fem.elasticity.flamant import hertz_indentation
 from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.plane_elasticity import PlaneElasticity, stiffness_matrix
 from fem.elasticity.ring import ring_of
+from fem.elasticity.singular_tractions import edge_points
 from gears import Blank, Gear, GearPair
-from gears.tooth.plane import turned
+from gears.tooth.rotation import turned
 from meshes import Sizes, gear_mesh, mesh_sector
 
 LAW = PlaneElasticity("strain", 206e9, 0.3)
@@ -34,7 +34,7 @@ def ring(profile):
 
 
 def harmonics(stiffness, links, j):
-    """Readable twin of ``ring_of_links``: discrete Fourier transform of the block-circulant matrix."""
+    """Readable twin of ``cyclic_structure``: discrete Fourier transform of the block-circulant matrix."""
     n = len(stiffness) // 2
     total = np.zeros((n, n), dtype=complex)
     for k in range(links):
@@ -46,7 +46,7 @@ def harmonics(stiffness, links, j):
 
 
 def test_chain_of_links_is_the_fourier_sum(ring):
-    links = ring_of_links(ring.schur, ring.mesh.teeth)
+    links = cyclic_structure(ring.schur, ring.mesh.teeth)
     size = np.abs(links.influence(0)).max()
     for j in (-2, -1, 0, 1, 2, 9, 17, 18):
         np.testing.assert_allclose(
@@ -64,7 +64,7 @@ def test_chain_of_few_links_is_the_dense_ring(links):
         both = np.r_[n * k : n * k + n, n * ((k + 1) % links) : n * ((k + 1) % links) + n]
         ring[np.ix_(both, both)] += link
     exact = np.linalg.inv(ring)[:, :n]
-    closed = ring_of_links(link, links)
+    closed = cyclic_structure(link, links)
     for j in range(links):
         np.testing.assert_allclose(closed.influence(j), exact[n * j : n * j + n], rtol=0, atol=1e-11)
     force = rng.normal(size=n)
@@ -74,7 +74,7 @@ def test_chain_of_few_links_is_the_dense_ring(links):
 def test_a_ring_that_nothing_holds_is_refused():
     free = np.kron(np.array([[1.0, -1.0], [-1.0, 1.0]]), np.eye(3))
     with pytest.raises((InputError, np.linalg.LinAlgError)):
-        ring_of_links(free, 12)
+        cyclic_structure(free, 12)
 
 
 def whole_annulus(sector, others=None):

@@ -11,9 +11,9 @@ from scipy.sparse.linalg import spsolve
 
 import fem
 from base import InputError
-from fem.elasticity.elasticity import PlaneElasticity, stiffness_matrix
 from fem.elasticity.fillet import GAUSS, edge_strain_matrix, fillet_line, fillet_stress_matrix, local_cubic
 from fem.elasticity.line_load import flank_points
+from fem.elasticity.plane_elasticity import PlaneElasticity, stiffness_matrix
 from fem.elasticity.ring import ring_of
 from fem.influence.fillet_influence import fillet_influence
 from fem.pair.pair_fillets import fillets

@@ -6,7 +6,8 @@ import pytest
 
 from base.results import WORST
 from fem import compliance, fillets
-from fem.pair import pair_compliance, pair_fillets
+from fem.pair import compliance as pair_compliance
+from fem.pair import pair_fillets
 from gears import Gear, GearPair
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=21), module=2e-3, face_width=20e-3)

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 import fem
-from fem.elasticity.elasticity import PlaneElasticity
 from fem.elasticity.flank_samples import sample_places, sampled
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.ring import mesh_and_factor, ring_of
 from fem.elasticity.support import FIXED, Support, held_profiles
 from fem.influence.fillet_influence import fillet_influence
 from fem.influence.gear_compliance import gear_compliance
 from fem.influence.gear_shape import MeshedShape, shapes
+from fem.influence.gear_store import MOST_RECORDS, GearStore
 from fem.influence.memo import Memo
-from fem.influence.solved_gear import MOST_RECORDS, Gears
 from fem.influence.tip_strips import tip_strips
 from gears import BasicRack, Blank, Gear, GearPair, Lead, Material, TipRelief
 from meshes import Sizes, mesh_sector
@@ -219,7 +219,7 @@ def test_records_from_a_shelf_are_those_of_the_process():
 
 
 def test_kept_records_refuse_writing():
-    gears, meshed = Gears(), MeshedShape(key(PAIR), COARSE, 1)
+    gears, meshed = GearStore(), MeshedShape(key(PAIR), COARSE, 1)
     flanks, tips = gears.flanks(meshed, 20), gears.tips(meshed)
     for array in (flanks.rho, flanks.flexible.own_series, flanks.flexible.cross_series[1], tips.kernel):
         with pytest.raises(ValueError, match="read-only"):

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import fem
-from fem.elasticity.elasticity import PlaneElasticity
 from fem.elasticity.line_load import flank_points
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.ring import mesh_and_factor, ring_of
 from fem.influence.strip_contact import flat_kernel, flat_kernels, from_the_corner, from_the_nearest
 from fem.influence.tip_strips import tip_strips
 from fem.laws.local_law import Table
 from fem.laws.tip_contact import edge_laws
 from fem.laws.tip_geometry import lever_ratio, opening, unloaded_gap
-from gears.tooth.plane import mirrored, turned
+from gears.tooth.rotation import mirrored, turned
 from meshes import Sizes, mesh_sector
 from tests.fem.test_ring import whole_annulus
 

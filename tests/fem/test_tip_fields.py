@@ -9,12 +9,12 @@ import pytest
 from scipy.interpolate import CloughTocher2DInterpolator
 
 import fem
-from fem.elasticity.elasticity import PlaneElasticity, nodal_stress_matrix
 from fem.elasticity.line_load import flank_points
-from fem.fields.fields import draw_gears, loaded_fields
+from fem.elasticity.plane_elasticity import PlaneElasticity, nodal_stress_matrix
 from fem.fields.loaded_gears import frames
+from fem.fields.stress_fields import draw_gears, loaded_fields
 from fem.laws.tip_pressure import tip_pressure
-from gears.tooth.plane import turned
+from gears.tooth.rotation import turned
 from meshes import Sizes, mesh_sector
 from tests.fem.test_ring import whole_annulus
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import k0
 
-from fem import Compliance, compliance, mesh_cycle
+from fem import PairCompliance, compliance, mesh_cycle
 from fem.pair.wide_contact import beyond_logarithm
 from gears import Alignment, Gear, GearPair, Lead
 
@@ -17,7 +17,7 @@ LINE_LOAD = 400e3
 
 
 @pytest.fixture(scope="module")
-def bodies() -> Compliance:
+def bodies() -> PairCompliance:
     return compliance(PAIR, tolerance=0.02)
 
 

@@ -421,9 +421,9 @@ def test_bounds_of_keys_are_accepted_as_they_are_printed(key, limit):
 
 
 ROOMS = (
-    "gears/pair/guards.py",
+    "gears/pair/mesh_checks.py",
     "gears/tooth/blank.py",
-    "gears/pair/heat.py",
+    "gears/pair/thermal_expansion.py",
     "flankfilm/beforehand.py",
     "flankfilm/build_face.py",
     "flankfilm/slow_motion.py",

@@ -23,9 +23,10 @@ def test_a_part_says_whether_it_was_compiled():
 
 
 def test_the_line_of_compilation_names_what_the_parts_do():
-    modules = ["flow", "correcting", "drives.carrying", "stepwise.laws"]
+    modules = ["flow", "correcting", "drives.propagating", "stepwise.laws"]
     lines = [
-        compiling_line(name) for name in (*(f"dynamics.kernels.{m}" for m in modules), "ehl.kernels.kernels")
+        compiling_line(name)
+        for name in (*(f"dynamics.kernels.{m}" for m in modules), "ehl.kernels.film_kernels")
     ]
     assert [line.removeprefix("compiling for ").split(",")[0] for line in lines] == list(PARTS)
     assert compiling_line("elsewhere") == "compiling, once: later runs load what is kept"

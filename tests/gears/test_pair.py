@@ -14,7 +14,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from gears import Gear, GearPair, GeometryError, GeometryWarning, Material
-from gears.tooth.plane import mirrored, turned
+from gears.tooth.rotation import mirrored, turned
 
 numbers = st.integers(18, 200)
 shift = st.floats(-0.1, 0.5)

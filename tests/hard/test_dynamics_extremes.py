@@ -9,7 +9,7 @@ import pytest
 
 from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, period_map, trajectory
 from dynamics.branches.grazing import contact_orbit
-from dynamics.flow.flow import tables
+from dynamics.flow.exact_flow import exact_flow
 from tests.validation.article_motion import lubricated
 
 
@@ -77,7 +77,7 @@ def test_grazing_depth(depth, sign):
     law = 4 * np.sqrt(2) / 3 * orbit.acceleration**-0.5 * depth**1.5
     off = np.max(np.abs(image.state - orbit.state))
     assert off < (3 * law if sign > 0 else 0.0) + 1e-15
-    finer = period_map(tables(osc, refinement=2), orbit.state)
+    finer = period_map(exact_flow(osc, refinement=2), orbit.state)
     np.testing.assert_allclose(image.state, finer.state, rtol=0, atol=2e-15)
     change = 2 * np.sqrt(2) * orbit.acceleration**-0.5 * np.sqrt(depth)
     rounding = np.sqrt(1e-16 / depth) * change  # the depth itself is known to 1e-16
@@ -159,7 +159,7 @@ def test_multipliers_beyond_a_single_shot(zeta, d):
     assert orbit.error < 3e-11
     assert np.prod(orbit.multipliers) == pytest.approx(orbit.determinant, rel=1e-12)
     # each stretch, integrated by the twin without tables, ends where the next begins
-    cells = tables(osc).cells
+    cells = exact_flow(osc).cells
     firsts = np.round(np.linspace(0, cells, len(orbit.nodes) + 1)).astype(int)
     for i in range(0, len(orbit.nodes), 17):
         turn = 2 * np.pi * firsts[i] / cells
@@ -220,7 +220,7 @@ def test_137_crossings_and_more():
     start = (0.3, 0.1)
     motion = trajectory(osc, start, periods=1, points_per_period=10)
     assert len(motion.events) >= 137
-    coarse, fine = (period_map(tables(osc, r), start) for r in (1, 2))
+    coarse, fine = (period_map(exact_flow(osc, r), start) for r in (1, 2))
     assert np.array_equal(coarse.counts, fine.counts)
     stretch = np.max(np.abs(coarse.jacobian))
     np.testing.assert_allclose(coarse.state, fine.state, rtol=0, atol=1e-12 * stretch)
@@ -232,7 +232,7 @@ def test_chaos_by_its_statistics():
     batches, length = 60, 60
     means = []
     for refinement, start in ((1, (0.3, 0.0)), (2, (0.3, 1e-9))):
-        image = period_map(tables(osc, refinement), start, batches * length, skip=200)
+        image = period_map(exact_flow(osc, refinement), start, batches * length, skip=200)
         figures = np.column_stack([image.states, image.states**2, image.counts])
         means.append(figures.reshape(batches, length, -1).mean(axis=1))
     apart = period_map(osc, (0.3, 0.0), 260).states[-1] - period_map(osc, (0.3, 1e-9), 260).states[-1]

@@ -21,7 +21,7 @@ ON_FEW = "most loaded pair bears on"
 
 
 @pytest.fixture(scope="module")
-def bodies() -> fem.Compliance:
+def bodies() -> fem.PairCompliance:
     return fem.compliance(PAIR, 0.02)
 
 

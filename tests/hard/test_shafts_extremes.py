@@ -32,7 +32,7 @@ MOUNTED = {
 
 
 @pytest.fixture(scope="module")
-def bodies() -> fem.Compliance:
+def bodies() -> fem.PairCompliance:
     return fem.compliance(PAIR, 0.02)
 
 

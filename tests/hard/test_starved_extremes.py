@@ -10,7 +10,7 @@ import pytest
 from base import RangeWarning
 from ehl import LineContact, Lubricant, Meniscus, OilLayer, Roughness, solve, solve_mixed
 from ehl.discrete.asperities import LAWS
-from ehl.solving.run import DRY
+from ehl.solving.grid_search import DRY
 from tests.ehl.films import sound
 from tests.hard.random_contacts import random_contact, refused
 from tests.validation.article import PITCH

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from dynamics import FourierStiffness, GearOscillator, contact_grazing, period_map, trajectory
 from dynamics.branches.grazing import contact_orbit
-from dynamics.flow.flow import tables
+from dynamics.flow.exact_flow import exact_flow
 
 
 @settings(max_examples=40, deadline=None)
@@ -108,4 +108,4 @@ def _flow_to(linear: GearOscillator, tau: float) -> np.ndarray:
 
 def _flow_from(linear: GearOscillator, tau: float) -> np.ndarray:
     """Flow matrix from tau to the end of the period."""
-    return period_map(tables(linear), (0.1, 0.1)).jacobian @ np.linalg.inv(_flow_to(linear, tau))
+    return period_map(exact_flow(linear), (0.1, 0.1)).jacobian @ np.linalg.inv(_flow_to(linear, tau))

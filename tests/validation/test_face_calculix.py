@@ -27,7 +27,7 @@ from scipy.sparse.linalg import splu
 from fem import compliance
 from fem.contact.cell_matrix import cell_matrix
 from fem.contact.face_errors import ENDS_ERROR
-from fem.elasticity.elasticity import PlaneElasticity, stiffness_matrix
+from fem.elasticity.plane_elasticity import PlaneElasticity, stiffness_matrix
 from fem.pair.face_setting import FaceSetting
 from gears import STEEL, Gear, GearPair
 from meshes import Sizes, gear_mesh, mesh_sector

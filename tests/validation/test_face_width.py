@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from fem import compliance, mesh_cycle
-from fem.influence.gear_face import flank_ends
+from fem.influence.gear_face import end_correction
 from gears import Alignment, Gear, GearPair, Material
 
 STEEL = Material(206e9, 0.3, 7850.0)
@@ -110,7 +110,7 @@ def test_a_face_of_no_width_is_in_plane_stress(slenderness, share):
     added = 0.0
     places = PAIR.points.C, PAIR.line_of_action - PAIR.points.C
     for meshed, place in zip(strain.meshed, places, strict=True):
-        ends = flank_ends(meshed, slenderness).over(np.linspace(-0.5, 0.5, 17) * slenderness)
+        ends = end_correction(meshed, slenderness).over(np.linspace(-0.5, 0.5, 17) * slenderness)
         added += float(np.mean(ends.own_at(np.array(place / PAIR.module)))) * slenderness
     added *= float(force[0]) / (strain.pinion.law.plane_modulus * PAIR.face_width)
     assert added / (yields[1] - yields[0]) == pytest.approx(share, abs=0.015)

@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 
 import fem
-from fem.elasticity.elasticity import PlaneElasticity, reduced_modulus
 from fem.elasticity.flamant import hertz_half_width, hertz_indentation
 from fem.elasticity.line_load import flank_points
+from fem.elasticity.plane_elasticity import PlaneElasticity, reduced_modulus
 from fem.fields.export import write_abaqus
 from fem.fields.loaded_gears import FlankForce, LoadedGear, nodal_forces
 from gears import Blank, Gear, GearPair

@@ -19,7 +19,7 @@ import pytest
 from scipy.sparse.linalg import splu
 
 import fem
-import fem.elasticity.elasticity
+import fem.elasticity.plane_elasticity
 from fem.fields.export import write_abaqus
 from fem.fields.loaded_gears import loaded_gears
 from gears import Blank, Gear, GearPair
@@ -34,7 +34,7 @@ pytestmark = pytest.mark.skipif(
 
 def ours(gear):
     mesh = gear.mesh
-    stiffness = fem.elasticity.elasticity.stiffness_matrix(
+    stiffness = fem.elasticity.plane_elasticity.stiffness_matrix(
         mesh.points, mesh.triangles, gear.law, mesh.thickness
     )
     stiffness = stiffness * gear.face_width
@@ -83,7 +83,7 @@ def cycles(article_pair):
 
 @pytest.mark.parametrize("which", [0, pytest.param(1, marks=pytest.mark.slow)], ids=["pinion", "wheel"])
 def test_whole_gear_with_the_same_quadrature(article_pair, cycles, tmp_path, monkeypatch, which):
-    monkeypatch.setattr(fem.elasticity.elasticity, "INTEGRATION", 2)
+    monkeypatch.setattr(fem.elasticity.plane_elasticity, "INTEGRATION", 2)
     gear = loaded_gears(article_pair, cycles["strain"], 3, refinements=0)[which]
     assert len(np.unique(gear.mesh.tooth)) == (36, 40)[which]
     moved, reaction = calculix(gear, tmp_path)
@@ -116,7 +116,7 @@ def test_whole_refined_gear(article_pair, cycles, tmp_path):
 
 
 def test_plane_stress(article_pair, cycles, tmp_path, monkeypatch):
-    monkeypatch.setattr(fem.elasticity.elasticity, "INTEGRATION", 2)
+    monkeypatch.setattr(fem.elasticity.plane_elasticity, "INTEGRATION", 2)
     gear = loaded_gears(article_pair, cycles["stress"], 3, refinements=0, neighbours=2)[0]
     moved, _ = calculix(gear, tmp_path)
     largest, mean = apart(moved, ours(gear))
@@ -131,7 +131,7 @@ def test_rim_web_and_hub_by_sections_of_their_own_thickness(
     tmp_path, monkeypatch, plane, neighbours, allowed
 ):
     """Sets of elements with the thickness of rim, web and hub, as CalculiX makes solids of them."""
-    monkeypatch.setattr(fem.elasticity.elasticity, "INTEGRATION", 2)
+    monkeypatch.setattr(fem.elasticity.plane_elasticity, "INTEGRATION", 2)
     blank = Blank(rim_thickness=5.4e-3, web_thickness=6e-3, hub_radius=0.018)
     pair = GearPair(Gear(25), Gear(50, bore_radius=0.012, blank=blank), 2e-3, 0.02)
     cycle = fem.mesh_cycle(pair, 100.0, 4, plane=plane)

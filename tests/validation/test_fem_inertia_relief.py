@@ -15,8 +15,8 @@ from scipy.sparse.linalg import splu
 from skfem import Basis, ElementTriP2
 
 import fem
-from fem.elasticity.elasticity import PlaneElasticity, curved_mesh, stiffness_matrix
 from fem.elasticity.line_load import flank_points
+from fem.elasticity.plane_elasticity import PlaneElasticity, curved_mesh, stiffness_matrix
 from fem.pair.references import REFERENCES
 from gears import STEEL, BasicRack, Gear, GearPair, closed_form
 from gears.tooth.profile import generate

@@ -16,13 +16,13 @@ import pytest
 
 import fem
 from fem.contact.moving_contact import contact_moves, model_error
-from fem.elasticity.elasticity import PlaneElasticity
 from fem.elasticity.flamant import hertz_half_width, hertz_indentation
 from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.ring import ring_of
 from fem.influence.strip_contact import flat_kernel
 from fem.laws.contact_candidates import contact_candidates
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from gears import Gear, GearPair, Material
 from meshes import Sizes, mesh_sector
 
@@ -117,7 +117,7 @@ def said(bodies, place, load, moving):
     pair = bodies.pair
     rho = np.array([[[place]], [[pair.line_of_action - place]]])
     yes, no = np.ones((1, 1), dtype=bool), np.zeros((1, 1), dtype=bool)
-    where = replace(contact_candidates(Setting(pair, 1, False)), rho=rho, touchable=yes, edge=no)
+    where = replace(contact_candidates(MeshSetup(pair, 1, False)), rho=rho, touchable=yes, edge=no)
     moves, force = contact_moves(bodies, where), np.array([[load * pair.face_width]])
     approach = (bodies.bulk(rho[0], rho[1]) @ force[..., None])[..., 0, 0]
     approach = approach + bodies.hertz(rho[0]).constant[..., 0] * force[..., 0]

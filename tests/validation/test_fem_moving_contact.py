@@ -19,7 +19,7 @@ import fem
 from fem.contact.moving_contact import contact_moves, model_error, moved_share, moving_pairs
 from fem.laws.contact_candidates import contact_candidates
 from fem.laws.local_law import PairLaws
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from gears import Gear, GearPair, Material, share_load
 
 STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
@@ -50,7 +50,7 @@ def alone(bodies, position, torque):
     rho1 = pair.points.A + position * pair.base_pitch
     rho = np.array([[[rho1]], [[pair.line_of_action - rho1]]])
     yes, no = np.ones((1, 1), dtype=bool), np.zeros((1, 1), dtype=bool)
-    where = replace(contact_candidates(Setting(pair, 1, False)), rho=rho, touchable=yes, edge=no)
+    where = replace(contact_candidates(MeshSetup(pair, 1, False)), rho=rho, touchable=yes, edge=no)
     moves, laws = contact_moves(bodies, where), PairLaws(bodies.hertz(rho[0]), no)
     force, bulk, gaps = np.array([torque / pair.base_radii[0]]), bodies.bulk(rho[0]), np.zeros((1, 1))
     stays = share_load(force, bulk, laws, gaps)

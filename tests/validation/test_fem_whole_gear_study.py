@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from fem.elasticity import flamant
-from fem.elasticity.elasticity import PlaneElasticity
 from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.ring import ring_of
 from gears import Gear, GearPair
 from meshes import mesh_sector

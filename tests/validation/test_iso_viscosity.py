@@ -10,7 +10,7 @@ import pytest
 
 from base import InputError, RangeWarning
 from ehl import Lubricant
-from ehl.oil.grades import _INDEX_TABLE, GRADES, gold_coefficient, graded_oil, viscosity_index, walther
+from ehl.oil.oil_grades import _INDEX_TABLE, GRADES, gold_coefficient, graded_oil, viscosity_index, walther
 
 
 @pytest.mark.parametrize(

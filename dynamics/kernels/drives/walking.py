@@ -15,8 +15,8 @@ from dynamics.kernels.compiling import (
     FloatArray,
     kernel,
 )
-from dynamics.kernels.drives.carrying import Drive, aim, enter_cells, leave_cells, room_for
 from dynamics.kernels.drives.expanding import evaluate
+from dynamics.kernels.drives.propagating import Drive, aim, enter_cells, leave_cells, room_for
 from dynamics.kernels.regions import enter, leave, note_extremum
 from dynamics.kernels.roots import copy, find_turn
 

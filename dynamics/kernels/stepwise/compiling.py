@@ -23,7 +23,7 @@ MAX_STEPS = 1_000_000  # likewise: seconds of work
 VECTOR = types.Array(types.float64, 1, "C")
 LAW = types.void(types.float64, types.float64, types.float64, types.int64, VECTOR, VECTOR, VECTOR)
 NUMBERS, ROWS = types.Array(types.int64, 1, "C"), types.Array(types.float64, 2, "C")
-CARRY = types.int64(
+PROPAGATE = types.int64(
     types.Tuple((VECTOR, types.FunctionType(LAW), VECTOR, VECTOR, NUMBERS)), ROWS,
     types.float64, types.float64, types.float64, types.float64, VECTOR, VECTOR, NUMBERS, NUMBERS, ROWS, types.int64,
 )  # fmt: skip

@@ -17,7 +17,7 @@ NONSENSE = ("180", None, b"1", pytest.param(object(), id="object"), [1.0, "a"], 
 
 
 @pytest.fixture(scope="module")
-def bodies() -> fem.Compliance:
+def bodies() -> fem.PairCompliance:
     return fem.compliance(PAIR, 0.05)
 
 

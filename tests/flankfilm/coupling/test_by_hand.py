@@ -68,18 +68,18 @@ def test_what_turns_with_a_gear_is_given():
 
 
 @pytest.fixture(scope="module")
-def bodies() -> fem.Compliance:
+def bodies() -> fem.PairCompliance:
     return fem.compliance(PAIR, tolerance=0.05)
 
 
-def test_independent_pairs_err_as_their_teeth_do(bodies: fem.Compliance):
+def test_independent_pairs_err_as_their_teeth_do(bodies: fem.PairCompliance):
     by_elements = coupling.mesh_cycle(PAIR, 600.0, model="fem", pairs="independent", compliance=bodies)
     closed = coupling.mesh_cycle(PAIR, 600.0, model="potential-energy", pairs="independent")
     assert by_elements.error == bodies.error > 0.0
     assert closed.error is None
 
 
-def test_curves_over_torque_are_those_of_many_positions(bodies: fem.Compliance):
+def test_curves_over_torque_are_those_of_many_positions(bodies: fem.PairCompliance):
     found = torque_curves(LoadedTeeth(PAIR, 150.0, compliance=bodies), [], positions=4)
     many = fem.mesh_cycle(PAIR, 150.0, 240, bodies)
     secant, turns = many.secant_stiffness, np.exp(-2j * math.pi * many.position)
@@ -92,7 +92,7 @@ def test_curves_over_torque_are_those_of_many_positions(bodies: fem.Compliance):
 
 
 @pytest.mark.filterwarnings("ignore:Hertz pressure")
-def test_the_teeth_beside_the_film_at_the_pitch_point_are_their_tangent(bodies: fem.Compliance):
+def test_the_teeth_beside_the_film_at_the_pitch_point_are_their_tangent(bodies: fem.PairCompliance):
     """What a little more torque deflects them by; the secant is 5 % less, since Hertzian contacts stiffen."""
     oil = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
     less, cycle, more = fem.mesh_cycle(PAIR, (597.0, 600.0, 603.0), 8, bodies, beyond_path=False)

@@ -38,7 +38,7 @@ Cycles = Callable[..., LubricatedCycle]
 
 
 @pytest.fixture(scope="module")
-def bodies() -> fem.Compliance:
+def bodies() -> fem.PairCompliance:
     return fem.compliance(PAIR, tolerance=0.02)
 
 

@@ -17,7 +17,7 @@ MEANT, TOLERANCE = 12e-6, 10e-6
 
 
 @pytest.fixture(scope="module")
-def bodies() -> fem.Compliance:
+def bodies() -> fem.PairCompliance:
     return fem.compliance(PAIR, tolerance=0.05)
 
 

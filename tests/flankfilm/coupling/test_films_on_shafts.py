@@ -32,7 +32,7 @@ Cycles = Callable[[Flanks], LubricatedCycle]
 
 
 @pytest.fixture(scope="module")
-def bodies() -> fem.Compliance:
+def bodies() -> fem.PairCompliance:
     return fem.compliance(PAIR, tolerance=0.05)
 
 

@@ -22,7 +22,7 @@ STEELS = (ehl.STEEL, ehl.STEEL)
 
 
 @pytest.fixture(scope="module")
-def bodies() -> fem.Compliance:
+def bodies() -> fem.PairCompliance:
     return fem.compliance(PAIR, tolerance=0.05)
 
 

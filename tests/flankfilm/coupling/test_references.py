@@ -38,12 +38,12 @@ diagram = { speed_rpm = [15000, 16000], max_period = 1, searches = 2 }
 
 
 @pytest.fixture(scope="module")
-def bodies() -> fem.Compliance:
+def bodies() -> fem.PairCompliance:
     return fem.compliance(PAIR)
 
 
 @pytest.fixture(scope="module")
-def cycle(bodies: fem.Compliance) -> MeshCycle:
+def cycle(bodies: fem.PairCompliance) -> MeshCycle:
     return ff.mesh_cycle(PAIR, TORQUE, positions=40, compliance=bodies)
 
 

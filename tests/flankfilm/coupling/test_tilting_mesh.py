@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem import Compliance, compliance
+from fem import PairCompliance, compliance
 from flankfilm.coupling import (
     Flanks,
     LoadedTeeth,
@@ -42,11 +42,11 @@ MIRRORED = shaft(0.15, 0.02, 0.2), shaft(0.06, 0.03, 0.2)
 
 
 @pytest.fixture(scope="module")
-def bodies() -> Compliance:
+def bodies() -> PairCompliance:
     return compliance(PAIR, tolerance=0.02)
 
 
-def cycle(bodies: Compliance, shafts, torque: float = TORQUE) -> MeshCycle:
+def cycle(bodies: PairCompliance, shafts, torque: float = TORQUE) -> MeshCycle:
     flanks = Flanks(False, cells=16, face_model="walls", shafts=shafts)
     return LoadedTeeth(PAIR, torque, compliance=bodies, flanks=flanks).cycle(8)
 

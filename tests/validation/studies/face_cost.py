@@ -30,7 +30,7 @@ def told(step: str, start: float) -> float:
     return time.process_time()
 
 
-def solved_gears() -> fem.Compliance:
+def solved_gears() -> fem.PairCompliance:
     """Both gears, plane, then waves along the face, then free ends."""
     at = told("imports", 0.0)
     bodies = fem.compliance(PAIR, tolerance=0.005)
@@ -42,7 +42,7 @@ def solved_gears() -> fem.Compliance:
     return bodies
 
 
-def further(bodies: fem.Compliance) -> None:
+def further(bodies: fem.PairCompliance) -> None:
     """Cycles after the first one."""
     for beyond, where in ((False, "held to the path"), (True, "with tip edges")):
         for name in ("alignment", "torque"):

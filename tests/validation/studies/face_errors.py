@@ -148,7 +148,7 @@ def one(number: int, seed: int) -> dict[str, Any]:
     bodies = fem.compliance(pair, TOLERANCE)
     given = {"alignment": alignment, "beyond_path": False, "face_model": model, "tolerance": TOLERANCE}
 
-    def cycle(over: fem.Compliance, cells: int) -> fem.MeshCycle:
+    def cycle(over: fem.PairCompliance, cells: int) -> fem.MeshCycle:
         return fem.mesh_cycle(pair, torque, POSITIONS, over, cells=cells, **given)
 
     usual = cycle(bodies, CELLS)

@@ -31,7 +31,7 @@ EVEN = Alignment()
 
 
 def teeth_with(
-    bodies: fem.Compliance, torque: float, alignment: Alignment | None, cells: int = 64
+    bodies: fem.PairCompliance, torque: float, alignment: Alignment | None, cells: int = 64
 ) -> LoadedTeeth:
     """Article's pair between walls, or plane without an alignment."""
     flanks = Flanks() if alignment is None else Flanks(alignment=alignment, cells=cells, face_model="walls")
@@ -46,7 +46,7 @@ def filmed(teeth: LoadedTeeth) -> tuple[LubricatedCycle, float]:
     return found, time.perf_counter() - start
 
 
-def of_table(bodies: fem.Compliance) -> None:
+def of_table(bodies: fem.PairCompliance) -> None:
     """Films of cells picked at random, solved by themselves to 0.1 %, against the table and its error."""
     print("torque  slope   films  error told: least, central  largest off: least, central   of told error on")
     chance = np.random.default_rng(7)
@@ -78,7 +78,7 @@ def of_table(bodies: fem.Compliance) -> None:
         )
 
 
-def of_even_load(bodies: fem.Compliance) -> None:
+def of_even_load(bodies: fem.PairCompliance) -> None:
     """An even load over 16 cells against the plane pair."""
     for torque in (600.0, 60.0):
         (plane, _), (even, _) = (filmed(teeth_with(bodies, torque, one, 16)) for one in (None, EVEN))
@@ -93,7 +93,7 @@ def of_even_load(bodies: fem.Compliance) -> None:
             )
 
 
-def of_slopes(bodies: fem.Compliance) -> None:
+def of_slopes(bodies: fem.PairCompliance) -> None:
     """What slopes do to the least film, and what films over the face take."""
     print(
         "torque  slope  least film, place  factor dry, film  secant, tangent changed  touched dry, film  side flow  s"
@@ -121,7 +121,7 @@ def of_slopes(bodies: fem.Compliance) -> None:
         )
 
 
-def of_losses(bodies: fem.Compliance) -> None:
+def of_losses(bodies: fem.PairCompliance) -> None:
     """Losses of the plane pair, of an even load over cells, and with a slope."""
     for name, alignment in (
         ("plane", None),

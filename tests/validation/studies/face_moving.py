@@ -18,9 +18,9 @@ import fem
 from base import Array
 from fem.contact import moving_cells, moving_face
 from fem.contact.face_errors import face_load_factors
-from fem.contact.sharing import Solution, solve
+from fem.contact.solver import ContactState, solve_contact
 from fem.laws.edge_tables import EdgeTables
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import face_setting
 from gears import Alignment, Gear, GearPair, Lead, Material
 
@@ -31,21 +31,23 @@ BEFORE_E = 0.01
 """Base pitches."""
 
 
-def solved(bodies: fem.Compliance, position: float, torque: float, face: dict, moving: bool) -> Solution:
+def solved(
+    bodies: fem.PairCompliance, position: float, torque: float, face: dict, moving: bool
+) -> ContactState:
     """One position, its contacts staying or moving, whether it is to be believed or not."""
     pair = bodies.pair
     over = face_setting(pair, face.get("alignment"), face.get("cells", 64), face.get("model", "walls"))
-    given = Setting(pair, 1, moving_contact=moving, face=over).at(np.array([position]))
+    given = MeshSetup(pair, 1, moving_contact=moving, face=over).at(np.array([position]))
     force = np.array([torque / pair.base_radii[0]])
-    return solve(given, bodies, force, None, EdgeTables(given, bodies))
+    return solve_contact(given, bodies, force, None, EdgeTables(given, bodies))
 
 
-def deflection(found: Solution) -> float:
+def deflection(found: ContactState) -> float:
     """Deflection from where the gears touch [um]; nan where there is no solution."""
     return float("nan") if found.refusal(0) else figures(found)[0]
 
 
-def figures(found: Solution) -> tuple[float, float, float, float]:
+def figures(found: ContactState) -> tuple[float, float, float, float]:
     """Deflection from where the gears touch [um], tangent [N/um], face-load factor, greatest force on a cell."""
     assert not found.refusal(0), found.refusal(0)
     forces = found.face.forces[0, 0, 0] / found.kappa[0][:, None]
@@ -67,7 +69,7 @@ def following(how: Callable[[int], Array]) -> Callable[..., Array]:
     return smoothing
 
 
-def rows(name: str, bodies: fem.Compliance, position: float, torque: float, **face: object) -> None:
+def rows(name: str, bodies: fem.PairCompliance, position: float, torque: float, **face: object) -> None:
     """Print a line."""
     stays, moves = (figures(solved(bodies, position, torque, face, moving)) for moving in (False, True))
     change = [100 * (b / a - 1) for a, b in zip(stays, moves, strict=True)]

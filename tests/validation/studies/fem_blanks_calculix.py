@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from scipy.sparse.linalg import splu
 
-from fem.elasticity.elasticity import PlaneElasticity, nodal_stress_matrix, stiffness_matrix
+from fem.elasticity.plane_elasticity import PlaneElasticity, nodal_stress_matrix, stiffness_matrix
 from fem.elasticity.torsion import step_wind_up
 from gears import STEEL, Blank, Gear, GearPair
 from meshes import Sizes, gear_mesh, mesh_sector

@@ -19,8 +19,8 @@ from fem_moving_contact import PLASTIC, reactions
 from fem_two_gears_calculix import deck
 
 import fem
-from fem.contact.sharing import solve
-from fem.laws.setting import Setting
+from fem.contact.solver import solve_contact
+from fem.laws.mesh_setup import MeshSetup
 from meshes.annulus import turned
 
 TORQUES = (5.0, 20.0)
@@ -31,8 +31,8 @@ LARGE = {"step": "*STEP, INC=400, NLGEOM", "static": "*STATIC\n0.25, 1.", "last"
 
 def ours(bodies, position, torque, moving):
     """Deflection [m] by ``fem.mesh_cycle``'s solver."""
-    given = Setting(bodies.pair, 1, moving_contact=moving).at(np.array([position]))
-    found = solve(given, bodies, np.array([torque / bodies.pair.base_radii[0]]), None)
+    given = MeshSetup(bodies.pair, 1, moving_contact=moving).at(np.array([position]))
+    found = solve_contact(given, bodies, np.array([torque / bodies.pair.base_radii[0]]), None)
     return float(found.share.transmission_error[0, 0, 0])
 
 

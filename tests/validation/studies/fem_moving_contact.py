@@ -5,7 +5,7 @@ installed; ten minutes a letter. P: the pinion's bore is turned by D/r_b1, the w
 turned back by D/r_b2, the pinion's is held; L: as P with small displacements. The torque follows from the reactions.
 The change of the secant is taken against Hertz's pressure where the undeformed teeth touch, on the same meshes and
 at the torque found. ``--what parts`` needs no CalculiX: it integrates all parts of the law on the fine mesh that
-resolves the pressure, by other formulas than ``fem.elasticity.third_order``.
+resolves the pressure, by other formulas than ``fem.elasticity.nonlinear_energy``.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import numpy as np
 from fem_two_gears_calculix import MM, PREFIX
 from two_gear_meshes import MIRROR, Focus, sector
 
-from fem.elasticity.elasticity import PlaneElasticity, physical_gradients, reduced_modulus
+from fem.elasticity.plane_elasticity import PlaneElasticity, physical_gradients, reduced_modulus
 from gears import Gear, GearPair, Material
 from meshes import Sizes
 from meshes.abaqus import mesh_text, number

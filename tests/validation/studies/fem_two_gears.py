@@ -2,7 +2,7 @@
 
 Run with ``python tests/validation/studies/fem_two_gears.py`` (three minutes; ``--quick``: the pitch point alone).
 
-Nothing of ``fem.compliance``, ``fem.laws.tip_contact`` or ``fem.cycle.contact`` is used, only the stiffness matrix of
+Nothing of ``fem.compliance``, ``fem.laws.tip_contact`` or ``fem.mesh_cycle`` is used, only the stiffness matrix of
 curved second-order triangles. Both annuli are meshed whole, with edges of a few micrometres at the contacts and at the
 tip corners, which may be sharp or rounded. Where teeth i of both gears may touch, one pressure p_j acts on each
 element edge of the tooth whose tip is near (the mortar side); the other flank is the exact involute, whose
@@ -28,9 +28,9 @@ from scipy.sparse.linalg import splu
 from two_gear_meshes import MIRROR, Focus, sector
 
 import fem
-from fem.elasticity.elasticity import PlaneElasticity, stiffness_matrix
+from fem.elasticity.plane_elasticity import PlaneElasticity, stiffness_matrix
 from gears import Gear, GearPair
-from gears.tooth.plane import turned
+from gears.tooth.rotation import turned
 from meshes import Sizes, gear_mesh
 
 PAIR = GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04)

@@ -17,7 +17,7 @@ from pathlib import Path
 import fem_two_gears as two
 import numpy as np
 
-from gears.tooth.plane import turned
+from gears.tooth.rotation import turned
 from meshes.abaqus import mesh_text, number
 
 MM = 1e3

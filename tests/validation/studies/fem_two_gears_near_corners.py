@@ -18,9 +18,9 @@ from fem_moving_contact import PLASTIC
 
 import fem
 from fem.contact import moving_contact
-from fem.contact.sharing import solve
+from fem.contact.solver import solve_contact
 from fem.laws.edge_tables import EdgeTables
-from fem.laws.setting import Setting
+from fem.laws.mesh_setup import MeshSetup
 from gears import TipRelief
 
 RELIEFS = (TipRelief(10e-6, 2e-3, "linear"), TipRelief(20e-6, 3e-3, "parabolic"))
@@ -41,9 +41,9 @@ def ours(bodies, position, torque, moving=False, strained=True):
     try:
         if not strained:
             moving_contact._energies = lambda parts, law: np.zeros((2, *np.shape(parts)[1:]))
-        given = Setting(bodies.pair, 1, moving_contact=moving).at(np.array([position % 1.0]))
+        given = MeshSetup(bodies.pair, 1, moving_contact=moving).at(np.array([position % 1.0]))
         force = np.array([torque / bodies.pair.base_radii[0]])
-        found = solve(given, bodies, force, None, EdgeTables(given, bodies))
+        found = solve_contact(given, bodies, force, None, EdgeTables(given, bodies))
     finally:
         moving_contact._energies = energies
     share = found.share.forces[0, 0, 0] / found.kappa[0] / bodies.pair.face_width / 1e3

@@ -22,7 +22,7 @@ from dataclasses import replace
 import numpy as np
 
 import fem
-import fem.pair.pair_compliance
+import fem.pair.compliance
 import gears.sharing.events
 from base import InputError, SolverError
 from fem.pair.pair_fillets import fillets
@@ -132,12 +132,12 @@ def root_ratios(pair, usual, best) -> dict[str, float]:
 @contextmanager
 def long_series() -> Iterator[None]:
     """So many loads along the flanks and nodes on the arcs that their errors are none."""
-    before = fem.pair.pair_compliance.SAMPLES, gears.sharing.events.DEGREES
-    fem.pair.pair_compliance.SAMPLES, gears.sharing.events.DEGREES = (64,), (8, 16, 32, 64, 128)
+    before = fem.pair.compliance.SAMPLES, gears.sharing.events.DEGREES
+    fem.pair.compliance.SAMPLES, gears.sharing.events.DEGREES = (64,), (8, 16, 32, 64, 128)
     try:
         yield
     finally:
-        fem.pair.pair_compliance.SAMPLES, gears.sharing.events.DEGREES = before
+        fem.pair.compliance.SAMPLES, gears.sharing.events.DEGREES = before
 
 
 def one(pair, torque, options, roots: bool) -> tuple[str, dict[str, float]]:

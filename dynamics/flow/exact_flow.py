@@ -1,0 +1,279 @@
+"""The exact flow: its tables, the motion that they carry, its extrema and impacts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from base import Array, Cost, Faults, Integers, Stopwatch, in_blocks
+from dynamics.model.limits import POSITIVE, REFINEMENT, TAYLOR_DEGREE
+from dynamics.model.oscillator import GearOscillator
+from dynamics.model.protocol import EPS, Flow, MapResult, Stretches, exact_only, lost_motion
+from dynamics.model.states import checked_state
+
+# of the Taylor tables; a quarter of a radian to each side of the middle leaves less than rounding
+DEGREE = 13
+REASONS = {1: "the motion grew beyond 1e150", 2: "a cell held more than 10 000 impacts"}
+
+
+@dataclass(frozen=True, eq=False)
+class ExactFlow(Flow):
+    """The exact flow of an oscillator, tabulated for the compiled kernels.
+
+    Parameters
+    ----------
+    packed : ndarray, shape (any,)
+        Parameters as of `GearOscillator.packed`.
+    coef, edge : ndarray
+        See `dynamics.kernels`.
+    made : callable, optional
+        Makes tables of packed parameters with other cells, and of a degree; `tabulated` unless it is given.
+    """
+
+    tolerance = EPS
+    noise = 64.0 * EPS
+
+    packed: Array
+    coef: Array
+    edge: Array
+    made: Callable[[Array, int, int], ExactFlow] | None = None
+
+    @property
+    def arrays(self) -> tuple[Array, Array, Array]:
+        """What the kernels take."""
+        return self.packed, self.coef, self.edge
+
+    def space(self) -> tuple[Array, Array, Array, Integers]:
+        """Work space for the kernels, one for each motion at the same time."""
+        from dynamics.kernels.flow import space_of
+
+        return space_of(self.coef.shape[2] - 1)
+
+    @property
+    def cells(self) -> int:
+        """Cells per period."""
+        return len(self.edge) // 2
+
+    def finer(self) -> ExactFlow:
+        """Tables with half the cell."""
+        return (self.made or tabulated)(self.packed, 2 * self.cells, DEGREE)
+
+    def follow(self, state: Array, periods: int = 1, skip: int = 0, derivatives: bool = True) -> MapResult:
+        """Follow a state; the Jacobian covers the periods skipped, too."""
+        from dynamics.kernels.flow import iterate
+
+        watch = Stopwatch()
+        states, counts, frame = np.empty((periods, 2)), np.zeros((periods, 2), dtype=np.int64), np.eye(4, 2)
+        at = np.array(state, dtype=np.float64)
+        flag = int(iterate(self.arrays, self.space(), at, skip, int(derivatives), frame, states, counts))
+        jacobian = frame[:2]
+        if flag:
+            states[:], jacobian[:] = np.nan, np.nan
+        contact = self._time(frame[3, 0]) if derivatives else math.nan
+        decay = -self.damped(contact, periods + skip)
+        cost = Cost(watch.seconds, periods=periods + skip)
+        return MapResult(states, jacobian, decay, counts, REASONS.get(flag, ""), cost)
+
+    def part(self, first: int, number: int, state: Array, counts: Integers) -> tuple[Array, Array, float]:
+        """State after some cells, its derivative by the state before, time in contact if asked for; `counts` grow.
+
+        All nan if the motion is lost.
+        """
+        from dynamics.kernels.flow import partial
+
+        end, frame = np.array(state, dtype=np.float64), np.eye(4, 2)
+        if partial(self.arrays, self.space(), first, number, end, frame, counts) != 0:
+            end[:] = np.nan
+        return end, frame[:2], self._time(frame[3, 0])
+
+    def damped(self, contact: float, periods: int) -> float:
+        """Integral of the trace of all damping, by the time in contact, which it asks for where damping jumps."""
+        pressed, free = 2.0 * self.packed[[1, 9]]
+        whole = free * (2.0 * math.pi / self.packed[4]) * periods
+        return float(whole + (pressed - free) * contact if pressed != free else whole)
+
+    def _time(self, cells: float) -> float:
+        """Time that so many cells take."""
+        return float(2.0 * math.pi / self.packed[4] / self.cells * cells)
+
+    def sampled(self, state: Array, periods: int, points: int) -> tuple[Array, Array, Array]:
+        """Samples, extrema and impacts; repeated with more room if the last two did not fit."""
+        from dynamics.kernels.walking import walk
+
+        room = 64 * periods
+        while True:
+            samples = np.empty((periods * points + 1 if points else 0, 2))
+            turns, events = np.empty((room, 5)), np.empty((room, 4))
+            flag, turned, happened = walk(
+                self.arrays, self.space(), state.copy(), periods, points, samples, turns, events
+            )
+            if flag:
+                raise lost_motion(state, REASONS[int(flag)])
+            if turned <= room and happened <= room:
+                return samples, turns[:turned], events[:happened]
+            room = max(turned, happened)
+
+    def stretches(self, state: Array, sizes: Sequence[int], keep: bool = False) -> Stretches:
+        """Growth of two directions, made orthonormal every eight cells."""
+        from dynamics.kernels.flow import iterate
+
+        frame, at = np.eye(4, 2), np.array(state, dtype=np.float64)
+        logs, kept, damped, flag = np.zeros((len(sizes), 2)), [], np.zeros(len(sizes)), 0
+        for k, (row, size) in enumerate(zip(logs, sizes, strict=True)):
+            part = np.empty((size if keep else min(size, 1), 2))
+            frame[2:] = 0.0
+            if size:
+                unseen = np.zeros((len(part), 2), dtype=np.int64)
+                flag = flag or int(
+                    iterate(self.arrays, self.space(), at, size - len(part), 2, frame, part, unseen)
+                )
+            row[:], damped[k] = frame[2], self.damped(self._time(frame[3, 0]), size)
+            kept.append(part)
+        return Stretches(logs, np.vstack(kept) if keep else at[None], damped, REASONS.get(flag, ""))
+
+    def calm(self, state: Array, limit: int, longest: int) -> tuple[Array, int, str]:
+        """State after `limit` periods or when the motion repeats to rounding, periods followed, message."""
+        from dynamics.kernels.searching import calm
+
+        room, tallies = np.empty((2 * longest, 2)), np.zeros((2 * longest, 2), dtype=np.int64)
+        at = np.array(state, dtype=np.float64)
+        waited = int(calm(self.arrays, self.space(), at, limit, room, tallies, 1e-13))
+        return at, abs(waited), REASONS.get(-waited, "")
+
+    def settle(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
+        """Follow starts until they stay near known attractors."""
+        from dynamics.kernels.searching import settle
+
+        def some(first: int, last: int) -> int:
+            return int(
+                settle(
+                    self.arrays, self.space(), starts[first:last], homes, radius, limit, labels[first:last]
+                )
+            )
+
+        return in_blocks(len(starts), some, int(np.count_nonzero(labels == -1)))
+
+
+def sufficient_degree(oscillator: GearOscillator, tolerance: float) -> int:
+    """Degree of the Taylor tables that leaves less than a tolerance, at most the usual one.
+
+    A cell is half a radian of the fastest time scale, so that the series of the speeds are cut at (1/4)^n/n!; a period
+    adds at most as many of these as it has cells. The factor 4 is for the three series together.
+    """
+    left, degree = 4.0 * oscillator.cells * 0.25**6 / math.factorial(6), 6
+    while left > tolerance and degree < DEGREE:
+        degree += 1
+        left *= 0.25 / degree
+    return degree
+
+
+def exact_flow(
+    oscillator: GearOscillator,
+    refinement: int = 1,
+    degree: int | None = None,
+    *,
+    tolerance: float | None = None,
+) -> ExactFlow:
+    """Tabulate an oscillator.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator
+        The oscillator.
+    refinement : int
+        Factor on the number of cells.
+    degree : int, optional
+        Of the Taylor polynomials, 6 or more. Left out: what `tolerance` asks for, or 13, which leaves rounding alone.
+    tolerance : float, optional
+        Error allowed in one period's map, over the size of the motion and the stretch of the map. A loose one makes
+        impacts cheaper, by a fifth at 1e-6.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range, or both degree and tolerance are given.
+    """
+    with Faults() as faults:
+        faults.whole("refinement", refinement, *REFINEMENT)
+        if degree is not None:
+            faults.whole("degree", degree, *TAYLOR_DEGREE)
+        if tolerance is not None:
+            faults.number("tolerance", tolerance, POSITIVE)
+            if degree is not None:
+                faults.add(
+                    "tolerance", tolerance, "must be left out where the degree is given", "leave one out"
+                )
+    if degree is None:
+        degree = DEGREE if tolerance is None else sufficient_degree(oscillator, tolerance)
+    return tabulated(oscillator.packed(), math.ceil(oscillator.cells) * refinement, degree)
+
+
+def tabulated(packed: Array, cells: int, degree: int = DEGREE) -> ExactFlow:
+    """Tables of a packed oscillator, with so many cells per period."""
+    from dynamics.kernels.tables import fill, room_of, tables_of
+
+    coef, edge = tables_of(cells, degree)
+    fill(packed, coef, edge, room_of(cells, degree), 0)
+    return ExactFlow(packed, coef, edge)
+
+
+def propagated(table: ExactFlow, states: npt.ArrayLike, periods: int, backwards: bool = False) -> Array:
+    """States after whole periods, shape (any, 2); nan where a motion is lost.
+
+    Parameters
+    ----------
+    table : ExactFlow
+        Of `exact_flow`, or of `dynamics.attraction.manifolds.reversed_tables` if backwards.
+    states : array_like, shape (any, 2)
+        X and V at tau = 0.
+    periods : int
+        Excitation periods.
+    backwards : bool
+        Whether the tables are those of the reversed oscillator.
+    """
+    at = np.array(states, dtype=np.float64).reshape(-1, 2)
+    turn = np.array([1.0, -1.0 if backwards else 1.0])
+    at *= turn
+    labels = np.full(len(at), -1, dtype=np.int64)
+    table.settle(at, np.empty((0, 4)), 0.0, periods, labels)  # nowhere to settle: followed to the end
+    at[labels == -2] = np.nan
+    return np.asarray(at * turn)
+
+
+@exact_only
+def turning_points(oscillator: GearOscillator | ExactFlow, state: npt.ArrayLike, periods: int = 1) -> Array:
+    """Every extremum of X from a state at tau = 0.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator or ExactFlow
+        The oscillator.
+    state : array_like, shape (2,)
+        X and V at tau = 0.
+    periods : int
+        Excitation periods.
+
+    Returns
+    -------
+    ndarray, shape (k, 5)
+        Time, X, acceleration, region (1, 0, -1) and the coordinate of the region (X - D, X, X + D), which
+        keeps its digits next to the limit of the backlash.
+
+    Raises
+    ------
+    InputError
+        If the state is not finite, or the motion grows beyond all bounds.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> turning_points(oscillator, (0.5, 0.2)).shape[1]
+    5
+    """
+    t = oscillator if isinstance(oscillator, ExactFlow) else exact_flow(oscillator)
+    return t.sampled(checked_state(state), periods, 0)[1]

@@ -1,0 +1,221 @@
+"""The record of a mesh cycle, made of the contact's solution for one torque, with remarks for the reader."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+from base import Array, Booleans, Cost, RangeWarning
+from fem.contact.face_errors import FEW_CELLS
+from fem.contact.opposite_flanks import OppositeFlanks
+from fem.contact.solver import ContactState
+from fem.cycle.events import ContactProblem
+from fem.cycle.face_loads import face_loads
+from fem.cycle.model_error import LoadedContacts
+from fem.cycle.result import MeshCycle
+from fem.elasticity.flamant import hertz_half_width
+from fem.elasticity.plane_elasticity import reduced_modulus
+from fem.laws.edge_tables import EdgeTables
+from fem.laws.local_law import Film
+from fem.laws.mesh_setup import MeshSetup
+from fem.pair.pair_compliance import PairCompliance
+from fem.pair.references import held_turns
+
+__all__ = ["cycle_of"]
+
+LARGE_DEFLECTION = 0.03
+"""Part of the module above which a deflection is reported."""
+
+LARGE_SHIFT = 0.1
+"""The same of shafts: the path of contact gets shorter by as much, the contact ratio less by a third of it."""
+
+WIDE_CONTACT = 0.07
+"""Part of the radius of relative curvature above which a contact's half-width is reported."""
+
+
+def cycle_of(
+    given: MeshSetup,
+    bodies: PairCompliance,
+    film: Film | None,
+    tolerance: float,
+    tables: EdgeTables,
+    contact: ContactState,
+    number: int,
+    torque: float,
+    cost: Cost,
+) -> MeshCycle:
+    """Put the figures of one torque of a solution together."""
+    where, pairs = contact.where, len(contact.where.offset)
+    force = torque / given.pair.base_radii[0]
+    opposite = contact.opposite
+    turned = contact.share.forces[number]  # kappa F
+    deflection = contact.deflection(number).ravel()
+    moved = contact.turn(number).ravel()
+    stiffness = contact.share.stiffness[number].ravel()
+    refusal = contact.refusal(number)
+    bad = np.nan if refusal else 0.0
+    by_cells = (
+        0.0
+        if contact.face is None
+        else float(contact.face.errors.relative[number] + contact.face.errors.ends[number])
+    )
+    forces = (turned / contact.kappa).reshape(-1, pairs) + bad
+    edge = np.tile(where.edge, (given.pitches, 1))
+    on_path = where.touchable & ~where.edge
+    rho = contact.flank_rho(given.pair, number).reshape(2, -1, pairs)
+    lost = [one.reshape(2, -1, pairs) for one in contact.lever_loss(number)]
+    large = [] if refusal else _large(given, contact, number, forces, bodies.plane)
+    if large:
+        warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
+    held, supports = held_turns(bodies)
+    approach = contact.share.transmission_error[number]
+    both = opposite is not None and bool(np.any(opposite.forces[number] > 0.0))
+    behind = (opposite.where, opposite.forces[number]) if opposite is not None and both else None
+    return MeshCycle(
+        torque=torque,
+        force=force,
+        position=where.position,
+        pair_offset=where.offset,
+        rho1=np.tile(np.where(on_path, where.place, np.nan), (given.pitches, 1)),
+        edge=edge,
+        flank_rho=np.where(np.tile(where.touchable, (given.pitches, 1)), rho, np.nan),
+        forces=forces,
+        load_share=(
+            contact.torques(number).reshape(-1, pairs) / abs(force) if force else np.full_like(forces, np.nan)
+        )
+        + bad,
+        gaps=where.gap.reshape(-1, pairs),
+        transmission_error=(-(given.pair.backlash + moved) if given.back else moved) + bad,
+        stiffness=stiffness + bad,
+        secant_stiffness=(abs(force) / deflection if force else stiffness) + bad,
+        pair_stiffness=(contact.share.pair_stiffness[number] / contact.kappa).reshape(-1, pairs) + bad,
+        plane=bodies.plane,
+        beyond_path=given.beyond_path,
+        error=bodies.error + by_cells,
+        moving_contact=given.moving_contact,
+        strips_at_corners=given.strips_at_corners,
+        lever_loss=lost[0],
+        further_lever_loss=lost[1],
+        cost=cost,
+        converged=bodies.converged and not refusal,
+        message=refusal
+        or "; ".join([bodies.message, *_remarks(given, contact, number, forces, edge), *large]),
+        pair=given.pair,
+        candidates=where,
+        friction=float(given.friction),
+        supports=supports,
+        reference=held,
+        face=None if refusal else face_loads(given, contact, number, bodies.plane),
+        loaded=None
+        if refusal
+        else LoadedContacts(given, bodies, where, _on_faces(contact, number), approach, force, behind),
+        problem=None
+        if refusal
+        else ContactProblem(
+            replace(given, both=both),
+            bodies,
+            force,
+            film,
+            tolerance,
+            tables=tables,
+            scatter=None if contact.face is None else contact.face.errors.of(number),
+            ends_error=0.0 if contact.face is None else float(contact.face.errors.ends[number]),
+        ),
+        flank="back" if given.back else "front",
+        opposite=_opposite(given, contact, number) if both else None,
+    )
+
+
+def _opposite(given: MeshSetup, contact: ContactState, number: int) -> OppositeFlanks:
+    """Flanks on the other side under one torque, where they bear."""
+    assert contact.opposite is not None
+    found, back = contact.opposite.flanks(number), contact.back
+    if back is None:
+        return found
+    rho = back.flank_rho(given.pair, number).reshape(found.flank_rho.shape)
+    lost, further = (one.reshape(2, *found.forces.shape) for one in back.lever_loss(number))
+    places = np.where(np.isfinite(found.flank_rho), rho, np.nan)
+    return replace(found, flank_rho=places, lever_loss=lost, further_lever_loss=further)
+
+
+def _on_faces(contact: ContactState, number: int) -> Array:
+    """Forces kappa F of pairs (..., pairs), or of whole faces at the cells' line loads (cells, ..., pairs) [N]."""
+    if contact.face is None:
+        return np.asarray(contact.share.forces[number])
+    forces = contact.face.forces[number]
+    return np.asarray(forces.shape[-1] * np.moveaxis(forces, -1, 0))
+
+
+def _large(given: MeshSetup, contact: ContactState, number: int, forces: Array, plane: str) -> list[str]:
+    """Deflections and contacts that are large for a law of the first order."""
+    part = np.max(contact.share.transmission_error[number]) / given.pair.module
+    loaded = np.where(contact.where.edge, 0.0, forces.reshape(contact.share.forces[number].shape))
+    rho1, rho2 = contact.where.rho
+    radius = rho1 * rho2 / (rho1 + rho2)
+    width = hertz_half_width(loaded / given.pair.face_width, radius, reduced_modulus(given.pair, plane))
+    wide = np.max(width / radius)
+    found, far = [], contact.shafts_give_way(number)
+    if far > LARGE_SHIFT:
+        found.append(
+            f"the shafts give way by {far:.2g} modules along the line of action; that the path of contact gets shorter "
+            "by as much is left out"
+        )
+    if part > LARGE_DEFLECTION:
+        found.append(f"the teeth deflect by {part:.2g} modules, where what the first order leaves out counts")
+    if wide > WIDE_CONTACT:
+        found.append(f"the half-width of a contact is {wide:.2g} of its radius, not small as Hertz takes it")
+    return found if contact.face is None else found + _short(contact.face.forces[number])
+
+
+def _short(forces: Array) -> list[str]:
+    """Contacts that are too short along the face for its cells (pitches, positions, pairs, cells)."""
+    pairs = forces.sum(axis=-1)
+    most = np.argmax(pairs, axis=-1)[..., None]
+    bears = np.take_along_axis(np.count_nonzero(forces, axis=-1), most, axis=-1)
+    least, cells = int(bears.min()), forces.shape[-1]
+    if least >= FEW_CELLS or least == cells:
+        return []
+    return [
+        f"the most loaded pair bears on {least} of {cells} cells of the face at some positions, where {FEW_CELLS} are "
+        "needed to resolve how the load is spread; give more cells, or less slope and crowning"
+    ]
+
+
+def _remarks(
+    given: MeshSetup, contact: ContactState, number: int, forces: Array, edge: Booleans
+) -> list[str]:
+    """Remarks for a reader of the figures."""
+    where, remarks = contact.where, []
+    if np.any(forces[edge] > 0):
+        sharp = [one.radius == 0.0 for one in given.rounds]
+        form = (
+            "sharp corners" if all(sharp) else "rounded or sharp corners" if any(sharp) else "rounded corners"
+        )
+        tilted = ", tilted by the same friction as flanks" if given.friction else " without friction"
+        remarks.append(
+            f"tip edges outside the path touch as {form}{tilted}; the shares that they take are uncertain by "
+            "several per cent for real edges"
+        )
+    if given.friction:
+        remarks.append("friction changes the lever arms only, not the compliance")
+    if (overlap := -1e6 * float(np.min(where.back_gap))) > 0.0:
+        left_out = "" if given.pair.tight else ", which is left out; give more backlash, or a tight pair"
+        remarks.append(
+            f"the teeth jam: without load their back flanks overlap by up to {overlap:.3g} um{left_out}"
+        )
+    opposite = contact.opposite
+    if opposite is not None and np.any(opposite.forces[number] > 0):
+        bearing = np.any(opposite.forces[number] > 0, axis=-1)
+        remarks.append(
+            f"flanks on both sides of the teeth bear at {bearing.sum()} of {bearing.size} positions"
+        )
+    elif opposite is not None:
+        clear = 1e6 * np.min(opposite.open[number])
+        remarks.append(
+            f"the backlash is less than the deflection, but back flanks stand clear by at least {clear:.3g} um"
+            if clear >= 0.0
+            else f"back flanks overlap by up to {-clear:.3g} um, which is left out"
+        )
+    return remarks

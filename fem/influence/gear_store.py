@@ -1,0 +1,208 @@
+"""Gears that this process has solved, in modules and E*, to be used again by any pair that has one of them.
+
+A study of N pinions and M wheels so costs N + M gears, and equal gears of a pair are solved once. What is kept is
+small and refuses writing; factors are large and kept for the two gears in use alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol, TypeVar
+
+import numpy as np
+
+from base import Array, Cost, Stopwatch, record
+from fem.elasticity.flank_samples import flank_loads, sample_places, sampled, samples_of
+from fem.elasticity.plane_elasticity import PlaneElasticity
+from fem.elasticity.ring import Ring, ring_of
+from fem.influence.back_compliance import BackCompliance, back_by_mirror, back_compliance
+from fem.influence.flank_motion import FlankMotion, flank_motion
+from fem.influence.gear_compliance import GearCompliance, gear_compliance
+from fem.influence.gear_shape import MeshedShape, plain
+from fem.influence.memo import Memo, read_only
+from fem.influence.tip_strips import TipStrips, tip_strips
+
+__all__ = ["GearStore", "ResultStore", "SolvedFlanks", "forget_gears"]
+
+T = TypeVar("T")
+
+MOST_RECORDS, MOST_RINGS, MOST_FACES = 512, 2, 16
+
+BACK_SAMPLES = 20
+"""Loads along a flank whose answer on the other side of the teeth is looked at: there it is smooth."""
+
+_RECORDS: Memo[Any] = Memo(MOST_RECORDS)
+_RINGS: Memo[tuple[Ring, Ring]] = Memo(MOST_RINGS)
+_FACES: Memo[Any] = Memo(MOST_FACES)
+
+
+def forget_gears() -> None:
+    """Forget all gears that this process has solved, such as before a measurement of what they cost.
+
+    Examples
+    --------
+    >>> from fem import forget_gears
+    >>> forget_gears()
+    """
+    _RECORDS.clear()
+    _RINGS.clear()
+    _FACES.clear()
+
+
+class ResultStore(Protocol):
+    """Where a caller keeps parts of a result beyond the process, as `fem.compliance` asks for them."""
+
+    def __call__(self, name: str, inputs: Mapping[str, Any], compute: Callable[[], T]) -> T:
+        """Give what was kept under a name for these plain inputs; else compute it, and keep it."""
+
+
+@record
+class SolvedFlanks:
+    """A gear's flanks on one mesh, and what the coarser one differs by.
+
+    Attributes
+    ----------
+    flexible, before : GearCompliance
+        On this mesh, and on the one before the last refinement.
+    rho : (n,) array
+        Curvature radii of the loads [m].
+    change : (n,) array
+        By how much ``own`` grew there from the coarser mesh [m per N/m].
+    cross_change : float
+        Largest change of a cross term [m per N/m].
+    back_before : BackCompliance
+        What loads do to the other side of the teeth on the coarser mesh.
+    unknowns, annulus_unknowns : int
+        Of the sector, and of the annulus that it stands for.
+    """
+
+    flexible: GearCompliance
+    before: GearCompliance
+    rho: Array
+    change: Array
+    cross_change: float
+    back_before: BackCompliance
+    unknowns: int
+    annulus_unknowns: int
+
+    def change_at(self, rho: Array) -> Array:
+        """Growth of ``own`` from the coarser mesh at rho (n,) [m] [m per N/m]."""
+        return np.interp(rho, self.rho, self.change)
+
+    def scaled(self, module: float, law: PlaneElasticity) -> SolvedFlanks:
+        """Give the flanks of a gear in modules and E* their size [m] and modulus."""
+        return SolvedFlanks(
+            self.flexible.scaled(module, law),
+            self.before.scaled(module, law),
+            self.rho * module,
+            self.change / law.plane_modulus,
+            self.cross_change / law.plane_modulus,
+            self.back_before.scaled(module, law.plane_modulus),
+            self.unknowns,
+            self.annulus_unknowns,
+        )
+
+
+class GearStore:
+    """Gives solved gears in modules and E*, and notes what those cost that it had to solve.
+
+    Parameters
+    ----------
+    kept : ResultStore, optional
+        Asked for records that this process does not have.
+
+    Attributes
+    ----------
+    costs : list of Cost
+    """
+
+    def __init__(self, kept: ResultStore | None = None) -> None:
+        self.kept = kept
+        self.costs: list[Cost] = []
+
+    def flanks(self, meshed: MeshedShape, samples: int) -> SolvedFlanks:
+        """Flanks with loads at a number of places."""
+        return self.record("flanks", (meshed, samples), lambda: self._flanks(meshed, samples))
+
+    def tips(self, meshed: MeshedShape, before: bool = False) -> TipStrips:
+        """Answer of the tip edges, or that on the mesh before the last refinement."""
+        name = "coarse tips" if before else "tips"
+        return self.record(name, (meshed,), lambda: self._tips(meshed, before))
+
+    def motion(self, meshed: MeshedShape) -> FlankMotion:
+        """Motion of the flank, on the coarser mesh: a correction."""
+        return self.record("motion", (meshed,), lambda: self._motion(meshed))
+
+    def backs(self, meshed: MeshedShape) -> BackCompliance:
+        """What loads on the front flanks do to the back flanks."""
+        return self.record("back flanks", (meshed,), lambda: self._backs(meshed))
+
+    def rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:
+        """Factorised gears, the coarser one first."""
+        return _RINGS.obtain(meshed, lambda: self._rings(meshed))
+
+    def record(self, name: str, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
+        """Record of a name by all that decides it, solved where it is kept nowhere."""
+        kept = self.kept
+
+        def missing() -> T:
+            return compute() if kept is None else kept(f"gear {name}", {"key": plain(key)}, compute)
+
+        found: T = _RECORDS.obtain((name, key), lambda: read_only(missing()))
+        return found
+
+    def over_face(self, name: str, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
+        """Give what gears do between cells of a face: large, and kept for the few that were used last."""
+        found: T = _FACES.obtain((name, key), compute)
+        return found
+
+    def _rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:
+        from meshes import mesh_sector
+
+        watch = Stopwatch()
+        mesh = mesh_sector(meshed.shape.profile, meshed.sizes, meshed.refinements)
+        assert mesh.coarser is not None
+        own = Cost(watch.seconds, parts={"mesh": watch.seconds})
+        coarse, fine = (ring_of(one, meshed.shape.law) for one in (mesh.coarser, mesh))
+        self.costs += [own, coarse.cost, fine.cost]
+        return coarse, fine
+
+    def _flanks(self, meshed: MeshedShape, samples: int) -> SolvedFlanks:
+        coarse, fine = self.rings(meshed)
+        watch, profile, reach = Stopwatch(), meshed.shape.profile, meshed.shape.reach
+        places = sample_places(profile, samples)
+        loads = flank_loads(coarse, places)
+        there, before = sampled(fine, places, reach), samples_of(loads, reach)
+        found = SolvedFlanks(
+            gear_compliance(fine, profile, there),
+            gear_compliance(coarse, profile, before),
+            places,
+            there.own - before.own,
+            float(np.max(np.abs(there.cross - before.cross), initial=0.0)),
+            back_by_mirror(loads.part(slice(samples)), reach),
+            len(fine.inner) + len(fine.cut),
+            fine.unknowns,
+        )
+        self.costs.append(Cost(watch.seconds, parts={"solve": watch.seconds}))
+        return found
+
+    def _tips(self, meshed: MeshedShape, before: bool) -> TipStrips:
+        ring = self.rings(meshed)[0 if before else 1]
+        watch = Stopwatch()
+        found = tip_strips(ring, meshed.shape.profile)
+        self.costs.append(Cost(watch.seconds, parts={"tips": watch.seconds}))
+        return found
+
+    def _motion(self, meshed: MeshedShape) -> FlankMotion:
+        ring = self.rings(meshed)[0]
+        watch = Stopwatch()
+        found = flank_motion(ring)
+        self.costs.append(Cost(watch.seconds, parts={"motion": watch.seconds}))
+        return found
+
+    def _backs(self, meshed: MeshedShape) -> BackCompliance:
+        ring = self.rings(meshed)[1]
+        watch, shape = Stopwatch(), meshed.shape
+        found = back_compliance(ring, sample_places(shape.profile, BACK_SAMPLES), shape.reach)
+        self.costs.append(Cost(watch.seconds, parts={"back flanks": watch.seconds}))
+        return found

@@ -1,0 +1,278 @@
+"""How a pair is set up for contact: teeth that meet first, rounded tips, deviations, friction; checked together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import cos, sin
+from numbers import Integral, Real
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Faults, Integers, Limit, rounded_down
+from fem.laws.tip_contact import Removed
+from fem.laws.tip_geometry import TipRound, chamfer_length, tip_round
+from fem.pair.face_setting import FaceSetting
+from gears import GearDeviations
+
+if TYPE_CHECKING:
+    from gears import GearPair
+
+__all__ = ["Deviations", "MeshSetup"]
+
+Deviations = Sequence["GearDeviations | None"]
+
+LARGEST_ROUND = 0.2
+"""Largest part of the flank [modules] that a rounding of the tip may take."""
+
+MOST_POINTS = 20
+"""Points of profile deviations or wear up to which each ends an arc of the mesh cycle."""
+
+COUNT = Limit(1, whole=True)
+FRICTION = Limit(0.0, 0.5, remedy="dry steel has about 0.2, oiled 0.05")
+
+
+@dataclass(frozen=True, eq=False)
+class Stations:
+    """Positions one by one.
+
+    Attributes
+    ----------
+    within : (n,) array
+        Base pitches, 0 to 1.
+    pitch : (n,) array of int
+        Number of the base pitch.
+    """
+
+    within: Array
+    pitch: Integers
+
+
+@dataclass(frozen=True)
+class MeshSetup:
+    """How a pair stands and what its flanks are like; `mesh_cycle` describes each of these.
+
+    Nothing is checked before `check` is called. With `back` the loaded flanks are those in which a braking pinion
+    bears: the same gears in a mirror, at the same positions. `both`: their opposite flanks bear too.
+    """
+
+    pair: GearPair
+    positions: int = 40
+    beyond_path: bool = True
+    deviations: Deviations | None = None
+    pitches: int = 1
+    first_teeth: tuple[int, int] = (0, 0)
+    tip_rounding: float | tuple[float, float] = 0.0
+    friction: float = 0.0
+    stations: Stations | None = None
+    moving_contact: bool = False
+    base_pitch_difference: float = 0.0
+    back: bool = False
+    both: bool = False
+    face: FaceSetting | None = None
+
+    def at(self, position: Array) -> MeshSetup:
+        """The same gears at given positions (n,) [base pitches] instead of equal intervals."""
+        pitch = np.floor(position)
+        stations = Stations(position - pitch, pitch.astype(np.int64))
+        return replace(self, positions=len(position), pitches=1, stations=stations)
+
+    @property
+    def opposite(self) -> MeshSetup:
+        """The same gears and positions with the other flanks loaded."""
+        return replace(self, back=not self.back)
+
+    @cached_property
+    def mirror(self) -> float:
+        """Sum c of a position and of that at which the mirrored gears stand alike, with the wheel where it is.
+
+        The flanks of a tooth of the wheel are 2 r_b2 psi_b2 apart on its base circle, the two lines of action leave
+        it 2 r_b2 alpha_w apart, and its back flank meets the tooth of the pinion that follows:
+        c = 2 [L - rho1_A - r_b2 (psi_b2 + alpha_w)]/p_b + 1. With the pinion where it is c is less by j/p_b.
+        """
+        pair, wheel = self.pair, self.pair.teeth_profiles[1]
+        turn = wheel.base_radius * (wheel.base_half_angle + pair.working_pressure_angle)
+        return 2 * (pair.line_of_action - pair.points.A - turn) / pair.base_pitch + 1
+
+    def seen(self, position: Array) -> Array:
+        """Positions at which a corner in the law of a flank is met by the flanks that bear (n,), 0 to 1."""
+        mirrored = (self.mirror - position) % 1.0
+        if self.both:
+            return np.concatenate([position, mirrored])
+        return mirrored if self.back else position
+
+    def teeth(self, step: Integers) -> Integers:
+        """Numbers of the teeth that meet (2, ...), from those that the pinion's has been gone on by.
+
+        Behind a tooth of the pinion stands the wheel's following one.
+        """
+        first, second = self.first_teeth
+        return np.stack([first + step, second + step + int(self.back)])
+
+    def check(self, found: Faults) -> None:
+        """Note everything that is wrong."""
+        found.number("positions", self.positions, COUNT)
+        found.number("pitches", self.pitches, COUNT)
+        found.number("friction", self.friction, FRICTION)
+        for name in ("beyond_path", "moving_contact"):
+            found.instance(name, getattr(self, name), bool, "True or False")
+        if self.face is not None:
+            self.face.check(found, self.pair, self.positions)
+        both = tuple(self.first_teeth) if isinstance(self.first_teeth, Sequence) else ()
+        if len(both) != 2 or any(isinstance(n, bool) or not isinstance(n, Integral) for n in both):
+            found.add("first_teeth", self.first_teeth, "must be two whole numbers", "number from 0")
+        if len(self._by_gear) != 2:
+            gears = f"{len(self._by_gear)} gears"
+            found.add("deviations", gears, "must be of pinion and wheel", "give None for a perfect one")
+        else:
+            for k, (gear, spec) in enumerate(
+                zip(self._by_gear, (self.pair.pinion, self.pair.wheel), strict=True)
+            ):
+                where = f"deviations[{k}]"
+                if found.instance(where, gear, GearDeviations, optional=True) and gear is not None:
+                    found.extend(gear.faults(where, spec.teeth))
+        self._check_rounding(found)
+
+    def _check_rounding(self, found: Faults) -> None:
+        numbers = [
+            isinstance(r, Real) and not isinstance(r, bool) and np.isfinite(r) and r >= 0 for r in self._radii
+        ]
+        if len(self._radii) != 2 or not all(numbers):
+            allowed = "must be a radius of at least 0 m, or one for each gear"
+            found.add("tip_rounding", self.tip_rounding, allowed, "give metres; 0 is sharp")
+            return
+        fits = True
+        for k, (one, profile) in enumerate(zip(self.rounds, self.pair.teeth_profiles, strict=True)):
+            if one.radius == 0.0:
+                continue
+            land = profile.tip_radius * sin(max(profile.tip_half_angle, 0.0))
+            # with a chamfer the arc is between flank and chamfer, and must end on it
+            length = chamfer_length(profile)
+            room = min(LARGEST_ROUND * profile.module, length if length > 0 else land)
+            if one.start > room:
+                most = f"must be at most {rounded_down(room * one.radius / one.start, 3)} m"
+                found.add(f"tip_rounding[{k}]", f"{one.radius:g} m", most, "round the tip less")
+                fits = False
+        start, end = self.ends
+        if fits and not self.beyond_path and end - start < self.pair.base_pitch:
+            remedy = "round the tips less, or let tip edges touch"
+            found.add("tip_rounding", self.tip_rounding, "must leave a contact ratio above 1", remedy)
+
+    @property
+    def _radii(self) -> tuple[float, ...]:
+        radii = self.tip_rounding
+        return tuple(radii) if isinstance(radii, Sequence) else (radii, radii)
+
+    @property
+    def _by_gear(self) -> tuple[GearDeviations | None, ...]:
+        if self.deviations is None:
+            return (None, None)
+        return tuple(self.deviations) if isinstance(self.deviations, Sequence) else ()
+
+    @cached_property
+    def rounds(self) -> tuple[TipRound, TipRound]:
+        """Roundings of pinion's and wheel's tip edges."""
+        first, second = (
+            tip_round(profile, float(r))
+            for profile, r in zip(self.pair.teeth_profiles, self._radii, strict=True)
+        )
+        return first, second
+
+    @property
+    def strips_at_corners(self) -> tuple[bool, bool]:
+        """Whether contacts beside the tip corners of pinion and wheel press by strips of plain flanks that stay."""
+        plain = self.beyond_path and self.removed is None and not self.moving_contact
+        first, second = (plain and one.radius == 0.0 for one in self.rounds)
+        return first, second
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """rho1 at which contact of the two involutes starts and ends [m]: A and E but for roundings."""
+        first, second = self.rounds
+        return self.pair.line_of_action - second.rho, first.rho
+
+    @property
+    def even(self) -> bool:
+        """Whether the flanks are true involutes at equal pitches."""
+        plain = all(some is None or some.every_tooth_alike for some in self._by_gear)
+        return plain and self.removed is None and not self.base_pitch_difference
+
+    @property
+    def teeth_alike(self) -> bool:
+        """Whether all teeth of a gear have one profile."""
+        return all(some is None or some.profiles_alike for some in self._by_gear)
+
+    def kinks(self, gear: int) -> Array:
+        """Curvature radii at which the slope of what a gear's flank lacks changes at once."""
+        profile, some = self.pair.teeth_profiles[gear], self._by_gear[gear]
+        relief = [] if profile.tip_relief is None else [profile.flank_rho[1] - profile.tip_relief.length]
+        return np.concatenate([relief, [] if some is None else some.kinks(MOST_POINTS)])
+
+    @property
+    def corners(self) -> Array:
+        """Positions within a base pitch at which a flank's laws change by the geometry (n,), 0 to 1; see `seen`.
+
+        The ends of the path, where flanks give way to tip edges; starts of tip relief; C with friction, which turns
+        there; points of measured profiles unless there are very many, whose curvature alone steps there.
+        """
+        pair = self.pair
+        line, places = pair.line_of_action, [*self.ends, pair.points.A, pair.points.E]
+        for gear, profile in enumerate(pair.teeth_profiles):
+            some, rho = self._by_gear[gear], []
+            if profile.tip_relief is not None:
+                rho.append(profile.flank_rho[1] - profile.tip_relief.length)
+            if some is not None:
+                rho += some.corners(MOST_POINTS).tolist()
+            places += rho if gear == 0 else [line - one for one in rho]
+        if self.friction:
+            places.append(pair.points.C)
+        inside = [one for one in places if self.ends[0] <= one <= self.ends[1]] + [pair.points.A]
+        return np.unique((np.array(inside) - pair.points.A) / pair.base_pitch % 1.0)
+
+    @property
+    def removed(self) -> tuple[Removed, Removed] | None:
+        """Material missing from pinion's and wheel's flank at curvature radii, mean of their teeth; None if none is."""
+        profiles = self.pair.teeth_profiles
+        curves = [some is not None and some.curved for some in self._by_gear]
+        if not any(curves) and all(profile.tip_relief is None for profile in profiles):
+            return None
+
+        def missing(gear: int) -> Removed:
+            some, relief = self._by_gear[gear], profiles[gear].relief
+            if some is None or not curves[gear]:
+                return relief
+            return lambda rho: np.asarray(relief(rho) - some.excess(rho))
+
+        return missing(0), missing(1)
+
+    def pitch_gap(self, teeth: Integers) -> Array:
+        """Gap along the line of action by pitch deviations of teeth (2, ...) [m].
+
+        A tooth of the pinion that comes late opens the gap of its loaded flank, one of the wheel closes it; behind a
+        tooth it is the other way round.
+        """
+        first, second = self._by_gear
+        gap = np.zeros(teeth.shape[1:])
+        if first is not None:
+            gap += first.late(teeth[0])
+        if second is not None:
+            gap -= second.late(teeth[1])
+        return np.asarray(gap * cos(self.pair.rack.alpha) * (-1 if self.back else 1))
+
+    def tooth_gap(self, teeth: Integers, rho: Array) -> Array:
+        """Gap from what teeth (2, ...) lack compared with the mean of their gear at curvature radii (2, ...) [m].
+
+        `removed` is that mean, by which tip edges have their laws: over a contact of their size what a tooth differs
+        by is taken as even.
+        """
+        gap = np.zeros(teeth.shape[1:])
+        for some, tooth, place in zip(self._by_gear, teeth, rho, strict=True):
+            if some is not None:
+                gap -= some.of_tooth(tooth, place)
+        return gap
+
+    def rolling_gap(self, place: Array) -> Array:
+        """Gap by unequal base pitches at places of the line of action [m]: none at C, p_b2 - p_b1 a base pitch on."""
+        return np.asarray(self.base_pitch_difference / self.pair.base_pitch * (self.pair.points.C - place))

@@ -1,0 +1,75 @@
+"""What a gear that is wider than the face in contact yields less: its body goes on beyond the load.
+
+Between walls at the ends of its face b_g a gear answers waves k_m = m pi/b_g. Loads and deflections in the middles
+z_c of the cells, h wide, hold waves up to K = pi/h; with c(k) the answer to a wave of line load, even loads included,
+
+    C_cd = c(K) delta_cd/h + sum_(k_m < K) (2 - delta_m0)/b_g [c(k_m) - c(K)] cos k_m z_c cos k_m z_d ,
+
+z from the end of its face. The sum's terms vanish towards K, so that cells need not divide the face; where they do,
+and for b_g = b, this is the cosine transform of equally wide gears (``fem.contact.face_share``), by which it replaces
+it here.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array
+from fem.pair.face_compliance import even_loads, gear_waves
+from fem.pair.face_setting import FaceSetting
+
+if TYPE_CHECKING:
+    from fem.pair.pair_compliance import PairCompliance
+
+__all__ = ["cosines", "overhang"]
+
+
+def overhang(bodies: PairCompliance, gear: int, rho: Array, face: FaceSetting) -> Array:
+    """Compliance of a gear's own face less that of one as wide as the face in contact (positions, n, cells, n, cells).
+
+    Parameters
+    ----------
+    bodies : PairCompliance
+    gear : int
+        0 is the pinion, 1 the wheel.
+    rho : (positions, n) array
+        Curvature radii of n pairs on it, in order of rho1, one tooth apart [m].
+    face : FaceSetting
+
+    Returns
+    -------
+    array
+        [m/N]
+    """
+    pair, cells = bodies.pair, face.cells
+    width, module = pair.face_widths[gear], pair.module
+    even = even_loads(bodies, gear, rho)[..., None]
+    if "hub_windup" in bodies.left_out:
+        even = even - (bodies.pinion, bodies.wheel)[gear].hub_windup
+    shortest = np.pi * cells / pair.face_width  # K, 1/m
+    wave: Array = np.arange(int(np.ceil(shortest * width / np.pi)), dtype=float) * (np.pi / width)
+    wave = wave[wave < shortest * (1.0 - 1e-9)]
+    answer: Array = even + gear_waves(bodies, gear, rho, np.append(wave, shortest) * module)
+    last = answer[..., -1:]
+    z = face.middles(pair.face_width) - pair.face_offsets[gear] + 0.5 * width
+    shapes = np.cos(wave[:, None] * z) * np.sqrt(np.where(wave > 0.0, 2.0, 1.0) / width)[:, None]
+    found = _by_waves(shapes, answer[..., :-1] - last)
+    found[..., np.arange(cells), :, np.arange(cells)] += np.moveaxis(last, -1, 0) * cells / pair.face_width
+    equal: Array = np.arange(cells, dtype=float) * np.pi / pair.face_width
+    same = even + gear_waves(bodies, gear, rho, equal * module)
+    return found - _by_waves(cosines(cells) * np.sqrt(cells / pair.face_width), same)
+
+
+def _by_waves(shapes: Array, answer: Array) -> Array:
+    """Between cells (positions, n, cells, n, cells), of shapes (waves, cells) and answers (positions, n, n, waves)."""
+    return np.asarray(np.einsum("mc,pijm,md->picjd", shapes, answer, shapes, optimize=True))
+
+
+def cosines(cells: int) -> Array:
+    """Orthonormal cosines over equal cells (modes, cells)."""
+    m, c = np.arange(cells)[:, None], np.arange(cells) + 0.5
+    found = np.cos(np.pi * m * c / cells) * np.sqrt(2.0 / cells)
+    found[0] = np.sqrt(1.0 / cells)
+    return np.asarray(found)
