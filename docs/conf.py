@@ -53,7 +53,7 @@ autosummary_filename_map = {
     for name in (
         "dynamics.Diagram",
         "dynamics.Manifold",
-        "fem.Compliance",
+        "fem.PairCompliance",
         "fem.Fillets",
         "gears.tooth.contour.Contour",
     )
