@@ -90,14 +90,14 @@ class PeerWork:
     ----------
     script : str
         File in ``peer_scripts``, without suffix.
-    given : mapping
+    inputs : mapping
         What the script reads, as JSON.
     quantity : str
         Quantity of the case that its values are compared with.
     """
 
     script: str
-    given: Mapping[str, Any]
+    inputs: Mapping[str, Any]
     quantity: str
 
 
@@ -159,8 +159,8 @@ def case(title: str, size_name: str, key: str = "") -> Callable[[Callable[P, Lev
     def decorate(function: Callable[P, Levels]) -> Callable[P, Case]:
         @wraps(function)
         def build(*args: P.args, **kwargs: P.kwargs) -> Case:
-            given = signature(function).bind(*args, **kwargs).arguments
-            known = {**function.__globals__, **given}
+            arguments = signature(function).bind(*args, **kwargs).arguments
+            known = {**function.__globals__, **arguments}
             text = " ".join((function.__doc__ or "").partition("\n")[2].split())
             own, named, said = (w.format(**known) for w in (key or function.__name__, title, text))
             return Case(own, named, said, size_name, *function(*args, **kwargs))
@@ -170,9 +170,9 @@ def case(title: str, size_name: str, key: str = "") -> Callable[[Callable[P, Lev
     return decorate
 
 
-def value(found: ArrayLike, estimate: float | None = None, over_largest: bool = False) -> Value:
+def value(numbers: ArrayLike, estimate: float | None = None, over_largest: bool = False) -> Value:
     """Make a value of one number or of several."""
-    return Value(np.atleast_1d(np.asarray(found, dtype=float)), estimate, over_largest)
+    return Value(np.atleast_1d(np.asarray(numbers, dtype=float)), estimate, over_largest)
 
 
 def answer(size: float, values: Mapping[str, Value], *of: Any) -> Answer:
@@ -204,13 +204,13 @@ def percent(tolerance: float) -> str:
 
 def work(name: str, task: Callable[[], Any], size: float = float("nan")) -> Series:
     """Make a series of one level that is timed and gives no figure."""
-    return Series(name, (Level(name, task, lambda found: Answer(size, {})),))
+    return Series(name, (Level(name, task, lambda returned: Answer(size, {})),))
 
 
-def true_error(found: Value, finest: Value) -> float:
+def true_error(computed: Value, finest: Value) -> float:
     """Return the largest relative difference from the finest values; NaN where they cannot be compared."""
-    if found.values.shape != finest.values.shape or found.values.size == 0:
+    if computed.values.shape != finest.values.shape or computed.values.size == 0:
         return float("nan")
-    off = np.abs(found.values - finest.values)
+    off = np.abs(computed.values - finest.values)
     scale = np.abs(finest.values)
     return float(np.max(off / (np.max(scale) if finest.over_largest else scale)))

@@ -35,8 +35,8 @@ def elements(quick: bool) -> Levels:
     def solve(kinds: tuple[str, ...], times: int) -> tuple[tuple[str, ...], float, int]:
         return kinds, *sector_energy(sectors[times], kinds[-1])
 
-    def energy(found: tuple[tuple[str, ...], float, int]) -> Answer:
-        kinds, work, unknowns = found
+    def energy(solution: tuple[tuple[str, ...], float, int]) -> Answer:
+        kinds, work, unknowns = solution
         return Answer(unknowns, {f"energy, {kind}": value(work) for kind in kinds})
 
     kinds, label = tuple(ORDERS), "refined {} times".format
@@ -109,8 +109,10 @@ def _held(basis: Any, grid: Any, mesh: SectorMesh) -> Integers:
     bore = np.linalg.norm(mesh.points, axis=1).min()
 
     def on(condition: Any) -> Integers:
-        found: Integers = basis.get_dofs(facets=grid.facets_satisfying(condition, boundaries_only=True)).all()
-        return found
+        unknowns: Integers = basis.get_dofs(
+            facets=grid.facets_satisfying(condition, boundaries_only=True)
+        ).all()
+        return unknowns
 
     def at_bore(x: Array) -> Any:
         return np.hypot(*x) < bore + 0.02 * mesh.module

@@ -152,10 +152,10 @@ def film_relaxed(short: str, words: str, contact: LineContact) -> Levels:
     def sweeps(nodes: int) -> tuple[float, int] | None:
         return relaxed(contact, nodes, factors[nodes])
 
-    def by_sweeps(found: tuple[float, int] | None) -> Answer:
-        if found is None:
+    def by_sweeps(relaxation: tuple[float, int] | None) -> Answer:
+        if relaxation is None:
             return Answer(np.nan, {}, "no factors of the ladder converge")
-        return central(found[1], found[0])
+        return central(relaxation[1], relaxation[0])
 
     series = (
         over((65, 129, 257), NODES, lambda nodes: newton(nodes=nodes), by_newton, name="Newton"),
@@ -177,12 +177,12 @@ def film_mixed() -> Levels:
     height = solve(slow).minimum_thickness
     rough = Roughness(deviation=height / 1.5, density=4e10, tip_radius=1e-5)
 
-    def both(found: MixedFilm) -> Answer:
-        shared = (found.central_thickness, found.minimum_thickness, found.asperity_share)
-        return answer(found.film.x.size, {"film and asperity share": value(shared, found.error)}, found)
+    def film_and_share(mixed: MixedFilm) -> Answer:
+        shared = (mixed.central_thickness, mixed.minimum_thickness, mixed.asperity_share)
+        return answer(mixed.film.x.size, {"film and asperity share": value(shared, mixed.error)}, mixed)
 
-    series = over((0.02, 0.005, 0.001), percent, solve_mixed, both, slow, rough, name="tolerances")
-    return Levels((series,), level(percent(2e-4), solve_mixed, both, slow, rough, 2e-4))
+    series = over((0.02, 0.005, 0.001), percent, solve_mixed, film_and_share, slow, rough, name="tolerances")
+    return Levels((series,), level(percent(2e-4), solve_mixed, film_and_share, slow, rough, 2e-4))
 
 
 @case("Films along the path of contact", "nodes in the mean")
@@ -199,10 +199,10 @@ def film_path() -> Levels:
     def along(tolerance: float) -> list[Film]:
         return list(solve_path(contacts, tolerance=tolerance))
 
-    def all_of(found: list[Film]) -> Answer:
-        heights = [h for f in found for h in (f.central_thickness, f.minimum_thickness)]
-        values = {"central and minimum films": value(heights, max(f.error for f in found))}
-        return answer(float(np.mean([f.x.size for f in found])), values, *found)
+    def all_of(path_films: list[Film]) -> Answer:
+        heights = [h for f in path_films for h in (f.central_thickness, f.minimum_thickness)]
+        values = {"central and minimum films": value(heights, max(f.error for f in path_films))}
+        return answer(float(np.mean([f.x.size for f in path_films])), values, *path_films)
 
     series = over((0.02, 0.005, 0.001), percent, along, all_of, name="tolerances")
     return Levels((series,), level("0.05 %", along, all_of, 5e-4))
@@ -233,21 +233,21 @@ def film_path_fed(short: str, words: str, layer: OilLayer | None, rough: bool) -
     ground = Roughness.from_drawing(mean=0.4e-6)
 
     def along(tolerance: float) -> list[Film | MixedFilm]:
-        found: list[Any] = []
+        path_films: list[Any] = []
         for contact in contacts_along_path(41):
             supply = layer or Meniscus(-1.03 * contact.half_width)
-            start = found[-1] if found else None
+            start = path_films[-1] if path_films else None
             if rough:
-                found.append(solve_mixed(contact, ground, tolerance, supply, start))
+                path_films.append(solve_mixed(contact, ground, tolerance, supply, start))
             else:
-                found.append(solve(contact, tolerance, supply=supply, start=start))
-        return found
+                path_films.append(solve(contact, tolerance, supply=supply, start=start))
+        return path_films
 
-    def all_of(found: list[Film | MixedFilm]) -> Answer:
-        inside = [f.film if isinstance(f, MixedFilm) else f for f in found]
-        heights = [h for f in found for h in (f.central_thickness, f.minimum_thickness)]
-        values = {"central and minimum films": value(heights, max(f.error for f in found))}
-        return answer(float(np.mean([f.x.size for f in inside])), values, *found)
+    def all_of(path_films: list[Film | MixedFilm]) -> Answer:
+        inside = [f.film if isinstance(f, MixedFilm) else f for f in path_films]
+        heights = [h for f in path_films for h in (f.central_thickness, f.minimum_thickness)]
+        values = {"central and minimum films": value(heights, max(f.error for f in path_films))}
+        return answer(float(np.mean([f.x.size for f in inside])), values, *path_films)
 
     series = over((0.005, 0.001, 2e-4), percent, along, all_of, name="tolerances")
     return Levels((series,), level("0.01 %", along, all_of, 1e-4))
@@ -272,9 +272,9 @@ def film_over_time() -> Levels:
     def followed(tolerance: float) -> TransientFilm:
         return solve_transient(contact, load, times, tolerance=tolerance)
 
-    def both(found: TransientFilm) -> Answer:
-        values = {"central and minimum films": value([*found.central, *found.least], found.error)}
-        return answer(found.x.shape[1], values, found)
+    def central_and_minimum(transient: TransientFilm) -> Answer:
+        values = {"central and minimum films": value([*transient.central, *transient.least], transient.error)}
+        return answer(transient.x.shape[1], values, transient)
 
-    series = over((0.02, 0.01, 0.005), percent, followed, both, name="tolerances")
-    return Levels((series,), level("0.25 %", followed, both, 2.5e-3))
+    series = over((0.02, 0.01, 0.005), percent, followed, central_and_minimum, name="tolerances")
+    return Levels((series,), level("0.25 %", followed, central_and_minimum, 2.5e-3))

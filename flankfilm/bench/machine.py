@@ -108,5 +108,5 @@ def _blas() -> str:
     import numpy as np
 
     config: Any = np.show_config(mode="dicts")
-    found = config.get("Build Dependencies", {}).get("blas", {})
-    return " ".join(str(found[key]) for key in ("name", "version") if found.get(key)) or "unknown"
+    blas = config.get("Build Dependencies", {}).get("blas", {})
+    return " ".join(str(blas[key]) for key in ("name", "version") if blas.get(key)) or "unknown"

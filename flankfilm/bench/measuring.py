@@ -151,13 +151,13 @@ def measure(
         _run(series.levels[0], 0)
     rows: list[Row] = []
     for series in case.series:
-        for one in series.levels:
-            announce(f"{case.title}: {series.name}, {one.name}")
-            found, reason, timing = _run(one, repeat)
+        for level in series.levels:
+            announce(f"{case.title}: {series.name}, {level.name}")
+            answer, reason, timing = _run(level, repeat)
             if finest is None and case.finest is not None:
                 reason = reason or f"the finest solution failed: {failure}"
-            about = partial(Row, case.key, series.name, one.name)
-            rows += _rows(about, found, finest, timing, reason)
+            about = partial(Row, case.key, series.name, level.name)
+            rows += _rows(about, answer, finest, timing, reason)
     estimates = {} if finest is None else {q: _number(v.estimate) for q, v in finest.values.items()}
     return CaseResult(
         solver,
@@ -172,12 +172,12 @@ def measure(
     )
 
 
-def _run(one: Level, repeat: int) -> tuple[Answer | None, str, Timing]:
+def _run(level: Level, repeat: int) -> tuple[Answer | None, str, Timing]:
     """Time a level; return what it gave, or why it gave nothing."""
     with quiet():
         try:
-            result, timing = timed(one.work, max(repeat, 1)) if repeat else (one.work(), _UNTIMED)
-            answer = one.answer(result)
+            result, timing = timed(level.work, max(repeat, 1)) if repeat else (level.work(), _UNTIMED)
+            answer = level.answer(result)
         except (ValueError, ArithmeticError) as error:
             # a refusal is a result of the measurement: the rest goes on
             return None, str(error).splitlines()[0] if str(error) else type(error).__name__, _UNTIMED
@@ -193,17 +193,17 @@ def quiet() -> Iterator[None]:
 
 
 def _rows(
-    about: Callable[..., Row], found: Answer | None, finest: Answer | None, timing: Timing, reason: str
+    about: Callable[..., Row], answer: Answer | None, finest: Answer | None, timing: Timing, reason: str
 ) -> Iterator[Row]:
     """Rows of one level, a quantity each; one alone where there is nothing to compare."""
-    if found is None or finest is None:
-        size = math.nan if found is None else found.size
+    if answer is None or finest is None:
+        size = math.nan if answer is None else answer.size
         yield about("", size, *astuple(timing), math.nan, math.nan, reason)
         return
-    for quantity, value in found.values.items():
+    for quantity, value in answer.values.items():
         error = true_error(value, finest.values[quantity])
         failure = "" if math.isfinite(error) else "cannot be compared with the finest solution"
-        yield about(quantity, found.size, *astuple(timing), error, _number(value.estimate), failure)
+        yield about(quantity, answer.size, *astuple(timing), error, _number(value.estimate), failure)
 
 
 def _number(value: float | None) -> float:

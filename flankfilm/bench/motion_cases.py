@@ -55,16 +55,16 @@ def motion_flow(quick: bool) -> Levels:
 
     def state(resolution: tuple[int, int]) -> Answer:
         refinement, degree = resolution
-        found, halved = (
+        reached, halved = (
             period_map(exact_flow(osc, cells, degree), START, PERIODS).state
             for cells in (refinement, 2 * refinement)
         )
-        estimate = float(np.max(np.abs(found - halved)) / np.max(np.abs(halved)))
-        return Answer(degree, {STATE: value(found, estimate, over_largest=True)})
+        estimate = float(np.max(np.abs(reached - halved)) / np.max(np.abs(halved)))
+        return Answer(degree, {STATE: value(reached, estimate, over_largest=True)})
 
     label = "degree {}".format
     names = ("damping_ratio", "mean_force", "error_amplitude", "frequency", "half_backlash")
-    given = {
+    inputs = {
         "oscillator": [osc.stiffness.amplitudes[0], *(getattr(osc, name) for name in names)],
         "start": START,
         "periods": PERIODS,
@@ -73,7 +73,7 @@ def motion_flow(quick: bool) -> Levels:
     return Levels(
         tuple(over(degrees, label, follow, state, r, name=words) for r, words in refinements.items()),
         level("degree 30, a quarter of the cells", follow, state, 4, 30),
-        peers=tuple(PeerWork(f"{peer}_motion", given, STATE) for peer in ("scipy", "heyoka", "dop853")),
+        peers=tuple(PeerWork(f"{peer}_motion", inputs, STATE) for peer in ("scipy", "heyoka", "dop853")),
     )
 
 
@@ -98,13 +98,15 @@ def motion_drive(quick: bool) -> Levels:
     def state(resolution: tuple[DriveFlow, int]) -> Answer:
         flow, degree = resolution
         finer = tabulated(osc, 2 * flow.cells, degree)
-        found, halved = (one.follow(start, PERIODS, derivatives=False).state for one in (flow, finer))
-        estimate = float(np.max(np.abs(found - halved)) / np.max(np.abs(halved)))
-        return Answer(degree, {STATE: value(found, estimate, over_largest=True)})
+        reached, halved = (
+            drive_flow.follow(start, PERIODS, derivatives=False).state for drive_flow in (flow, finer)
+        )
+        estimate = float(np.max(np.abs(reached - halved)) / np.max(np.abs(halved)))
+        return Answer(degree, {STATE: value(reached, estimate, over_largest=True)})
 
     levels = (level(f"degree {d}", follow, state, tabulated(osc, cells, d), d) for d in degrees)
     names = ("mass", "damping", "stiffness", "direction", "mean_force")
-    given = {
+    inputs = {
         **{name: np.asarray(getattr(osc, name)).tolist() for name in names},
         "mesh": [0.2, osc.mesh_damping, osc.error_amplitude, osc.frequency, osc.half_backlash],
         "start": start.tolist(),
@@ -114,7 +116,7 @@ def motion_drive(quick: bool) -> Levels:
     return Levels(
         (Series("exact flow", tuple(levels)),),
         level("degree 24, a quarter of the cells", follow, state, tabulated(osc, 4 * cells, 24), 24),
-        peers=(PeerWork("dop853_drive", given, STATE),),
+        peers=(PeerWork("dop853_drive", inputs, STATE),),
     )
 
 
@@ -140,8 +142,8 @@ def motion_orbit(quick: bool) -> Levels:
     def wait(periods: int) -> tuple[int, Array]:
         return periods, period_map(table, START, 1, periods - 1).state
 
-    def waited(found: tuple[int, Array]) -> Answer:
-        return Answer(found[0], {STATE: value(found[1], None, True)})
+    def waited(settled: tuple[int, Array]) -> Answer:
+        return Answer(settled[0], {STATE: value(settled[1], None, True)})
 
     def finest() -> tuple[int, Array]:
         """Newton's method on finer tables, written out, from the settled motion."""
@@ -196,9 +198,9 @@ def motion_sweep() -> Levels:
     def follow(transient: int | None) -> SweepResult:
         return sweep(oscillator(), values=values, transient=transient)
 
-    def last(found: SweepResult) -> Answer:
-        states = value(found.states[:, -1], found.error, True)
-        return answer(found.cost.periods / values.size, {STATE: states}, found)
+    def last(swept: SweepResult) -> Answer:
+        states = value(swept.states[:, -1], swept.error, True)
+        return answer(swept.cost.periods / values.size, {STATE: states}, swept)
 
     series = (
         over((10, 20, 50, 100, 200), "{} dropped".format, follow, last, name="periods dropped"),
@@ -223,9 +225,9 @@ def motion_exponents() -> Levels:
         return periods, lyapunov_exponents(osc, periods=periods)
 
     def larger(averaged: tuple[int, LyapunovResult]) -> Answer:
-        periods, found = averaged
-        largest = float(found.exponents[0])
-        return Answer(periods, {quantity: value(largest, found.standard_error / abs(largest))})
+        periods, lyapunov = averaged
+        largest = float(lyapunov.exponents[0])
+        return Answer(periods, {quantity: value(largest, lyapunov.standard_error / abs(largest))})
 
     counts = (300, 1000, 3000, 10_000, 30_000, 100_000)
     series = over(counts, "{} periods".format, average, larger, name="periods")

@@ -24,26 +24,26 @@ LEAD = (
 )
 
 
-def write_page(found: Bench, folder: Path) -> list[Path]:
+def write_page(bench: Bench, folder: Path) -> list[Path]:
     """Write every figure as SVG, and ``report.html``; return the files."""
     paths = []
-    compared = [case for case in found.cases if case.finest]
+    compared = [case for case in bench.cases if case.finest]
     drawn = {"overview": figures.overview(compared), "estimates": figures.estimates(compared)}
-    of_case = {case.key: figures.error_against_cost(case, _of(case, found.peers)) for case in compared}
+    of_case = {case.key: figures.error_against_cost(case, _of(case, bench.peers)) for case in compared}
     svg = {name: to_svg(figure, name) for name, figure in (drawn | of_case).items()}
     for name, text in svg.items():
         paths.append(folder / f"{name}.svg")
         write_text(paths[-1], text)
     parts = [
-        _overview(found, svg),
-        *(_case(case, svg[case.key], _of(case, found.peers)) for case in compared),
-        *(_work(case) for case in found.cases if not case.finest),
-        _first_calls(found),
-        *([_peers(found.peers)] if found.peers else []),
-        _machine(found),
+        _overview(bench, svg),
+        *(_case(case, svg[case.key], _of(case, bench.peers)) for case in compared),
+        *(_work(case) for case in bench.cases if not case.finest),
+        _first_calls(bench),
+        *([_peers(bench.peers)] if bench.peers else []),
+        _machine(bench),
     ]
     paths.append(folder / "report.html")
-    write_text(paths[-1], render(Head("Error against cost", [Fact(LEAD)], _headlines(found)), parts))
+    write_text(paths[-1], render(Head("Error against cost", [Fact(LEAD)], _headlines(bench)), parts))
     return paths
 
 
@@ -52,7 +52,9 @@ Columns = Mapping[str, Callable[[Any], str]]
 
 
 def _table(records: Sequence[Any], columns: Columns) -> Table:
-    return Table(tuple(columns), tuple(tuple(text(one) for text in columns.values()) for one in records))
+    return Table(
+        tuple(columns), tuple(tuple(text(record) for text in columns.values()) for record in records)
+    )
 
 
 def _number(value: float) -> str:
@@ -80,7 +82,7 @@ def _whole(text: str) -> str:
     return text.replace("-", "\u2011").replace(" ", "\u00a0")
 
 
-def _overview(found: Bench, svg: Mapping[str, str]) -> Part:
+def _overview(bench: Bench, svg: Mapping[str, str]) -> Part:
     text = (
         "The works differ; what can be compared is how fast errors fall. A tenth of the error costs the factor in the "
         "table, from a straight line through the levels that none of the others beats. Estimate over true error: above "
@@ -91,13 +93,13 @@ def _overview(found: Bench, svg: Mapping[str, str]) -> Part:
         Drawing(svg["overview"], "True error over processor time, one work of each solver."),
         Drawing(svg["estimates"], "Estimated over true errors: above the line, the safe side."),
     )
-    return Part("overview", "All solvers", (text,), drawings, (_summary(found),))
+    return Part("overview", "All solvers", (text,), drawings, (_summary(bench),))
 
 
-def _summary(found: Bench) -> Table:
+def _summary(bench: Bench) -> Table:
     rows = []
-    for one in summaries(found.cases):
-        *words, error, time, gain, ratio = summary_cells(one)
+    for summary in summaries(bench.cases):
+        *words, error, time, gain, ratio = summary_cells(summary)
         spans = (" to ".join(_whole(end) for end in text.split(" to ")) for text in (error, time))
         rows.append((*words, *spans, _whole(gain), _whole(ratio)))
     return Table(HEADS, tuple(rows))
@@ -107,13 +109,13 @@ def _of(case: CaseResult, peers: Sequence[PeerRow]) -> list[PeerRow]:
     return [peer for peer in peers if peer.case == case.key]
 
 
-def _headlines(found: Bench) -> list[Headline]:
-    ratios = [ratio for case in found.cases for ratio in known_ratios(case, case.rows)]
-    rows = [row for case in found.cases for row in case.rows]
+def _headlines(bench: Bench) -> list[Headline]:
+    ratios = [ratio for case in bench.cases for ratio in known_ratios(case, case.rows)]
+    rows = [row for case in bench.cases for row in case.rows]
     failures = sum(bool(row.failure) for row in rows)
     entries = [
-        Headline("measured", f"{len(found.cases)} works", f"{len(rows)} rows in {found.seconds:.0f} s"),
-        Headline("machine", found.machine.processor, f"{found.machine.cores} cores"),
+        Headline("measured", f"{len(bench.cases)} works", f"{len(rows)} rows in {bench.seconds:.0f} s"),
+        Headline("machine", bench.machine.processor, f"{bench.machine.cores} cores"),
     ]
     if ratios:
         safe = sum(ratio >= 0.9 for ratio in ratios)
@@ -157,13 +159,13 @@ def _work(case: CaseResult) -> Part:
     return Part(case.key, case.title, (case.work,), tables=(_table(case.rows, columns),))
 
 
-def _first_calls(found: Bench) -> Part:
+def _first_calls(bench: Bench) -> Part:
     text = (
         "Processor time of the coarsest work of all cases of a solver in a separate process. A first call holds the "
         "start of Python, imports, and what the cases need beforehand; the first of all also compiles the kernels, "
         "which are then kept on disk. No time above holds any of this."
     )
-    if found.quick:
+    if bench.quick:
         text += " A quick run does not compile from nothing."
     columns: Columns = {
         "solver": lambda call: str(call.solver),
@@ -174,7 +176,7 @@ def _first_calls(found: Bench) -> Part:
         "compilation": lambda call: _clock(call.nothing_kept - call.kept),
         "remark": lambda call: str(call.failure),
     }
-    tables = (_table(found.first_calls, columns),)
+    tables = (_table(bench.first_calls, columns),)
     return Part("first-calls", "First calls and compilation", (text,), tables=tables)
 
 
@@ -195,7 +197,7 @@ def _peers(peers: Sequence[PeerRow]) -> Part:
     return Part("peers", "Other programs", (text,), tables=(_table(peers, columns),))
 
 
-def _machine(found: Bench) -> Part:
-    cells = (*found.machine.described(), ("load when it ended", busy(found.load_after)))
-    text = f"Minimum of {found.repeat} or more runs of each level; {'quick' if found.quick else 'complete'}."
+def _machine(bench: Bench) -> Part:
+    cells = (*bench.machine.described(), ("load when it ended", busy(bench.load_after)))
+    text = f"Minimum of {bench.repeat} or more runs of each level; {'quick' if bench.quick else 'complete'}."
     return Part("machine", "Machine and versions", (text,), tables=(Table(("", ""), cells),))

@@ -86,7 +86,7 @@ def _run(python: Path, work: PeerWork, repeat: int, longest: float) -> dict[str,
     """Return what the script printed, or why it printed nothing."""
     # neither variables nor packages of the user reach the peer; the scripts find each other
     command = [str(python), "-E", "-s", "-W", "ignore", str(MAIN), work.script, str(os.getpid())]
-    printed = output_of(command, longest, input=json.dumps({**work.given, "repeat": repeat}))
+    printed = output_of(command, longest, input=json.dumps({**work.inputs, "repeat": repeat}))
     if isinstance(printed, str):
         return printed
     # programs print other lines too

@@ -90,6 +90,8 @@ def relaxed(contact: LineContact, nodes: int, factors: tuple[float, float]) -> t
 
 def fastest_factors(contact: LineContact, nodes: int) -> tuple[float, float]:
     """Factors of the ladder that converge in the fewest sweeps; the most careful ones where none converges."""
-    found: dict[tuple[float, float], Any] = {factors: relaxed(contact, nodes, factors) for factors in LADDER}
-    sweeps = {factors: answer[1] for factors, answer in found.items() if answer is not None}
+    relaxations: dict[tuple[float, float], Any] = {
+        factors: relaxed(contact, nodes, factors) for factors in LADDER
+    }
+    sweeps = {factors: answer[1] for factors, answer in relaxations.items() if answer is not None}
     return min(sweeps, key=lambda factors: sweeps[factors], default=LADDER[-1])

@@ -125,23 +125,23 @@ def bench(
 def _checked(folder: Path, only: Sequence[str], repeat: int | None, against: str | None) -> Path | None:
     """Claim the folder and return the peers' interpreter, or raise with every fault."""
     python = None if against is None else shutil.which(against)
-    with Faults() as found:
+    with Faults() as faults:
         for name in (name for name in only if name not in SOLVERS):
             allowed = f"must be one of {', '.join(SOLVERS)}"
-            found.add("--only", name, allowed, "Leave it out to measure all")
+            faults.add("--only", name, allowed, "Leave it out to measure all")
         if repeat is not None and not 1 <= repeat <= MOST_REPEATS:
-            found.add("--repeat", repeat, f"must be from 1 to {MOST_REPEATS}", "3 is usual")
+            faults.add("--repeat", repeat, f"must be from 1 to {MOST_REPEATS}", "3 is usual")
         if against is not None and python is None:
             allowed = "must be an interpreter that can be run"
-            found.add("--against", against, allowed, "Such as ENVIRONMENT/bin/python")
+            faults.add("--against", against, allowed, "Such as ENVIRONMENT/bin/python")
         if against is not None and only and not set(only) & set(PEERED):
             allowed = f"other programs know the work of {' and '.join(PEERED)} alone"
-            found.add("--against", against, allowed, "Leave it out, or name one of these with --only")
-        if not found.found or folder.exists():
+            faults.add("--against", against, allowed, "Leave it out, or name one of these with --only")
+        if not faults.found or folder.exists():
             # a folder is made only if all else is right
             try:
                 claim(folder)
             except InputError as error:
-                found.extend(error.faults)
+                faults.extend(error.faults)
     # absolute, but not resolved: the link in an environment is what makes it one
     return None if python is None else Path(python).absolute()

@@ -55,8 +55,8 @@ def motion_stepwise(short: str, name: str, law: Any) -> Levels:
         return Answer(evaluations / PERIODS, {"state": value(state, None, over_largest=True)})
 
     def stepped(flow: StepwiseFlow) -> Answer:
-        found = flow.follow(start, PERIODS, derivatives=False)
-        return of_state(found.cost.counts["evaluations of the law"], found.state)
+        image = flow.follow(start, PERIODS, derivatives=False)
+        return of_state(image.cost.counts["evaluations of the law"], image.state)
 
     def by_exact_flow(_: object) -> Answer:
         return of_state(0.0, period_map(exact, START, PERIODS).state)

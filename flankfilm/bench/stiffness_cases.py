@@ -65,8 +65,8 @@ def compliance(quick: bool) -> Levels:
         bodies = anew(pair, **how)
         return bodies, fem.mesh_cycle(pair, TORQUE, POSITIONS, bodies, beyond_path=False)
 
-    def both(found: tuple[PairCompliance, MeshCycle]) -> Answer:
-        bodies, held = found
+    def mean_and_single(solution: tuple[PairCompliance, MeshCycle]) -> Answer:
+        bodies, held = solution
         values = {
             MEAN: value(held.secant_stiffness.mean(), held.error),
             SINGLE: value(_single(pair, bodies), bodies.error),
@@ -80,12 +80,12 @@ def compliance(quick: bool) -> Levels:
     tolerances = (1e-3,) if quick else (1e-3, 1e-4, 2e-5)
     finest = ("edges x 0.6", 0.6, 1) if quick else ("refined 3 times", 1.0, 3)
     series = (
-        over(factors, "edges x {:g}".format, edges, both, name="edge lengths"),
-        over(tolerances, percent, lambda t: cycle(tolerance=t), both, name="tolerances"),
+        over(factors, "edges x {:g}".format, edges, mean_and_single, name="edge lengths"),
+        over(tolerances, percent, lambda t: cycle(tolerance=t), mean_and_single, name="tolerances"),
         *_forms(pair),
     )
-    peers = (PeerWork("ross_stiffness", _given(pair), MEAN),)
-    best = level(finest[0], lambda *size: edges(*size, tolerance=1e-5), both, *finest[1:])
+    peers = (PeerWork("ross_stiffness", _inputs(pair), MEAN),)
+    best = level(finest[0], lambda *size: edges(*size, tolerance=1e-5), mean_and_single, *finest[1:])
     return Levels(series, best, dict.fromkeys((MEAN, SINGLE), 2.0), peers)
 
 
@@ -100,7 +100,7 @@ def compliance_of(z1: int, z2: int) -> Levels:
 
     pair = GearPair(Gear(z1), Gear(z2), 2e-3, 0.04)
 
-    def both(bodies: PairCompliance) -> Answer:
+    def single_and_spread(bodies: PairCompliance) -> Answer:
         held = fem.mesh_cycle(pair, 0.5 * TORQUE, POSITIONS, bodies, beyond_path=False)
         values = {
             SINGLE: value(_single(pair, bodies), bodies.error),
@@ -108,8 +108,10 @@ def compliance_of(z1: int, z2: int) -> Levels:
         }
         return answer(bodies.cost.unknowns, values, bodies)
 
-    series = over((1e-3, 1e-4, 2e-5), percent, anew, both, pair, name="tolerances")
-    return Levels((series,), level("refined 3 times", lambda: anew(pair, 1e-5, refinements=3), both))
+    series = over((1e-3, 1e-4, 2e-5), percent, anew, single_and_spread, pair, name="tolerances")
+    return Levels(
+        (series,), level("refined 3 times", lambda: anew(pair, 1e-5, refinements=3), single_and_spread)
+    )
 
 
 def _forms(pair: GearPair) -> tuple[Series, ...]:
@@ -124,7 +126,7 @@ def _forms(pair: GearPair) -> tuple[Series, ...]:
     )
 
 
-def _given(pair: GearPair) -> dict[str, Any]:
+def _inputs(pair: GearPair) -> dict[str, Any]:
     material = pair.materials[0]
     return {
         "module": pair.module,
@@ -161,23 +163,23 @@ def contact(short: str, words: str, beyond: bool, quick: bool) -> Levels:
     def cycle(positions: int) -> MeshCycle:
         return fem.mesh_cycle(pair, TORQUE, positions, bodies, beyond_path=beyond)
 
-    def sampled(found: MeshCycle) -> Answer:
-        curve, moved = found.secant_stiffness, found.transmission_error
-        return answer(curve.size, {MEAN: value(curve.mean()), SPREAD: value(np.ptp(moved))}, found)
+    def sampled(mesh_cycle: MeshCycle) -> Answer:
+        curve, moved = mesh_cycle.secant_stiffness, mesh_cycle.transmission_error
+        return answer(curve.size, {MEAN: value(curve.mean()), SPREAD: value(np.ptp(moved))}, mesh_cycle)
 
     def arcs(tolerance: float) -> Division:
         problem = fem.mesh_cycle(pair, TORQUE, 1, bodies, beyond_path=beyond, tolerance=tolerance).problem
         assert problem is not None
         return problem.divided()
 
-    def between(found: Division) -> Answer:
-        mean, off = found.arcs.mean("secant_stiffness")
-        (least, low), (most, high) = found.arcs.extremes("transmission_error")
+    def between(division: Division) -> Answer:
+        mean, off = division.arcs.mean("secant_stiffness")
+        (least, low), (most, high) = division.arcs.extremes("transmission_error")
         values = {
             MEAN: value(mean, off / mean),
             SPREAD: value(most - least, (low + high) / (most - least)),
         }
-        return answer(found.samples, values)
+        return answer(division.samples, values)
 
     counts = (12, 48, 192) if quick else (12, 24, 48, 96, 192, 384)
     tolerances = (1e-2, 1e-4) if quick else (1e-1, 1e-2, 1e-3, 1e-4)
@@ -202,12 +204,12 @@ def root_stress(quick: bool) -> Levels:
     quantity = "maximum tension, both gears"
 
     def stress(**how: Any) -> tuple[Fillets, RootStress]:
-        found = fem.fillets(pair, **how)
-        return found, fem.root_stress(pair, cycle, found)
+        fillets = fem.fillets(pair, **how)
+        return fillets, fem.root_stress(pair, cycle, fillets)
 
-    def greatest(found: tuple[Fillets, RootStress]) -> Answer:
-        roots, both = found
-        tension = [gear.greatest_tension.stress_Pa for gear in (both.pinion, both.wheel)]
+    def greatest(solution: tuple[Fillets, RootStress]) -> Answer:
+        roots, stresses = solution
+        tension = [gear.greatest_tension.stress_Pa for gear in (stresses.pinion, stresses.wheel)]
         return answer(1.0 / roots.fillet_edge, {quantity: value(tension, roots.error)}, roots)
 
     def edges(length: float) -> tuple[Fillets, RootStress]:

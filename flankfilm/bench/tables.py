@@ -58,15 +58,15 @@ def summaries(cases: Sequence[CaseResult]) -> Iterator[Summary]:
         for series in dict.fromkeys(row.series for row in case.rows):
             rows = [row for row in case.rows if row.series == series]
             for quantity in dict.fromkeys(row.quantity for row in rows if row.quantity):
-                one = tuple(row for row in rows if row.quantity == quantity)
-                ratios = list(known_ratios(case, one))
+                quantity_rows = tuple(row for row in rows if row.quantity == quantity)
+                ratios = list(known_ratios(case, quantity_rows))
                 yield Summary(
                     case.title,
                     series,
                     quantity,
-                    (one[0].error, one[-1].error),
-                    (one[0].cpu, one[-1].cpu),
-                    gain(one),
+                    (quantity_rows[0].error, quantity_rows[-1].error),
+                    (quantity_rows[0].cpu, quantity_rows[-1].cpu),
+                    gain(quantity_rows),
                     (min(ratios, default=math.nan), max(ratios, default=math.nan)),
                 )
 
@@ -83,21 +83,21 @@ def known_ratios(case: CaseResult, rows: Sequence[Row]) -> Iterator[float]:
 HEADS = ("work", "by", "error of", "true error", "time", "a tenth costs", "estimate / true")
 
 
-def summary_cells(one: Summary) -> tuple[str, ...]:
+def summary_cells(summary: Summary) -> tuple[str, ...]:
     """Text of a summary under `HEADS`."""
 
     def span(text: Callable[[float], str], ends: tuple[float, float]) -> str:
         return " to ".join(dict.fromkeys(map(text, ends[:1] if alone else ends)))
 
-    alone = one.errors[0] == one.errors[1] and one.seconds[0] == one.seconds[1]
+    alone = summary.errors[0] == summary.errors[1] and summary.seconds[0] == summary.seconds[1]
     return (
-        one.title,
-        one.series,
-        one.quantity,
-        span(number, one.errors),
-        span(clock, one.seconds),
-        "" if math.isnan(one.gain) else f"x {one.gain:.2g}",
-        "" if math.isnan(one.ratios[0]) else span(_ratio, one.ratios),
+        summary.title,
+        summary.series,
+        summary.quantity,
+        span(number, summary.errors),
+        span(clock, summary.seconds),
+        "" if math.isnan(summary.gain) else f"x {summary.gain:.2g}",
+        "" if math.isnan(summary.ratios[0]) else span(_ratio, summary.ratios),
     )
 
 
@@ -120,41 +120,41 @@ def clock(seconds: float) -> str:
     return f"{seconds:.3g} s"
 
 
-def terminal(found: Bench) -> Table:
+def terminal(bench: Bench) -> Table:
     """Tabulate the summaries for the terminal."""
     from rich import box
     from rich.table import Table
 
-    title = f"processor time on {found.machine.processor}, minimum of {found.repeat} or more"
+    title = f"processor time on {bench.machine.processor}, minimum of {bench.repeat} or more"
     shown = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
     for place, head in enumerate(HEADS):
         shown.add_column(head, justify="left" if place < 3 else "right", no_wrap=place >= 3)
-    for one in summaries(found.cases):
-        shown.add_row(*summary_cells(one))
+    for summary in summaries(bench.cases):
+        shown.add_row(*summary_cells(summary))
     return shown
 
 
-def remarks(found: Bench) -> list[str]:
+def remarks(bench: Bench) -> list[str]:
     """Lines for the terminal on everything that has no figures, each once."""
-    lines = [f"{peer.peer}: {peer.failure}" for peer in found.peers if peer.failure]
-    lines += [f"first call of {call.solver}: {call.failure}" for call in found.first_calls if call.failure]
-    for case in found.cases:
+    lines = [f"{peer.peer}: {peer.failure}" for peer in bench.peers if peer.failure]
+    lines += [f"first call of {call.solver}: {call.failure}" for call in bench.first_calls if call.failure]
+    for case in bench.cases:
         lines += [
             f"{case.title}, {row.series}, {row.level}: {row.failure}" for row in case.rows if row.failure
         ]
     return list(dict.fromkeys(lines))
 
 
-def write_tables(found: Bench, folder: Path) -> list[Path]:
+def write_tables(bench: Bench, folder: Path) -> list[Path]:
     """Write ``bench.json`` with everything, and CSV files of rows, first calls and peers."""
     tables: dict[str, Sequence[Any]] = {
-        "error_against_cost": [row for case in found.cases for row in case.rows],
-        "first_calls": found.first_calls,
-        "peers": found.peers,
+        "error_against_cost": [row for case in bench.cases for row in case.rows],
+        "first_calls": bench.first_calls,
+        "peers": bench.peers,
     }
     paths = [folder / "bench.json"]
     # JSON has no NaN: null stands for it
-    write_text(paths[0], TypeAdapter(Bench).dump_json(found, indent=1).decode() + "\n")
+    write_text(paths[0], TypeAdapter(Bench).dump_json(bench, indent=1).decode() + "\n")
     for name, records in tables.items():
         if records:
             paths.append(folder / f"{name}.csv")

@@ -82,19 +82,19 @@ def thermal_path() -> Levels:
     contacts = [_sliding(c, r) for c, r in zip(contacts_along_path(40), ratios, strict=True)]
 
     def along(tolerance: float) -> list[ThermalFilm]:
-        found: list[ThermalFilm] = []
+        films: list[ThermalFilm] = []
         for contact in contacts:
-            found.append(solve_thermal(contact, tolerance=tolerance, start=found[-1] if found else None))
-        return found
+            films.append(solve_thermal(contact, tolerance=tolerance, start=films[-1] if films else None))
+        return films
 
-    def all_of(found: list[ThermalFilm]) -> Answer:
-        heights = [h for f in found for h in (f.central_thickness, f.minimum_thickness)]
-        friction = [f.traction_coefficient for f in found if abs(f.traction_coefficient) > 0.01]
+    def all_of(films: list[ThermalFilm]) -> Answer:
+        heights = [h for f in films for h in (f.central_thickness, f.minimum_thickness)]
+        friction = [f.traction_coefficient for f in films if abs(f.traction_coefficient) > 0.01]
         values = {
-            "central and minimum films": value(heights, max(f.error for f in found)),
-            "traction": value(friction, max(f.traction_error for f in found)),
+            "central and minimum films": value(heights, max(f.error for f in films)),
+            "traction": value(friction, max(f.traction_error for f in films)),
         }
-        return answer(float(np.mean([f.x.size for f in found])), values, *found)
+        return answer(float(np.mean([f.x.size for f in films])), values, *films)
 
     series = over((0.02, 0.01, 0.005), percent, along, all_of, name="tolerances")
     return Levels((series,), level(percent(2e-3), along, all_of, 2e-3))

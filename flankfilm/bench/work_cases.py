@@ -85,8 +85,8 @@ def work_contact() -> Levels:
     def study() -> None:
         for z1 in range(18, 26):
             for z2 in range(31, 71, 5):
-                one = GearPair(Gear(z1), Gear(z2), 2e-3, 0.04)
-                fem.mesh_cycle(one, (50.0, 100.0, 200.0), 40, tolerance=0.005)
+                gear_pair = GearPair(Gear(z1), Gear(z2), 2e-3, 0.04)
+                fem.mesh_cycle(gear_pair, (50.0, 100.0, 200.0), 40, tolerance=0.005)
 
     def from_nothing(tolerance: float) -> None:
         fem.mesh_cycle(pair, TORQUE, 40, anew(pair, tolerance))

@@ -144,16 +144,23 @@ def compiled_dop853(start, periods, rtol, g, stiff, drag, load, reach, par):
     return y
 
 
-def settings(given: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
+def settings(inputs: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
     """Tolerances."""
-    mass, damping, stiffness = (np.array(given[name]) for name in ("mass", "damping", "stiffness"))
-    g, force = np.array(given["direction"]), np.array(given["mean_force"])
+    mass, damping, stiffness = (np.array(inputs[name]) for name in ("mass", "damping", "stiffness"))
+    g, force = np.array(inputs["direction"]), np.array(inputs["mean_force"])
     inverse = np.linalg.inv(mass)
-    fixed = (g, inverse @ stiffness, inverse @ damping, inverse @ force, inverse @ g, np.array(given["mesh"]))
+    fixed = (
+        g,
+        inverse @ stiffness,
+        inverse @ damping,
+        inverse @ force,
+        inverse @ g,
+        np.array(inputs["mesh"]),
+    )
     for digits in range(4, 14):
         rtol = 10.0**-digits
         first, many = (
-            partial(compiled_dop853, np.array(given["start"]), given[name], rtol, *fixed)
+            partial(compiled_dop853, np.array(inputs["start"]), inputs[name], rtol, *fixed)
             for name in ("periods", "timed_periods")
         )
         yield f"rtol {rtol:.0e}", lambda first=first: first().tolist(), many, 1

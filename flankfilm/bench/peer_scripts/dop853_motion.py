@@ -117,13 +117,13 @@ def compiled_dop853(x, v, periods, rtol, par):
     return x, v
 
 
-def settings(given: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
+def settings(inputs: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
     """Tolerances."""
-    x, v = given["start"]
-    par = np.array(given["oscillator"])
+    x, v = inputs["start"]
+    par = np.array(inputs["oscillator"])
     for digits in range(4, 14):
         rtol = 10.0**-digits
         first, many = (
-            partial(compiled_dop853, x, v, given[name], rtol, par) for name in ("periods", "timed_periods")
+            partial(compiled_dop853, x, v, inputs[name], rtol, par) for name in ("periods", "timed_periods")
         )
         yield f"rtol {rtol:.0e}", first, many, 1

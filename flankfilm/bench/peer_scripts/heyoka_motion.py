@@ -36,9 +36,9 @@ def integrator(osc: list[float], start: list[float], tol: float) -> Any:
     )
 
 
-def settings(given: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
+def settings(inputs: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
     """Tolerances."""
-    osc, start = given["oscillator"], given["start"]
+    osc, start = inputs["oscillator"], inputs["start"]
     period, d = 2.0 * math.pi / osc[4], osc[5]
     side = 1.0 if start[0] > d else -1.0 if start[0] < -d else 0.0
     built: dict[float, Any] = {}
@@ -55,5 +55,5 @@ def settings(given: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
         return [float(ta.state[0]), float(ta.state[1])]
 
     for tol in (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-15):
-        first, many = (partial(follow, tol, given[name]) for name in ("periods", "timed_periods"))
+        first, many = (partial(follow, tol, inputs[name]) for name in ("periods", "timed_periods"))
         yield f"tol {tol:g}", first, many, 1

@@ -37,16 +37,16 @@ def end_with(parent: int) -> None:
 
 def main(name: str) -> None:
     """Read the work as JSON, print what was found as JSON."""
-    given = json.load(sys.stdin)
+    inputs = json.load(sys.stdin)
     try:
         peer = import_module(name)
     except ImportError as error:
         print(json.dumps({"missing": str(error)}))
         return
     runs = []
-    for level, first_call, call, times in peer.settings(given):
+    for level, first_call, call, times in peer.settings(inputs):
         values, first = timed(first_call)
-        seconds = times * min(timed(call)[1] for _ in range(given["repeat"]))
+        seconds = times * min(timed(call)[1] for _ in range(inputs["repeat"]))
         runs.append({"level": level, "seconds": seconds, "first": first, "values": values})
     print(json.dumps({"peer": peer.PEER, "version": peer.VERSION, "runs": runs, "note": peer.NOTE}))
 

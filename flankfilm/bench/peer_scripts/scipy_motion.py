@@ -57,9 +57,9 @@ def follow(osc: list[float], start: list[float], rtol: float, periods: int) -> l
     return [float(y[0]), float(y[1])]
 
 
-def settings(given: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
+def settings(inputs: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
     """Tolerances."""
     for rtol in (1e-4, 1e-6, 1e-8, 1e-10, 1e-12):
-        after = partial(follow, given["oscillator"], given["start"], rtol)
-        first, few = partial(after, given["periods"]), partial(after, FEW)
-        yield f"DOP853, rtol {rtol:g}", first, few, given["timed_periods"] / FEW
+        after = partial(follow, inputs["oscillator"], inputs["start"], rtol)
+        first, few = partial(after, inputs["periods"]), partial(after, FEW)
+        yield f"DOP853, rtol {rtol:g}", first, few, inputs["timed_periods"] / FEW
