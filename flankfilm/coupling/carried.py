@@ -62,11 +62,11 @@ def part_figures(
     for part, (figure, unit) in PARTS.items():
         kept = [i for i, output in enumerate(outputs) if output.unit == unit]
         fields[f"{part}s"] = tuple(outputs[i].name for i in kept)
-        for ending, given in values.items():
+        for ending, loads in values.items():
             fields[f"{figure}{ending}"] = (
-                {way: one[..., kept] for way, one in given.items()}
-                if isinstance(given, Mapping)
-                else given[..., kept]
+                {way: load[..., kept] for way, load in loads.items()}
+                if isinstance(loads, Mapping)
+                else loads[..., kept]
             )
     return fields
 
@@ -74,7 +74,7 @@ def part_figures(
 def greatest(values: Array | Mapping[str, Array]) -> float | None:
     """Largest of all values, perhaps of both directions, that are finite; None without any."""
     each = list(values.values()) if isinstance(values, Mapping) else [values]
-    known = np.concatenate([one[np.isfinite(one)] for one in each])
+    known = np.concatenate([figures[np.isfinite(figures)] for figures in each])
     return float(known.max()) if known.size else None
 
 

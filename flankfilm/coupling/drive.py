@@ -179,7 +179,7 @@ class PairDrive:
     @described("rad/s", "mode", shown="rpm", error="frequency_error")
     def resonance_speeds(self) -> Array:
         """Pinion speeds at which the mesh frequency is a natural one."""
-        return np.array([self.resonance_speed(one) for one in self.natural_frequencies.tolist()])
+        return np.array([self.resonance_speed(frequency) for frequency in self.natural_frequencies.tolist()])
 
     def resonance_speed(self, frequency: float) -> float:
         """Pinion speed [rad/s] at which the mesh frequency is a given one [Hz]."""
@@ -313,19 +313,25 @@ def pair_drive(
     train, turning = train_of(False, tilt_stiffness), (pair.pinion.teeth, pair.wheel.teeth)
     ends = mesh_frequencies(pair, scales, speed, speeds)
     damping = shaft_damping(train, ratios, rayleigh, MOST_MODES, ends[1] ** 2)
-    found = reduced_train(train, damping, mesh_excitation(rigid), ends, reduction_tolerance)
-    if not math.isinf(found.valid_to):  # of the gears' mass: displacements of the size of the train's
-        found = found._replace(shapes=found.shapes * math.sqrt(scales.equivalent_mass))
-    oscillator = reduced_oscillator(rigid, train, damping, found, free_damping_ratio)
-    reached = max(int(np.sum(found.squares <= ends[1] ** 2)), int(np.flatnonzero(found.retained)[-1]) + 1)
-    squares, modes, kept = found.squares[:reached], found.modes[:, :reached], found.retained[:reached]
+    reduction = reduced_train(train, damping, mesh_excitation(rigid), ends, reduction_tolerance)
+    if not math.isinf(reduction.valid_to):  # of the gears' mass: displacements of the size of the train's
+        reduction = reduction._replace(shapes=reduction.shapes * math.sqrt(scales.equivalent_mass))
+    oscillator = reduced_oscillator(rigid, train, damping, reduction, free_damping_ratio)
+    reached = max(
+        int(np.sum(reduction.squares <= ends[1] ** 2)), int(np.flatnonzero(reduction.retained)[-1]) + 1
+    )
+    squares, modes, kept = (
+        reduction.squares[:reached],
+        reduction.modes[:, :reached],
+        reduction.retained[:reached],
+    )
     points = np.array(list(train.points.values()))
     shapes = (points @ modes).T
     greatest = np.take_along_axis(shapes, np.argmax(np.abs(shapes), axis=1)[:, None], axis=1)
 
     def change(other: Train) -> Array:
-        found = lowest_modes(other.in_contact, other.mass, reached + 1, ends[1] ** 2)[0][1:]
-        return np.asarray(np.sqrt(found / squares) - 1.0)
+        other_squares = lowest_modes(other.in_contact, other.mass, reached + 1, ends[1] ** 2)[0][1:]
+        return np.asarray(np.sqrt(other_squares / squares) - 1.0)
 
     def tilt_change() -> float:
         if mesh_matrix is not None:
@@ -339,17 +345,17 @@ def pair_drive(
         oscillator=oscillator,
         rigid=rigid,
         freedoms=tuple(train.points),
-        motion=points @ found.shapes,
+        motion=points @ reduction.shapes,
         natural_frequencies=np.sqrt(squares) / (2.0 * math.pi),
         retained=kept.astype(np.float64),
         reduction_change=reduced_change(oscillator, squares / scales.omega_n**2, kept),
         element_error=SECOND_ORDER * np.abs(change(train_of(True, tilt_stiffness))),
         mode_shapes=shapes / greatest,
         mesh_share=train.mesh_stiffness * (modes.T @ train.direction) ** 2 / squares,
-        outputs=reduced_outputs(train.outputs, found.shapes, scales),
+        outputs=reduced_outputs(train.outputs, reduction.shapes, scales),
         shafts=(train.sides[0].shaft, train.sides[1].shaft),
-        valid_to=None if math.isinf(found.valid_to) else found.valid_to / (2.0 * math.pi),
-        reduction_error=found.error,
+        valid_to=None if math.isinf(reduction.valid_to) else reduction.valid_to / (2.0 * math.pi),
+        reduction_error=reduction.error,
         gyroscopic_change=gyroscopic_change(
             train, modes, squares, [ends[1] / teeth for teeth in turning], MOST_MODES, ends[1] ** 2
         ),

@@ -55,4 +55,4 @@ def checked_arguments(
         ratios = np.atleast_1d(np.asarray(ratio, dtype=np.float64)).tolist()
         if not ratios:
             faults.add("shaft_damping_ratio", "none", "must be at least one number", "0.01 for all modes")
-        return [faults.number(f"shaft_damping_ratio[{i}]", one, DAMPING) for i, one in enumerate(ratios)]
+        return [faults.number(f"shaft_damping_ratio[{i}]", zeta, DAMPING) for i, zeta in enumerate(ratios)]

@@ -62,7 +62,7 @@ class Peaks(NamedTuple):
 
 def drive_peaks(
     drive: PairDrive,
-    found: Mapping[str, dynamics.SweepResult],
+    sweeps: Mapping[str, dynamics.SweepResult],
     shaken: Mapping[str, Vibrations],
     progress: Callable[[int, int], None] = lambda done, every: None,
 ) -> Peaks:
@@ -71,16 +71,19 @@ def drive_peaks(
     Parameters
     ----------
     drive : PairDrive
-    found : mapping
+    sweeps : mapping
         Sweeps by direction.
     shaken : mapping
         Their forces.
     progress : callable
         Called with the number of parts done, and of all.
     """
-    values = next(iter(found.values())).values
-    heights = {way: np.column_stack([one.force, np.abs(one.parts[:, 2])]) for way, one in shaken.items()}
-    search = _Search(drive, found, heights)
+    values = next(iter(sweeps.values())).values
+    heights = {
+        way: np.column_stack([response.force, np.abs(response.parts[:, 2])])
+        for way, response in shaken.items()
+    }
+    search = _Search(drive, sweeps, heights)
     best = [search.sampled(part) for part in range(1 + len(drive.outputs))]
     if values.min() < values.max():
         fine, estimate = linear_heights(drive, float(values.min()), float(values.max()))
@@ -94,12 +97,12 @@ def drive_peaks(
                     search.at(part, high)
             best[part] = search.greatest(part)
             progress(part + 1, len(best))
-    band = np.array([search.damped(one) for one in best]).T
+    band = np.array([search.damped(peak) for peak in best]).T
     return Peaks(
-        np.array([one.frequency for one in best]),
-        np.array([one.height for one in best]),
+        np.array([peak.frequency for peak in best]),
+        np.array([peak.height for peak in best]),
         band,
-        np.array([one.settled for one in best]),
+        np.array([peak.settled for peak in best]),
     )
 
 
@@ -118,14 +121,14 @@ class _Search:
     """Periodic motions at any frequency of a sweep's range, by Newton's method from the nearest one known."""
 
     def __init__(
-        self, drive: PairDrive, found: Mapping[str, dynamics.SweepResult], heights: Mapping[str, Array]
+        self, drive: PairDrive, sweeps: Mapping[str, dynamics.SweepResult], heights: Mapping[str, Array]
     ) -> None:
         self.drive, self.heights = drive, heights
-        self.values = np.sort(next(iter(found.values())).values)
+        self.values = np.sort(next(iter(sweeps.values())).values)
         self.known: list[
             tuple[float, Array, int, Array, float]
         ] = []  # frequency, state, periods, heights, change
-        for way, swept in found.items():
+        for way, swept in sweeps.items():
             for row, (value, states, periods) in enumerate(
                 zip(swept.values.tolist(), swept.states, swept.periods.tolist(), strict=True)
             ):
@@ -135,10 +138,10 @@ class _Search:
     def sampled(self, part: int) -> _Peak:
         """Largest of the motions known."""
         if not self.known:
-            every = np.concatenate([one[:, part] for one in self.heights.values()])
-            greatest = float(np.nanmax(every, initial=0.0)) if np.isfinite(every).any() else np.nan
+            forces = np.concatenate([rows[:, part] for rows in self.heights.values()])
+            greatest = float(np.nanmax(forces, initial=0.0)) if np.isfinite(forces).any() else np.nan
             return _Peak(part, float("nan"), greatest, np.inf, np.empty(0), 0)
-        value, state, periods, heights, change = max(self.known, key=lambda one: float(one[3][part]))
+        value, state, periods, heights, change = max(self.known, key=lambda motion: float(motion[3][part]))
         return _Peak(part, value, float(heights[part]), change, state, periods)
 
     def greatest(self, part: int) -> _Peak:
@@ -146,23 +149,26 @@ class _Search:
         off = np.inf
         for _ in range(STEPS):
             points = {
-                one[0]: float(one[3][part]) for one in sorted(self.known, key=lambda one: float(one[3][part]))
+                motion[0]: float(motion[3][part])
+                for motion in sorted(self.known, key=lambda motion: float(motion[3][part]))
             }
             order = sorted(points)
-            best = max(order, key=lambda one: points[one])
+            best = max(order, key=lambda frequency: points[frequency])
             at = order.index(best)
             beside = [order[k] for k in (at - 1, at + 1) if 0 <= k < len(order)]
-            place, top = _top([*beside, best], [points[one] for one in (*beside, best)])
+            place, top = _top([*beside, best], [points[frequency] for frequency in (*beside, best)])
             here = self.at(part, place)
             off = abs(here.height / top - 1.0) if np.isfinite(here.height) else np.inf
             if off < SETTLED or here.height == -np.inf:
                 break
-        found = self.sampled(part)
-        return found._replace(settled=off + found.settled)
+        peak = self.sampled(part)
+        return peak._replace(settled=off + peak.settled)
 
     def at(self, part: int, frequency: float) -> _Peak:
         """Stable motion at a frequency and its force; minus infinity where none is found near the nearest known."""
-        value, state, periods, heights, change = min(self.known, key=lambda one: abs(one[0] - frequency))
+        value, state, periods, heights, change = min(
+            self.known, key=lambda motion: abs(motion[0] - frequency)
+        )
         if value != frequency:
             here = self.drive.oscillator.with_parameter("frequency", frequency)
             orbit = dynamics.find_orbit(here, state, periods=periods)
@@ -175,10 +181,10 @@ class _Search:
 
     def damped(self, peak: _Peak) -> list[float]:
         """Heights of a peak with the minimum and the maximum damping that is likely, at its frequency."""
-        found: list[float] = []
+        heights: list[float] = []
         for factor in self.drive.damping_band:
             if not peak.periods:
-                found.append(np.nan)
+                heights.append(np.nan)
                 continue
             here = self.drive.damped(factor).with_parameter("frequency", peak.frequency)
             orbit = dynamics.find_orbit(here, peak.state, periods=peak.periods)
@@ -186,23 +192,23 @@ class _Search:
             if not (orbit.converged and orbit.stable):  # another motion: the one that it settles to
                 image = drive_flow(here).follow(peak.state, 1, settling_periods(here), derivatives=False)
                 state, periods = image.state, 0
-            found.append(float(_heights(self.drive, here, state, periods)[0][peak.part]))
-        return found
+            heights.append(float(_heights(self.drive, here, state, periods)[0][peak.part]))
+        return heights
 
 
 def _heights(
     drive: PairDrive, oscillator: dynamics.DriveOscillator, state: Array, periods: int
 ) -> tuple[Array, float]:
     """Maximum forces of a motion, of the mesh and of all parts, and how they change with half as many samples."""
-    one = vibration(oscillator, state, periods, load=drive.mean_force, outputs=drive.outputs)
-    return np.append(one.force, np.abs(one.parts[2])), one.change
+    response = vibration(oscillator, state, periods, load=drive.mean_force, outputs=drive.outputs)
+    return np.append(response.force, np.abs(response.parts[2])), response.change
 
 
 def _top(places: list[float], heights: list[float]) -> tuple[float, float]:
     """Place and height of the top of a parabola through three points, the largest last; halfway between two."""
     best, height = places[-1], heights[-1]
     if len(places) == 3:
-        near, far = sorted(places[:2], key=lambda one: abs(one - best))
+        near, far = sorted(places[:2], key=lambda place: abs(place - best))
         square, slope, _ = np.polyfit(np.array(places) - best, heights, 2)
         step = -0.5 * slope / square if square < 0.0 else 0.0
         if abs(step) > 0.02 * abs(near - best):
@@ -238,7 +244,7 @@ def linear_heights(drive: PairDrive, low: float, high: float) -> tuple[Array, Ar
     swing = np.abs(osc.mesh_stiffness.amplitudes) / osc.mesh_stiffness.mean * abs(drive.mean_force)
     error = osc.error_series[0]
     count = max(len(swing), len(error))
-    swing, error = (np.pad(np.abs(one), (0, count - len(one))) for one in (swing, error))
+    swing, error = (np.pad(np.abs(amplitudes), (0, count - len(amplitudes))) for amplitudes in (swing, error))
     natural = drive.natural_frequencies / drive.scales.natural_frequency
     met = (natural[:, None] / np.arange(1, count + 1)).ravel()
     near = (met[:, None] * (1.0 + 0.01 * np.arange(-4, 5))).ravel()

@@ -48,7 +48,10 @@ def mesh_excitation(rigid: PairOscillator) -> MeshExcitation:
     swing = np.abs(own.stiffness.amplitudes) / own.stiffness.mean * abs(rigid.force)
     count = max(len(swing), len(rigid.error_amplitude), 1)
     mesh = 2.0 * own.damping_ratio * scales.equivalent_mass * scales.omega_n
-    force, error = (np.pad(np.abs(one), (0, count - len(one))) for one in (swing, rigid.error_amplitude))
+    force, error = (
+        np.pad(np.abs(amplitudes), (0, count - len(amplitudes)))
+        for amplitudes in (swing, rigid.error_amplitude)
+    )
     if not (force.any() or error.any()):
         force[0] = 1.0  # nothing drives it: any force will do
     return MeshExcitation(force, error, scales.mean_stiffness, mesh)
@@ -58,16 +61,16 @@ def reduced_oscillator(
     rigid: PairOscillator,
     train: Train,
     damping: ShaftDamping,
-    found: Reduction,
+    reduction: Reduction,
     free_damping_ratio: float | None,
 ) -> dynamics.DriveOscillator:
     """The reduced train in the units of the scales; what turns freely meets neither stiffness nor damping."""
     scales, own = rigid.scales, rigid.oscillator
     assert scales is not None
-    shapes, m, omega = found.shapes, scales.equivalent_mass, scales.omega_n
+    shapes, m, omega = reduction.shapes, scales.equivalent_mass, scales.omega_n
     mass, firm = (shapes.T @ (matrix @ shapes) for matrix in (train.mass, train.stiffness))
     held = damping.of(shapes)
-    if not math.isinf(found.valid_to):
+    if not math.isinf(reduction.valid_to):
         for matrix in (firm, held):
             matrix[0, :] = matrix[:, 0] = 0.0
     return dynamics.DriveOscillator(
@@ -87,11 +90,11 @@ def reduced_outputs(
     """What all parts carry, as factors on the oscillator's displacements and speeds."""
     return tuple(
         replace(
-            one,
-            displacement=one.displacement @ shapes * scales.length,
-            speed=one.speed @ shapes * scales.length * scales.omega_n,
+            output,
+            displacement=output.displacement @ shapes * scales.length,
+            speed=output.speed @ shapes * scales.length * scales.omega_n,
         )
-        for one in outputs
+        for output in outputs
     )
 
 
@@ -101,7 +104,7 @@ def reduced_change(
     """Relative change of the frequencies of modes that move, against the unreduced ones."""
     own = np.sqrt(drive_squares(oscillator))
     change, there = np.zeros(len(squares)), np.sqrt(squares[kept])
-    change[kept] = [float(np.min(np.abs(own / one - 1.0))) for one in there.tolist()]
+    change[kept] = [float(np.min(np.abs(own / frequency - 1.0))) for frequency in there.tolist()]
     return change
 
 

@@ -215,27 +215,27 @@ class DriveSweep:
     @described("1", no_error=ITSELF)
     def truncation(self) -> float | None:
         """Largest change of what parts carry by the longer series, of motions that it has; None if unknown."""
-        known = [found for one in self._changes if (found := greatest(one)) is not None]
+        known = [largest for changes in self._changes if (largest := greatest(changes)) is not None]
         return max(known, default=None)
 
     @described("1", no_error=ITSELF)
     def carried_error(self) -> float | None:
         """Error of what parts carry by samples and the series' order; infinite where a motion is another one."""
-        known = [one[~np.isnan(one)] for change in self._changes for one in change.values()]
-        if not any(one.size for one in known):
+        known = [values[~np.isnan(values)] for change in self._changes for values in change.values()]
+        if not any(values.size for values in known):
             return None
-        return self.sampling_error + float(np.max(np.concatenate([one.ravel() for one in known])))
+        return self.sampling_error + float(np.max(np.concatenate([values.ravel() for values in known])))
 
     @property
     def _changes(self) -> list[Mapping[str, Array]]:
         """Changes of all that parts carry, as far as they are known."""
-        every = (
+        changes = (
             self.bearing_force_change,
             self.bearing_force_swing_change,
             self.shaft_torque_change,
             self.shaft_torque_swing_change,
         )
-        return [one for one in every if one is not None]
+        return [change for change in changes if change is not None]
 
 
 def _at_greatest(values: Array, errors: Array) -> float | None:
@@ -285,43 +285,43 @@ def drive_sweep(
     watch = Stopwatch()
     values, speeds = frequencies_of(drive.rigid, speed, frequency)
     if speeds is None:
-        speeds = np.array([drive.scales.speed(one) for one in values.tolist()])
+        speeds = np.array([drive.scales.speed(nu) for nu in values.tolist()])
     oscillator, outputs = drive.oscillator, drive.outputs
-    found = up_and_down(oscillator, "frequency", values, partial(progress, "speeds"))
+    sweeps = up_and_down(oscillator, "frequency", values, partial(progress, "speeds"))
     shaken = {
         way: vibrations(oscillator, result, load=drive.mean_force, outputs=outputs)
-        for way, result in found.items()
+        for way, result in sweeps.items()
     }
-    parts = {way: np.moveaxis(one.parts, 1, 0) for way, one in shaken.items()}
-    peaks = drive_peaks(drive, found, shaken, partial(progress, "peaks"))
+    parts = {way: np.moveaxis(response.parts, 1, 0) for way, response in shaken.items()}
+    peaks = drive_peaks(drive, sweeps, shaken, partial(progress, "peaks"))
     at_peaks = {
         "_peak": peaks.height, "_peak_speed": peaks.frequency * drive.scales.speed(1.0), "_peak_band": peaks.band,
         "_peak_error": peaks.error,
     }  # fmt: skip
     longer = longer_motion(drive, (float(values.min()), float(values.max())), LEAST_HARMONICS)
-    lost = [f"{way}: {result.message}" for way, result in found.items() if not result.converged]
-    said = [f"{way}: {result.message}" for way, result in found.items() if result.message]
+    lost = [f"{way}: {result.message}" for way, result in sweeps.items() if not result.converged]
+    said = [f"{way}: {result.message}" for way, result in sweeps.items() if result.message]
     return DriveSweep(
         frequency=values,
         speed=speeds,
         valid_to=drive.valid_to,
         reduction_error=drive.reduction_error,
-        labels={way: result.labels for way, result in found.items()},
-        force_factor={way: one.force for way, one in shaken.items()},
-        separated={way: one.separated for way, one in shaken.items()},
+        labels={way: result.labels for way, result in sweeps.items()},
+        force_factor={way: response.force for way, response in shaken.items()},
+        separated={way: response.separated for way, response in shaken.items()},
         **part_figures(
             outputs,
-            {end: {way: one[k] for way, one in parts.items()} for k, end in enumerate(ENDINGS)}
-            | {end: one[..., 1:] for end, one in at_peaks.items()},
+            {end: {way: carried[k] for way, carried in parts.items()} for k, end in enumerate(ENDINGS)}
+            | {end: figures[..., 1:] for end, figures in at_peaks.items()},
         ),
         force_peak=float(peaks.height[0]),
         force_peak_speed=float(at_peaks["_peak_speed"][0]),
         force_peak_band=peaks.band[:, 0],
         force_peak_error=float(peaks.error[0]),
-        sampling_error=max(one.change for one in shaken.values()),
-        **_beside(drive, longer, found, shaken, partial(progress, "motions with more harmonics")),
-        error=max(result.error for result in found.values()),
-        cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in found.values())),
+        sampling_error=max(response.change for response in shaken.values()),
+        **_beside(drive, longer, sweeps, shaken, partial(progress, "motions with more harmonics")),
+        error=max(result.error for result in sweeps.values()),
+        cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in sweeps.values())),
         converged=not lost,
         message="; ".join([*_beyond(drive, float(values.max())), *(lost or said)]),
     )
@@ -343,7 +343,7 @@ ENDINGS = ("_mean", "_swing", "")
 def _beside(
     drive: PairDrive,
     longer: Longer | None,
-    found: Mapping[str, dynamics.SweepResult],
+    sweeps: Mapping[str, dynamics.SweepResult],
     shaken: Mapping[str, Vibrations],
     progress: Callable[[int, int], None],
 ) -> dict[str, Any]:
@@ -351,22 +351,22 @@ def _beside(
     if longer is None:
         figures = [f"{figure}{end}_change" for figure, _ in PARTS.values() for end in ENDINGS[1:]]
         return dict.fromkeys(("longer_order", "checked", "force_change", *figures))
-    some = next(iter(found.values())).values
-    at = checked_values(len(some), {way: one.force for way, one in shaken.items()})
-    done, every = count(1), len(found) * len(at)
+    frequencies = next(iter(sweeps.values())).values
+    at = checked_values(len(frequencies), {way: response.force for way, response in shaken.items()})
+    done, total = count(1), len(sweeps) * len(at)
     changes = {
-        way: motion_changes(longer, drive, result, at, lambda: progress(next(done), every))
-        for way, result in found.items()
+        way: motion_changes(longer, drive, result, at, lambda: progress(next(done), total))
+        for way, result in sweeps.items()
     }
     by_end = {
-        f"{end}_change": {way: one.parts[:, k] for way, one in changes.items()}
+        f"{end}_change": {way: change.parts[:, k] for way, change in changes.items()}
         for k, end in enumerate(ENDINGS)
         if end != "_mean"
     }
     figures_of = part_figures(drive.outputs, by_end)
     return {
         "longer_order": longer.order,
-        "checked": some[at],
-        "force_change": {way: one.force for way, one in changes.items()},
+        "checked": frequencies[at],
+        "force_change": {way: change.force for way, change in changes.items()},
         **{name: value for name, value in figures_of.items() if name.endswith("_change")},
     }

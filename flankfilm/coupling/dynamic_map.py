@@ -160,7 +160,7 @@ def dynamic_map(
     watch = Stopwatch()
     with Faults() as faults:
         at = checked_grid(faults, "speeds", speeds)
-        loads = [faults.number(f"torques[{k}]", one, NUMBER) for k, one in enumerate(torques)]
+        loads = [faults.number(f"torques[{k}]", load, NUMBER) for k, load in enumerate(torques)]
         if not loads:
             faults.add("torques", "none", "must be at least one", "give a list of torques")
     rows: dict[str, list[Array]] = {name: [] for name in ("up", "down", "separated", "iso", "parts")}
@@ -172,29 +172,29 @@ def dynamic_map(
 
         motion = motion_at(torque)
         assert motion.scales is not None
-        values = np.array([motion.scales.frequency(one) for one in at.tolist()])
-        both, ways = [], up_and_down(motion.oscillator, "frequency", values, shown)
+        values = np.array([motion.scales.frequency(speed) for speed in at.tolist()])
+        responses, ways = [], up_and_down(motion.oscillator, "frequency", values, shown)
         for way, swept in ways.items():
             shaken = vibrations(motion.oscillator, swept, load=motion.mean_force, outputs=motion.outputs)
             rows[way].append(shaken.force)
-            both.append(shaken)
+            responses.append(shaken)
             off, used, lost = max(off, shaken.change), used + swept.cost.periods, lost + (not swept.converged)
-        changed += _changed(motion, ways, both)
-        rows["separated"].append(np.fmax(*(one.separated for one in both)))
-        rows["parts"].append(np.fmax(*(one.parts for one in both)))
+        changed += _changed(motion, ways, responses)
+        rows["separated"].append(np.fmax(*(response.separated for response in responses)))
+        rows["parts"].append(np.fmax(*(response.parts for response in responses)))
         rows["iso"].append(standard_factors(motion.rigid, values))
         resonances.append(motion.scales.speed(1.0))
-    found = {name: np.array(values) for name, values in rows.items()}
+    maps = {name: np.array(values) for name, values in rows.items()}
     return DynamicMap(
         at,
         np.array(loads),
         np.array(resonances),
-        np.fmax(found["up"], found["down"]),
-        found["up"],
-        found["down"],
-        found["separated"],
-        found["iso"],
-        **part_figures(motion.outputs, {"": found["parts"][:, :, 2], "_swing": found["parts"][:, :, 1]}),
+        np.fmax(maps["up"], maps["down"]),
+        maps["up"],
+        maps["down"],
+        maps["separated"],
+        maps["iso"],
+        **part_figures(motion.outputs, {"": maps["parts"][:, :, 2], "_swing": maps["parts"][:, :, 1]}),
         sampling_error=off,
         truncation=greatest(np.concatenate([np.empty(0), *changed])),
         cost=Cost(watch.seconds, periods=used),
@@ -211,6 +211,8 @@ def _changed(
     longer = longer_motion(motion, (float(values.min()), float(values.max())), LEAST_HARMONICS)
     if longer is None:
         return []
-    at = checked_values(len(values), {way: one.force for way, one in zip(ways, shaken, strict=True)})
-    found = [motion_changes(longer, motion, swept, at) for swept in ways.values()]
-    return [part for one in found for part in (one.force, one.parts[:, 1:].ravel())]
+    at = checked_values(
+        len(values), {way: response.force for way, response in zip(ways, shaken, strict=True)}
+    )
+    changes_of_ways = [motion_changes(longer, motion, swept, at) for swept in ways.values()]
+    return [part for change in changes_of_ways for part in (change.force, change.parts[:, 1:].ravel())]

@@ -143,37 +143,39 @@ def error_series(
     values, first = _equally_spaced(curve, position, pitches)
     harmonics = _harmonics(values, first)
     coarse = _harmonics(values[::2], first) if values.size % 2 == 0 else _harmonics(values, first)
-    found = np.abs(harmonics)
+    amplitudes = np.abs(harmonics)
     whole = math.sqrt(float(np.mean((values - values.mean()) ** 2)))
-    largest = float(found.max(initial=0.0))
+    largest = float(amplitudes.max(initial=0.0))
     half = min(len(coarse), len(harmonics)) // 2
     off = float(np.max(np.abs(coarse[:half] - harmonics[:half]), initial=0.0))
-    curve_left = np.sqrt(_tails(0.5 * found**2)) / (whole or 1.0)
-    motion = None if bounds is None else _answers(found, bounds, pitches, damping_ratio) / (whole or 1.0)
+    curve_left = np.sqrt(_tails(0.5 * amplitudes**2)) / (whole or 1.0)
+    motion = None if bounds is None else _answers(amplitudes, bounds, pitches, damping_ratio) / (whole or 1.0)
     worst = curve_left if motion is None else np.maximum(curve_left, motion)
     worst = worst * (whole / max(whole, deflection) if whole else 1.0)
-    most = min(MAX_ORDER, len(found))
+    most = min(MAX_ORDER, len(amplitudes))
     enough = np.flatnonzero(worst[1 : most + 1] <= share)
-    chosen = min(order, len(found)) if order is not None else (int(enough[0]) + 1 if enough.size else most)
-    left = float(curve_left[chosen])
+    chosen = (
+        min(order, len(amplitudes)) if order is not None else (int(enough[0]) + 1 if enough.size else most)
+    )
+    remainder = float(curve_left[chosen])
     short = order is None and not enough.size
     more = "; more are not taken: give a smoother curve or a larger share" if short else ""
     return ErrorSeries(
         source,
         pitches,
-        found[:chosen],
+        amplitudes[:chosen],
         np.angle(harmonics[:chosen]),
         pitches * (first + np.arange(values.size) / values.size),
         values,
-        found,
+        amplitudes,
         float(np.ptp(curve)),
-        left,
+        remainder,
         None if motion is None else float(motion[chosen]),
         share if order is None else None,
         off / largest if largest > 0.0 else 0.0,
         Cost(watch.seconds, unknowns=2 * chosen),
         not short,
-        f"{chosen} harmonics of {pitches} base pitches leave out {left:.2g} of the curve{more}",
+        f"{chosen} harmonics of {pitches} base pitches leave out {remainder:.2g} of the curve{more}",
     )
 
 
@@ -273,18 +275,18 @@ def _equally_spaced(curve: Array, position: ArrayLike | None, meshes: int) -> tu
         return curve, 0.5 / curve.size
     at = np.asarray(position, dtype=np.float64) / meshes
     count = max(SAMPLES, 2 ** math.ceil(math.log2(4 * curve.size)))
-    where = np.arange(count) / count
+    places = np.arange(count) / count
     if at[-1] - at[0] > 1.0 - 1e-9:  # the end stands for the start again
         at, curve = at[:-1], curve[:-1]
-    return np.interp(where, at, curve, period=1.0), 0.0
+    return np.interp(places, at, curve, period=1.0), 0.0
 
 
 def _harmonics(values: Array, first: float) -> Array:
     """Complex amplitudes of the harmonics 1, 2, ... below the highest that samples show; `first` is the first place."""
     count = values.size
-    found = 2.0 / count * np.fft.rfft(values)[1 : (count + 1) // 2]
-    j = np.arange(1, len(found) + 1)
-    return np.asarray(found * np.exp(-2j * np.pi * j * first))
+    harmonics = 2.0 / count * np.fft.rfft(values)[1 : (count + 1) // 2]
+    j = np.arange(1, len(harmonics) + 1)
+    return np.asarray(harmonics * np.exp(-2j * np.pi * j * first))
 
 
 def _tails(squares: Array) -> Array:

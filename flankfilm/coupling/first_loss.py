@@ -68,7 +68,7 @@ def grazing_budget(
     softer = oscillator.with_parameter("mean_force", oscillator.mean_force / (1.0 + mean))
     # the error's amplitude and the backlash keep their lengths: the scale of length follows the mean force alone
     stiffness = abs(0.5 * mean + shift(softer))
-    stiffness += math.fsum(abs(shift(one)) for one in _off(oscillator, series))
+    stiffness += math.fsum(abs(shift(varied)) for varied in _off(oscillator, series))
     return {"stiffness": stiffness, **known}
 
 

@@ -58,9 +58,9 @@ def gyroscopic_change(
     gyro = np.block([[np.zeros((n, n)), joined], [-joined.T, np.zeros((m, m))]])
     # of speeds and frequency times displacement: i times this matrix is Hermitian
     whole = np.block([[-gyro, -np.diag(root)], [np.diag(root), np.zeros((n + m, n + m))]])
-    found, vectors = np.linalg.eigh(1j * whole)
+    frequencies, vectors = np.linalg.eigh(1j * whole)
     share = np.abs(vectors[:n]) ** 2 + np.abs(vectors[n + m : 2 * n + m]) ** 2
-    forward = found > 0.0
+    forward = frequencies > 0.0
     share = share[:, forward] / share[:, forward].sum(axis=1, keepdims=True)
-    off = np.abs(found[forward] / root[:n, None] - 1.0)
+    off = np.abs(frequencies[forward] / root[:n, None] - 1.0)
     return float(np.max(np.sum(share * off, axis=1), initial=0.0))

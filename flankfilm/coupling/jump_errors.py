@@ -90,7 +90,7 @@ def alike(
 
     Of several the one whose frequency and state are nearest.
     """
-    found: list[dynamics.SpecialPoint | None] = []
+    matches: list[dynamics.SpecialPoint | None] = []
     for stretch, point in ends:
         same = [
             (_apart(point, there), there)
@@ -99,14 +99,16 @@ def alike(
             and rises(other, there) is rises(stretch, point)
             and abs(there.parameter / point.parameter - 1.0) < ALIKE
         ]
-        found.append(min(same, key=lambda one: one[0], default=(0.0, None))[1])
-    return found
+        matches.append(min(same, key=lambda candidate: candidate[0], default=(0.0, None))[1])
+    return matches
 
 
-def _apart(one: dynamics.SpecialPoint, other: dynamics.SpecialPoint) -> float:
+def _apart(fold: dynamics.SpecialPoint, other: dynamics.SpecialPoint) -> float:
     """Distance of two folds: of their frequencies, and of their states over the size of the one."""
-    size = max(float(np.max(np.abs(one.state))), 1e-300)
-    return abs(other.parameter / one.parameter - 1.0) + float(np.max(np.abs(other.state - one.state))) / size
+    size = max(float(np.max(np.abs(fold.state))), 1e-300)
+    return (
+        abs(other.parameter / fold.parameter - 1.0) + float(np.max(np.abs(other.state - fold.state))) / size
+    )
 
 
 def moved_fold(
@@ -130,8 +132,8 @@ def moved_fold(
     if not orbit.converged or orbit.periods != stretch.periods:
         return None
     bounds = min(start, (1.0 - NEAR) * here), max(start, (1.0 + NEAR) * here)
-    found = dynamics.continue_branch(orbit, "frequency", bounds).special("saddle-node")
-    return min(found, key=lambda fold: abs(fold.parameter - here), default=None)
+    folds = dynamics.continue_branch(orbit, "frequency", bounds).special("saddle-node")
+    return min(folds, key=lambda fold: abs(fold.parameter - here), default=None)
 
 
 def train_jump(

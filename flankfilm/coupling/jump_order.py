@@ -54,9 +54,12 @@ class OrderedJumps:
         return self.worst
 
 
-def worst_jump(found: SpeedDiagram) -> float:
+def worst_jump(speed_diagram: SpeedDiagram) -> float:
     """Largest relative error of a diagram's jump speeds and width of a missed jump; 0 without jumps."""
-    return max((*(jump.error for jump in found.jumps), *(jump.width for jump in found.missed)), default=0.0)
+    return max(
+        (*(jump.error for jump in speed_diagram.jumps), *(jump.width for jump in speed_diagram.missed)),
+        default=0.0,
+    )
 
 
 def jumps_to_tolerance(
@@ -102,22 +105,30 @@ def jumps_to_tolerance(
     watch, tried = Stopwatch(), list[tuple[int, float]]()
     while True:
         motion = motion_of(series)
-        found = jump_speeds(motion, speed, frequency=frequency, searches=searches, max_period=max_period)
-        met = all(_within(jump, tolerance) for jump in found.jumps) and all(
-            jump.width <= tolerance for jump in found.missed
+        speed_diagram = jump_speeds(
+            motion, speed, frequency=frequency, searches=searches, max_period=max_period
+        )
+        met = all(_within(jump, tolerance) for jump in speed_diagram.jumps) and all(
+            jump.width <= tolerance for jump in speed_diagram.missed
         )
         if met or series.order >= MOST_HARMONICS or len(tried) + 1 == MOST_DIAGRAMS:
             break
-        tried.append((series.order, worst_jump(found)))
+        tried.append((series.order, worst_jump(speed_diagram)))
         assert series.cycle is not None
-        order = _next_order(motion, found, tolerance)
+        order = _next_order(motion, speed_diagram, tolerance)
         series = replace(mesh_series(series.cycle, series.kind, order), left_out=series.left_out)
-    worst = worst_jump(found)
+    worst = worst_jump(speed_diagram)
     message = (
         "" if met else f"jump speeds err by {worst:.2g} with {series.order} harmonics, above {tolerance:g}"
     )
     return OrderedJumps(
-        series.order, tolerance, tuple(tried), found, Cost(watch.seconds), found.converged and met, message
+        series.order,
+        tolerance,
+        tuple(tried),
+        speed_diagram,
+        Cost(watch.seconds),
+        speed_diagram.converged and met,
+        message,
     )
 
 
@@ -127,16 +138,16 @@ def _within(jump: Jump, tolerance: float) -> bool:
     return jump.error <= tolerance or jump.budget["truncation"] <= 0.1 * others
 
 
-def _next_order(motion: PairOscillator, found: SpeedDiagram, tolerance: float) -> int:
+def _next_order(motion: PairOscillator, speed_diagram: SpeedDiagram, tolerance: float) -> int:
     """Lowest higher order with which all jumps of the longer series lie within the tolerance; at most its own."""
-    longer = longer_motion(motion, found.diagram.bounds)
+    longer = longer_motion(motion, speed_diagram.diagram.bounds)
     assert longer is not None
     others = max(
-        (jump.error - jump.budget["truncation"] for jump in found.jumps if math.isfinite(jump.error)),
+        (jump.error - jump.budget["truncation"] for jump in speed_diagram.jumps if math.isfinite(jump.error)),
         default=0.0,
     )
     allowed = max(tolerance - others, 0.1 * others)
-    points = list(_points(motion, found, longer, tolerance))
+    points = list(_points(motion, speed_diagram, longer, tolerance))
     for order in range(motion.series.order + 1, longer.order):
         if all(_near(longer, with_order(motion, order), point, allowed) for point in points):
             return order
@@ -144,15 +155,15 @@ def _next_order(motion: PairOscillator, found: SpeedDiagram, tolerance: float) -
 
 
 def _points(
-    motion: PairOscillator, found: SpeedDiagram, longer: Longer, tolerance: float
+    motion: PairOscillator, speed_diagram: SpeedDiagram, longer: Longer, tolerance: float
 ) -> Iterator[dynamics.SpecialPoint]:
     """Jumps with the longer series: those that jumps are carried to, and wide ones that it has alone."""
-    for _, point in jump_points(found.diagram):
+    for _, point in jump_points(speed_diagram.diagram):
         if (carried := longer.carried(motion.oscillator, point)) is not None:
             yield carried
-    assert found.with_longer is not None
-    missed = np.array([jump.frequency for jump in found.missed if jump.width > tolerance])
-    for _, point in jump_points(found.with_longer):
+    assert speed_diagram.with_longer is not None
+    missed = np.array([jump.frequency for jump in speed_diagram.missed if jump.width > tolerance])
+    for _, point in jump_points(speed_diagram.with_longer):
         if np.any(np.abs(missed / point.parameter - 1.0) < SAME):
             yield point
 
@@ -161,5 +172,5 @@ def _near(
     longer: Longer, there: dynamics.GearOscillator, point: dynamics.SpecialPoint, allowed: float
 ) -> bool:
     """Whether a jump of the longer series has one within a relative distance with another series."""
-    found = dynamics.carried_point(longer.oscillator, "frequency", point, there.stiffness)
-    return found is not None and longer.truncation(found, point) <= allowed
+    carried = dynamics.carried_point(longer.oscillator, "frequency", point, there.stiffness)
+    return carried is not None and longer.truncation(carried, point) <= allowed

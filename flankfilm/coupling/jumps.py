@@ -136,33 +136,45 @@ def jump_speeds(
     watch = Stopwatch()
     low, high = frequencies_of(motion.rigid, speed, frequency)[0].tolist()
     oscillator, scales, longer = motion.oscillator, motion.scales, longer_motion(motion, (low, high))
-    found = diagram(oscillator, "frequency", (low, high), searches=searches, max_period=max_period)
-    stable = tuple(found.stretches(stable=True))
-    forces = force_factors(oscillator, found, motion.mean_force)
-    ends = jump_points(found)
+    branches = diagram(oscillator, "frequency", (low, high), searches=searches, max_period=max_period)
+    stable = tuple(branches.stretches(stable=True))
+    forces = force_factors(oscillator, branches, motion.mean_force)
+    ends = jump_points(branches)
     whole = None
     if isinstance(motion, PairDrive):
-        whole = None if longer is None else longer_branches(longer, found, ())
+        whole = None if longer is None else longer_branches(longer, branches, ())
         there = alike(ends, [] if whole is None else jump_points(whole))
-        jumps = tuple(train_jump(motion, longer, *end, one) for end, one in zip(ends, there, strict=True))
+        jumps = tuple(
+            train_jump(motion, longer, *end, counterpart)
+            for end, counterpart in zip(ends, there, strict=True)
+        )
     else:
         there = [None if longer is None else longer.carried(motion.oscillator, point) for _, point in ends]
-        jumps = tuple(_jump(motion, longer, *end, one) for end, one in zip(ends, there, strict=True))
+        jumps = tuple(
+            _jump(motion, longer, *end, counterpart) for end, counterpart in zip(ends, there, strict=True)
+        )
         if longer is not None:
             whole = longer_branches(
-                longer, found, [(point, one) for (_, point), one in zip(ends, there, strict=True)]
+                longer,
+                branches,
+                [(point, counterpart) for (_, point), counterpart in zip(ends, there, strict=True)],
             )
     missed, changed = _with_longer(
-        found, forces, longer, whole, [one for one in there if one is not None], motion.mean_force
+        branches,
+        forces,
+        longer,
+        whole,
+        [counterpart for counterpart in there if counterpart is not None],
+        motion.mean_force,
     )
     return SpeedDiagram(
-        diagram=found,
+        diagram=branches,
         speed_of_one=None if scales is None else scales.speed(1.0),
         stable=stable,
         separated=separated_ranges(stable),
         back_contact=back_contact_ranges(stable),
         jumps=jumps,
-        variants={} if isinstance(motion, PairDrive) else _variants(motion, found, whole),
+        variants={} if isinstance(motion, PairDrive) else _variants(motion, branches, whole),
         force_frequency=forces[:, 0],
         force_factor=forces[:, 1],
         force_factor_iso6336=standard_factors(motion.rigid, forces[:, 0]),
@@ -171,16 +183,16 @@ def jump_speeds(
         with_longer=whole,
         missed=missed,
         truncation=changed,
-        error=found.error,
+        error=branches.error,
         cost=Cost(watch.seconds),
-        converged=found.converged,
-        message=found.message,
+        converged=branches.converged,
+        message=branches.message,
     )
 
 
-def jump_points(found: dynamics.Diagram) -> list[tuple[Stretch, dynamics.SpecialPoint]]:
+def jump_points(diagram: dynamics.Diagram) -> list[tuple[Stretch, dynamics.SpecialPoint]]:
     """Saddle nodes at which a stable stretch ends, by frequency."""
-    ends = ((stretch, point) for stretch in found.stretches(stable=True) for point in stretch.limits)
+    ends = ((stretch, point) for stretch in diagram.stretches(stable=True) for point in stretch.limits)
     return sorted((e for e in ends if e[1].kind == "saddle-node"), key=lambda end: end[1].parameter)
 
 
@@ -214,7 +226,7 @@ def _jump(
 
 
 def _with_longer(
-    found: dynamics.Diagram,
+    diagram: dynamics.Diagram,
     forces: Array,
     longer: Longer | None,
     whole: dynamics.Diagram | None,
@@ -227,11 +239,11 @@ def _with_longer(
     own = ((point, stretch.label, rises(stretch, point)) for stretch, point in jump_points(whole))
     missed = missed_jumps(whole, own, [there.parameter for there in known])
     others = force_factors(longer.oscillator, whole, load, longest=1)
-    return missed, changes((found, whole), (forces, others))
+    return missed, changes((diagram, whole), (forces, others))
 
 
 def _variants(
-    motion: PairOscillator, found: dynamics.Diagram, whole: dynamics.Diagram | None
+    motion: PairOscillator, diagram: dynamics.Diagram, whole: dynamics.Diagram | None
 ) -> dict[str, tuple[float, ...]]:
     """Jump frequencies of period 1 with the longer series and with the other law, in this motion's frequency."""
     series, scales = motion.series, motion.scales
@@ -242,11 +254,11 @@ def _variants(
         other.mean / k_m, tuple(a / k_m for a in other.amplitudes), other.phases
     )
     changed = replace(motion.oscillator, stiffness=stiffness)
-    alike = dynamics.diagram(changed, "frequency", found.bounds, periods=(1,), searches=5, max_period=1)
-    laws = ((series.kind, found), (series.kind, whole), (OTHER[series.kind], alike))
+    alike = dynamics.diagram(changed, "frequency", diagram.bounds, periods=(1,), searches=5, max_period=1)
+    laws = ((series.kind, diagram), (series.kind, whole), (OTHER[series.kind], alike))
     return {
         f"{law}, order {fitted.order}, mean {fitted.mean:.4f}": tuple(
-            point.parameter for stretch, point in jump_points(one) if stretch.periods == 1
+            point.parameter for stretch, point in jump_points(branches) if stretch.periods == 1
         )
-        for law, one, fitted in ((*each, each[1].oscillator.contact_stiffness) for each in laws)
+        for law, branches, fitted in ((*each, each[1].oscillator.contact_stiffness) for each in laws)
     }

@@ -163,11 +163,11 @@ class SpeedSweep:
         if not np.isfinite(factors).any():
             return None
         way, at = np.unravel_index(int(np.nanargmax(factors)), factors.shape)
-        left = 0.0
+        change = 0.0
         if self.force_change is not None and self.checked is not None:
             nearest = int(np.argmin(np.abs(self.checked - self.frequency[at])))
-            left = float(self.force_change[[*self.force_factor][way]][nearest])
-        return self.sampling_error + left
+            change = float(self.force_change[[*self.force_factor][way]][nearest])
+        return self.sampling_error + change
 
     @property
     def converged(self) -> bool:
@@ -215,46 +215,48 @@ def speed_sweep(
     watch = Stopwatch()
     values, speeds = frequencies_of(motion, speed, frequency)
     oscillator = motion.oscillator
-    found = up_and_down(oscillator, "frequency", values)
+    sweeps = up_and_down(oscillator, "frequency", values)
     grazing = contact_grazing(oscillator, "frequency", (float(values[0]), float(values[-1])))
     settled = sweep(oscillator, "frequency", [oscillator.frequency])
     operating = vibrations(oscillator, settled)
-    solved: list[Result] = [*found.values(), grazing]
-    shaken = {direction: vibrations(oscillator, result) for direction, result in found.items()}
+    solved: list[Result] = [*sweeps.values(), grazing]
+    shaken = {direction: vibrations(oscillator, result) for direction, result in sweeps.items()}
     touched = grazing.columns()
     longer = longer_motion(motion, (float(values[0]), float(values[-1])), LEAST_HARMONICS)
     at = np.zeros(0, dtype=np.int64)
     beside, left_out = {}, None
     if longer is not None:
-        at = checked_values(len(values), {direction: one.force for direction, one in shaken.items()})
-        beside = {way: motion_changes(longer, motion, result, at) for way, result in found.items()}
+        at = checked_values(
+            len(values), {direction: response.force for direction, response in shaken.items()}
+        )
+        beside = {way: motion_changes(longer, motion, result, at) for way, result in sweeps.items()}
         left_out = grazing_errors(longer, touched)
     return SpeedSweep(
         frequency=values,
         speed=speeds,
-        states={direction: result.states for direction, result in found.items()},
-        labels={direction: result.labels for direction, result in found.items()},
+        states={direction: result.states for direction, result in sweeps.items()},
+        labels={direction: result.labels for direction, result in sweeps.items()},
         portraits=tuple(
-            _portrait(oscillator, found[direction], direction, index)
-            for direction, index in _choices(values, portraits, found)
+            _portrait(oscillator, sweeps[direction], direction, index)
+            for direction, index in _choices(values, portraits, sweeps)
         ),
         grazings=touched,
         half_backlash=oscillator.half_backlash,
-        force_factor={direction: one.force for direction, one in shaken.items()},
-        separated={direction: one.separated for direction, one in shaken.items()},
-        spread={direction: one.spread for direction, one in shaken.items()},
+        force_factor={direction: response.force for direction, response in shaken.items()},
+        separated={direction: response.separated for direction, response in shaken.items()},
+        spread={direction: response.spread for direction, response in shaken.items()},
         operating_frequency=oscillator.frequency,
         operating_force_factor=float(operating.force[0]),
-        sampling_error=max(one.change for one in (*shaken.values(), operating)),
+        sampling_error=max(response.change for response in (*shaken.values(), operating)),
         grazing_budget=_first_loss(motion, touched, left_out, grazing.error),
         longer_order=None if longer is None else longer.order,
         grazing_error=left_out,
         checked=None if longer is None else values[at],
-        force_change={way: one.force for way, one in beside.items()} or None,
-        spread_change={way: one.spread for way, one in beside.items()} or None,
-        error=max(result.error for result in found.values()),
-        cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in found.values())),
-        messages=tuple(one.message for one in solved if not one.converged),
+        force_change={way: change.force for way, change in beside.items()} or None,
+        spread_change={way: change.spread for way, change in beside.items()} or None,
+        error=max(result.error for result in sweeps.values()),
+        cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in sweeps.values())),
+        messages=tuple(solution.message for solution in solved if not solution.converged),
     )
 
 
@@ -286,18 +288,18 @@ def frequencies_of(
     if motion.scales is None:
         raise InputError.at("speed", "", "requires an oscillator with physical scales", "give frequency")
     speeds = np.asarray(speed, dtype=np.float64)
-    return np.array([motion.scales.frequency(one) for one in speeds.tolist()]), speeds
+    return np.array([motion.scales.frequency(omega) for omega in speeds.tolist()]), speeds
 
 
 def _choices(
-    frequency: Array, wanted: Sequence[float], found: Mapping[str, dynamics.SweepResult]
+    frequency: Array, wanted: Sequence[float], sweeps: Mapping[str, dynamics.SweepResult]
 ) -> list[tuple[str, int]]:
     """Choose direction and index of each portrait: those asked for, else one for each kind of motion."""
     if wanted:
         nearest = [int(np.argmin(np.abs(frequency - w))) for w in wanted]
-        return [(d, i) for i in nearest for d in _different(found, i)]
+        return [(d, i) for i in nearest for d in _different(sweeps, i)]
     longest: dict[str, tuple[int, str, int]] = {}
-    for direction, result in found.items():
+    for direction, result in sweeps.items():
         at = 0
         for label, run in groupby(result.labels):
             length = len(list(run))
@@ -308,9 +310,9 @@ def _choices(
     return sorted(((d, i) for _, d, i in kept), key=lambda choice: choice[1])
 
 
-def _different(found: Mapping[str, dynamics.SweepResult], index: int) -> tuple[str, ...]:
+def _different(sweeps: Mapping[str, dynamics.SweepResult], index: int) -> tuple[str, ...]:
     """Directions whose motions differ at a value: one where both sweeps met the same."""
-    labels = {result.labels[index] for result in found.values()}
+    labels = {result.labels[index] for result in sweeps.values()}
     return ("up",) if len(labels) == 1 else ("up", "down")
 
 

@@ -286,7 +286,9 @@ def pair_oscillator(
         remedy = "give more backlash; the mesh cycle of pressed teeth needs no motion"
         raise InputError.at("pair.backlash", f"{1e6 * pair.backlash:.4g} um", allowed, remedy)
     force = abs(pair.normal_force(torque))
-    amplitudes, phases = (np.asarray(one, dtype=np.float64) for one in (error_amplitude, error_phase))
+    amplitudes, phases = (
+        np.asarray(harmonics, dtype=np.float64) for harmonics in (error_amplitude, error_phase)
+    )
     if phases.ndim == 0 and phases == 0.0:  # serves any number of amplitudes
         phases = np.zeros(amplitudes.shape)
     scales = pair_scales(pair, torque, series.mean, extra_inertia, length_scale)
@@ -329,7 +331,9 @@ def _measured(
     if isinstance(stiffness, MeshCycle):
         return measured
     assert measured.contact is not None
-    before, after = ((one.reference, one.bore_inertia) for one in (cycle.contact, measured.contact))
+    before, after = (
+        (contact.reference, contact.bore_inertia) for contact in (cycle.contact, measured.contact)
+    )
     return stiffness if before == after else mesh_series(measured, stiffness.kind, stiffness.order)
 
 
@@ -337,15 +341,17 @@ def _checked_series(
     fourier_order: object, tolerance: object, speeds: tuple[float, float] | None
 ) -> int | None:
     """Order of a series, None where it is to be found; with every fault of what decides on it."""
-    found = None
+    order = None
     with Faults() as faults:
         if fourier_order != "auto":
-            found = faults.whole("fourier_order", fourier_order, 1, MOST_HARMONICS, 'or "auto", the default')
+            order = faults.whole("fourier_order", fourier_order, 1, MOST_HARMONICS, 'or "auto", the default')
         faults.number("tolerance", tolerance, Limit.above(0.0, 0.2, remedy="0.005 is 0.5 %"))
         if speeds is not None:
-            for i, one in enumerate(speeds):
-                faults.number(f"speeds[{i}]", one, Limit.above(0.0, 1e6, "rad/s", "give the pinion's speeds"))
-    return found
+            for i, speed in enumerate(speeds):
+                faults.number(
+                    f"speeds[{i}]", speed, Limit.above(0.0, 1e6, "rad/s", "give the pinion's speeds")
+                )
+    return order
 
 
 def pair_inertias(pair: gears.GearPair, extra: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:

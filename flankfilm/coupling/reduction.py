@@ -63,8 +63,8 @@ class MeshExcitation:
 
     def reaching(self, frequency: float, tolerance: float) -> MeshExcitation:
         """Harmonics up to the last that counts at a mesh frequency [rad/s]."""
-        found = self.amplitudes(np.array([frequency]))[0]
-        last = int(np.flatnonzero(found >= FADED * tolerance * found.max(initial=0.0))[-1]) + 1
+        amplitudes = self.amplitudes(np.array([frequency]))[0]
+        last = int(np.flatnonzero(amplitudes >= FADED * tolerance * amplitudes.max(initial=0.0))[-1]) + 1
         return MeshExcitation(self.force[:last], self.error[:last], self.stiffness, self.damping)
 
 
@@ -165,14 +165,14 @@ class _Forced:
         self.forces = excitation.amplitudes(self.frequencies)
         self.nu = self.frequencies[:, None] * orders
         firm = excitation.stiffness * train.direction
-        self.push = np.array([*(one.displacement for one in train.outputs), firm])
-        self.drag = np.array([*(one.speed for one in train.outputs), np.zeros_like(firm)])
+        self.push = np.array([*(output.displacement for output in train.outputs), firm])
+        self.drag = np.array([*(output.speed for output in train.outputs), np.zeros_like(firm)])
         self.rates = self._rates(modes)
         self.answer = self._answer(squares, self.rates)
         driven = modes.T @ train.direction
-        left = self.factors.solve(train.direction - train.mass @ (modes @ driven))
+        residual = self.factors.solve(train.direction - train.mass @ (modes @ driven))
         self.whole = self._outputs(modes, self.answer * driven[:, None, None])
-        self.whole += self._outputs(left[:, None], np.ones((1, *self.nu.shape), dtype=np.complex128))
+        self.whole += self._outputs(residual[:, None], np.ones((1, *self.nu.shape), dtype=np.complex128))
         swing = self._swing(self.whole)
         self.scale = np.maximum(swing, FLOOR * swing[:, self.within].max(axis=1, keepdims=True))
         self.scale = np.maximum(self.scale, 1e-300)
@@ -182,33 +182,33 @@ class _Forced:
     def importance(self) -> Array:
         """Maximum force of what a mode adds to its static deflection, over the force's scale, within the speeds."""
         more = (self.answer - 1.0 / self.squares[:, None, None]) * self.driven[:, None, None]
-        found = []
+        peaks = []
         for mode in range(len(self.squares)):
-            one = self._outputs(self.modes[:, [mode]], more[[mode]])
-            found.append(np.max((self._swing(one) / self.scale)[:, self.within], initial=0.0))
-        return np.array(found)
+            contribution = self._outputs(self.modes[:, [mode]], more[[mode]])
+            peaks.append(np.max((self._swing(contribution) / self.scale)[:, self.within], initial=0.0))
+        return np.array(peaks)
 
     def rest(self, kept: Chosen) -> tuple[Array, Array]:
         """What chosen modes leave of the static deflections, as shapes of a mass of one, and squares of frequencies."""
         mass, taken = self.train.mass, np.column_stack([self.rotation, self.modes[:, kept]])
         loads = np.column_stack([self.train.direction, self.train.load])
-        left = self.factors.solve(loads - mass @ (taken @ (taken.T @ loads)))
+        residual = self.factors.solve(loads - mass @ (taken @ (taken.T @ loads)))
         for _ in range(2):
-            left = left / np.sqrt(np.sum(left * (mass @ left), axis=0))
-            left = left - taken @ (taken.T @ (mass @ left))
-        sizes, turn = np.linalg.eigh(left.T @ (mass @ left))
-        some = sizes > 1e-12 * sizes[-1]
-        left = left @ (turn[:, some] / np.sqrt(sizes[some]))
-        squares, turn = eigh(left.T @ (self.train.in_contact @ left))
-        return left @ turn, squares
+            residual = residual / np.sqrt(np.sum(residual * (mass @ residual), axis=0))
+            residual = residual - taken @ (taken.T @ (mass @ residual))
+        sizes, turn = np.linalg.eigh(residual.T @ (mass @ residual))
+        independent = sizes > 1e-12 * sizes[-1]
+        residual = residual @ (turn[:, independent] / np.sqrt(sizes[independent]))
+        squares, turn = eigh(residual.T @ (self.train.in_contact @ residual))
+        return residual @ turn, squares
 
     def changes(self, kept: Chosen) -> tuple[float, Array]:
         """Largest change of a force with these modes alone within the speeds, and the largest at each."""
         rest, squares = self.rest(kept)
         shapes = np.column_stack([self.modes[:, kept], rest])
         answer = np.concatenate([self.answer[kept], self._answer(squares, self._rates(rest))])
-        found = self._outputs(shapes, np.asarray(answer * (shapes.T @ self.train.direction)[:, None, None]))
-        over = np.max(self._swing(found - self.whole) / self.scale, axis=0)
+        outputs = self._outputs(shapes, np.asarray(answer * (shapes.T @ self.train.direction)[:, None, None]))
+        over = np.max(self._swing(outputs - self.whole) / self.scale, axis=0)
         return float(np.max(over[self.within])), over
 
     def _rates(self, shapes: Array) -> Array:

@@ -57,7 +57,7 @@ class Vibrations(NamedTuple):
 
 def vibrations(
     oscillator: PeriodicOscillator,
-    found: dynamics.SweepResult,
+    swept: dynamics.SweepResult,
     *,
     load: float | None = None,
     outputs: Sequence[DriveOutput] = (),
@@ -67,7 +67,7 @@ def vibrations(
     Parameters
     ----------
     oscillator : GearOscillator or DriveOscillator
-    found : SweepResult
+    swept : SweepResult
         Over the frequency.
     load, outputs
         As of `vibration`.
@@ -88,9 +88,9 @@ def vibrations(
             load=load,
             outputs=outputs,
         )
-        for value, states, periods in zip(found.values, found.states, found.periods, strict=True)
+        for value, states, periods in zip(swept.values, swept.states, swept.periods, strict=True)
     ]
-    force, separated, spread, change, parts = (np.array(one) for one in zip(*each, strict=True))
+    force, separated, spread, change, parts = (np.array(figure) for figure in zip(*each, strict=True))
     return Vibrations(force, separated, spread, float(change.max()), parts)
 
 

@@ -160,10 +160,10 @@ def speed_run_up(
             "speed", "", "requires an oscillator with physical scales", "give frequency and periods"
         )
     with Faults() as faults:
-        given = speed or frequency or (0.0, 0.0)
-        low, high = (faults.number(f"range[{k}]", given[k], POSITIVE) for k in range(2))
+        bounds = speed or frequency or (0.0, 0.0)
+        low, high = (faults.number(f"range[{k}]", bounds[k], POSITIVE) for k in range(2))
         if not low < high:
-            faults.add("range", tuple(given), "must rise", "the way down is run as well")
+            faults.add("range", tuple(bounds), "must rise", "the way down is run as well")
         number = faults.whole("periods", periods, *PERIODS)
         if seconds is not None:
             faults.number("seconds", seconds, POSITIVE.in_unit(1.0, "s"))
@@ -187,32 +187,32 @@ def speed_run_up(
         progress=lambda done, all_: progress(BLOCKS, all_ + done, 2 * all_),
     )
     each, mean = {"up": up, "down": down}, motion.mean_force or np.nan
-    said = [f"{way}: {one.message}" for way, one in each.items()]
+    said = [f"{way}: {run.message}" for way, run in each.items()]
     return SpeedRunUp(
-        frequency={way: one.frequency for way, one in each.items()},
+        frequency={way: run.frequency for way, run in each.items()},
         speed=None
         if scales is None
-        else {way: scales.speed(1.0) * one.frequency for way, one in each.items()},
-        spread={way: one.rms for way, one in each.items()},
-        peak={way: one.peak for way, one in each.items()},
-        force_factor={way: one.force_peak / mean for way, one in each.items()},
-        force_rms={way: one.force_rms / abs(mean) for way, one in each.items()},
-        separated={way: one.separated for way, one in each.items()},
+        else {way: scales.speed(1.0) * run.frequency for way, run in each.items()},
+        spread={way: run.rms for way, run in each.items()},
+        peak={way: run.peak for way, run in each.items()},
+        force_factor={way: run.force_peak / mean for way, run in each.items()},
+        force_rms={way: run.force_rms / abs(mean) for way, run in each.items()},
+        separated={way: run.separated for way, run in each.items()},
         order=up.order,
-        order_force={way: one.force_order / abs(mean) for way, one in each.items()},
-        order_displacement={way: one.displacement_order for way, one in each.items()},
+        order_force={way: run.force_order / abs(mean) for way, run in each.items()},
+        order_displacement={way: run.displacement_order for way, run in each.items()},
         **part_figures(
             motion.outputs,
             {
-                "": {way: one.output_peak for way, one in each.items()},
-                "_swing": {way: one.output_rms for way, one in each.items()},
+                "": {way: run.output_peak for way, run in each.items()},
+                "_swing": {way: run.output_rms for way, run in each.items()},
             },
         ),
         periods=up.periods,
         seconds=None if scales is None else up.periods / per_tau / scales.omega_n,
         rate=max(up.rate, down.rate),
-        rms_error={way: one.rms_error for way, one in each.items()},
-        peak_error={way: one.peak_error for way, one in each.items()},
+        rms_error={way: run.rms_error for way, run in each.items()},
+        peak_error={way: run.peak_error for way, run in each.items()},
         greatest_error=max(up.greatest_error, down.greatest_error),
         error=max(up.error, down.error),
         cost=Cost(watch.seconds, periods=up.cost.periods + down.cost.periods),

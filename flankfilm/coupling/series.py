@@ -204,10 +204,10 @@ def _tails(squares: Array) -> Array:
     return np.asarray(np.sqrt(np.concatenate([sums, np.zeros_like(squares[:1])])))
 
 
-def least_order(found: LeftOut, share: float) -> int:
+def least_order(omitted: LeftOut, share: float) -> int:
     """Lowest order that leaves out no more than a share; the highest where none does."""
-    most = min(MOST_HARMONICS, found.curve.size - 1)
-    enough = np.flatnonzero(found.largest[1 : most + 1] <= share)
+    most = min(MOST_HARMONICS, omitted.curve.size - 1)
+    enough = np.flatnonzero(omitted.largest[1 : most + 1] <= share)
     return int(enough[0]) + 1 if enough.size else most
 
 
@@ -246,9 +246,9 @@ def mesh_series(
     """
     watch = Stopwatch()
     fits = {law: arc_fit(cycle, law, MOST_HARMONICS if order is None else order) for law in OTHER}
-    found, whole = np.array(fits[kind].harmonics), fits[kind]
-    beyond = np.sqrt(max(whole.remainder_rms**2 - 0.5 * np.sum(found[whole.order :] ** 2), 0.0))
-    rest = left_out(found, bounds, damping_ratio, float(beyond))
+    harmonics, whole = np.array(fits[kind].harmonics), fits[kind]
+    beyond = np.sqrt(max(whole.remainder_rms**2 - 0.5 * np.sum(harmonics[whole.order :] ** 2), 0.0))
+    rest = left_out(harmonics, bounds, damping_ratio, float(beyond))
     chosen = least_order(rest, share) if order is None else order
     fit = arc_fit(cycle, kind, chosen)
     assert cycle.arcs is not None
@@ -291,12 +291,12 @@ def arc_fit(cycle: MeshCycle, kind: str, order: int) -> dynamics.FourierFit:
         raise SolverError(f"no series of a mesh cycle without arcs: {cycle.message}")
     arcs, name = cycle.arcs.arcs, _CURVES[kind]
     mean, square = arcs.mean(name)[0], arcs.moment(name, 2)[0]
-    found, _ = arcs.harmonics(name, np.arange(1, RESOLVED + 1))
-    amplitudes, phases = np.abs(found), np.angle(found)
-    left = max(square - mean**2 - 0.5 * float(np.sum(amplitudes[:order] ** 2)), 0.0)
+    harmonics, _ = arcs.harmonics(name, np.arange(1, RESOLVED + 1))
+    amplitudes, phases = np.abs(harmonics), np.angle(harmonics)
+    remainder = max(square - mean**2 - 0.5 * float(np.sum(amplitudes[:order] ** 2)), 0.0)
     angle = 2 * np.pi * cycle.dense_position[:, None] * np.arange(1, order + 1) + phases[:order]
     off = arcs.on_each(name, SHOWN) - mean - np.cos(angle) @ amplitudes[:order]
-    rms = float(np.sqrt(left)) / mean
+    rms = float(np.sqrt(remainder)) / mean
     return dynamics.FourierFit(
         stiffness=dynamics.FourierStiffness(
             mean, tuple(amplitudes[:order].tolist()), tuple(phases[:order].tolist())

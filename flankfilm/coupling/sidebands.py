@@ -92,8 +92,8 @@ class MotionSpectrum:
 def hunting_meshes(pair: gears.GearPair, deviations: Deviations | None) -> int:
     """Base pitches after which the same deviations meet: 1 where all teeth of both gears are alike."""
     meshes = 1
-    for gear, found in zip((pair.pinion, pair.wheel), deviations or (None, None), strict=True):
-        if found is not None and not found.every_tooth_alike:
+    for gear, deviation in zip((pair.pinion, pair.wheel), deviations or (None, None), strict=True):
+        if deviation is not None and not deviation.every_tooth_alike:
             meshes = math.lcm(meshes, gear.teeth)
     return meshes
 
@@ -147,11 +147,13 @@ def revolution_error(
         "positions": PER_PITCH,
         "order": order * meshes,
     }
-    every = unloaded_error(pair, deviations=deviations, meshes=meshes, **same)
-    mean = tuple(None if one is None else one.mean for one in deviations)
+    all_teeth = unloaded_error(pair, deviations=deviations, meshes=meshes, **same)
+    mean = tuple(None if deviation is None else deviation.mean for deviation in deviations)
     alike = unloaded_error(pair, deviations=(mean[0], mean[1]), meshes=meshes, **same)
-    added = every.amplitude * np.exp(1j * every.phase) - alike.amplitude * np.exp(1j * alike.phase)
-    return replace(every, amplitude=np.abs(added), phase=np.angle(added), source="deviations of single teeth")
+    added = all_teeth.amplitude * np.exp(1j * all_teeth.phase) - alike.amplitude * np.exp(1j * alike.phase)
+    return replace(
+        all_teeth, amplitude=np.abs(added), phase=np.angle(added), source="deviations of single teeth"
+    )
 
 
 def over_revolution(motion: PairOscillator | PairDrive, error: ErrorSeries) -> PeriodicOscillator:
@@ -185,26 +187,26 @@ def over_revolution(motion: PairOscillator | PairDrive, error: ErrorSeries) -> P
         raise InputError.at(
             "motion", "", "requires an oscillator with physical scales", "give pair and torque"
         )
-    own, every = motion.oscillator, error.meshes
-    most = MAX_ORDER // every
+    own, meshes = motion.oscillator, error.meshes
+    most = MAX_ORDER // meshes
     stiffness, errors = own.contact_stiffness, own.error_series[:, :most]
     kept = min(stiffness.order, most)
-    amplitudes, phases = np.zeros(every * kept), np.zeros(every * kept)
-    amplitudes[every - 1 :: every] = stiffness.amplitudes[:kept]
-    phases[every - 1 :: every] = stiffness.phases[:kept]
-    together = np.zeros(max(every * max(kept, errors.shape[1]), error.order), dtype=np.complex128)
+    amplitudes, phases = np.zeros(meshes * kept), np.zeros(meshes * kept)
+    amplitudes[meshes - 1 :: meshes] = stiffness.amplitudes[:kept]
+    phases[meshes - 1 :: meshes] = stiffness.phases[:kept]
+    together = np.zeros(max(meshes * max(kept, errors.shape[1]), error.order), dtype=np.complex128)
     mesh = errors[0] * np.exp(1j * errors[1])
-    together[every - 1 : every * len(mesh) : every] += mesh
+    together[meshes - 1 : meshes * len(mesh) : meshes] += mesh
     together[: error.order] += error.amplitude / motion.scales.length * np.exp(1j * error.phase)
     series = dynamics.FourierStiffness(stiffness.mean, tuple(amplitudes.tolist()), tuple(phases.tolist()))
     changed: Any = own.with_contact_stiffness(series)
-    found: PeriodicOscillator = replace(
+    oscillator: PeriodicOscillator = replace(
         changed,
-        frequency=own.frequency / every,
+        frequency=own.frequency / meshes,
         error_amplitude=tuple(np.abs(together).tolist()),
         error_phase=tuple(np.angle(together).tolist()),
     )
-    return found
+    return oscillator
 
 
 def mesh_spectrum(
@@ -243,22 +245,22 @@ def mesh_spectrum(
     )  # fmt: skip
     periods = int(settled.periods[0])
     rows = output_rows(motion.outputs, whole.dimension)
-    found = dynamics.motion_spectrum(
+    spectrum = dynamics.motion_spectrum(
         whole, settled.states[0, -1], periods, highest=highest * meshes, outputs=rows
     )
     load = motion.mean_force
-    force = found.force / abs(load) if load else np.full_like(found.force, np.nan)
-    at = np.round(found.order / meshes, 12)
+    force = spectrum.force / abs(load) if load else np.full_like(spectrum.force, np.nan)
+    at = np.round(spectrum.order / meshes, 12)
     off = np.abs(at - np.round(at)) > 1e-9
-    total = float(np.sum(found.force**2))
+    total = float(np.sum(spectrum.force**2))
     errors = whole.error_series
     repeats = periods > 0
     return MotionSpectrum(
         at,
-        found.displacement,
+        spectrum.displacement,
         force,
         _mode_orders(motion, whole.frequency * meshes),
-        **part_figures(motion.outputs, {"": found.outputs}),
+        **part_figures(motion.outputs, {"": spectrum.outputs}),
         error_order=np.arange(1, errors.shape[1] + 1) / meshes,
         error_amplitude=np.abs(errors[0]),
         error_range=peak_to_peak(*errors),
@@ -268,10 +270,10 @@ def mesh_spectrum(
         meshes=meshes,
         periods=periods,
         motion=settled.labels[0],
-        sidebands=math.sqrt(float(np.sum(found.force[off] ** 2)) / total) if total > 0.0 else 0.0,
-        spectrum=found,
-        error=found.error,
-        cost=Cost(watch.seconds, periods=settled.cost.periods + found.cost.periods),
+        sidebands=math.sqrt(float(np.sum(spectrum.force[off] ** 2)) / total) if total > 0.0 else 0.0,
+        spectrum=spectrum,
+        error=spectrum.error,
+        cost=Cost(watch.seconds, periods=settled.cost.periods + spectrum.cost.periods),
         converged=repeats,
         message=""
         if repeats

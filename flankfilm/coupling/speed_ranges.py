@@ -31,7 +31,7 @@ def back_contact_ranges(stable: Iterable[Stretch]) -> Ranges:
 
 
 def force_factors(
-    oscillator: PeriodicOscillator, found: dynamics.Diagram, load: float, longest: int = 2
+    oscillator: PeriodicOscillator, diagram: dynamics.Diagram, load: float, longest: int = 2
 ) -> Array:
     """Frequency, maximum force over the mean force and period along stable branches of short period, by frequency.
 
@@ -45,7 +45,7 @@ def force_factors(
     from dynamics.flow.motions import force_range
 
     rows = []
-    for branch in found.branches:
+    for branch in diagram.branches:
         for value, state, stable in zip(branch.values, branch.states, branch.stable, strict=True):
             if stable and branch.periods <= longest and load != 0.0:
                 here = oscillator.with_parameter("frequency", float(value))
@@ -72,13 +72,13 @@ def standard_factors(motion: PairOscillator, frequency: Array) -> Array:
 
 
 def changes(
-    found: tuple[dynamics.Diagram, dynamics.Diagram], forces: tuple[Array, Array]
+    diagrams: tuple[dynamics.Diagram, dynamics.Diagram], forces: tuple[Array, Array]
 ) -> Mapping[str, float]:
     """Relative changes of ranges and of the maximum force from one series to another, motions of period 1 alone.
 
     Parameters
     ----------
-    found : (Diagram, Diagram)
+    diagrams : (Diagram, Diagram)
         With the one and with the other series.
     forces : (ndarray, ndarray)
         Their `force_factors`.
@@ -89,8 +89,8 @@ def changes(
         ``"separated"`` and ``"back_contact"``, the largest of all limits, infinite where the ranges are not equally
         many; ``"greatest_force"``.
     """
-    stable = [[s for s in one.stretches(stable=True) if s.periods == 1] for one in found]
-    greatest = [one[one[:, 2] == 1, 1] for one in forces]
+    stable = [[s for s in diagram.stretches(stable=True) if s.periods == 1] for diagram in diagrams]
+    greatest = [factors[factors[:, 2] == 1, 1] for factors in forces]
     return {
         "separated": _apart(*map(separated_ranges, stable)),
         "back_contact": _apart(*map(back_contact_ranges, stable)),
@@ -100,11 +100,11 @@ def changes(
     }
 
 
-def _apart(one: Ranges, other: Ranges) -> float:
+def _apart(ranges: Ranges, other: Ranges) -> float:
     """Largest relative difference of the limits of ranges."""
-    if len(one) != len(other):
+    if len(ranges) != len(other):
         return math.inf
-    return float(np.max(np.abs(np.array(one) / np.array(other) - 1.0), initial=0.0))
+    return float(np.max(np.abs(np.array(ranges) / np.array(other) - 1.0), initial=0.0))
 
 
 def _counts(label: str) -> tuple[int, int]:

@@ -90,7 +90,7 @@ def motion_changes(
     """
     changes = np.full((len(at), 2), np.nan)
     parts = np.full((len(at), 3, len(motion.outputs)), np.nan)
-    given: Any = {"load": motion.mean_force, "outputs": motion.outputs}
+    arguments: Any = {"load": motion.mean_force, "outputs": motion.outputs}
     for row, index in enumerate(at.tolist()):
         began()
         periods, frequency = int(swept.periods[index]), float(swept.values[index])
@@ -103,9 +103,11 @@ def motion_changes(
             changes[row], parts[row] = np.inf, np.inf
             continue
         here = motion.oscillator.with_parameter("frequency", frequency)
-        before = vibration(here, state, periods, **given)
-        after = vibration(there, orbit.state, periods, **given)
-        for column, (one, other) in enumerate(((before.force, after.force), (before.spread, after.spread))):
-            changes[row, column] = abs(one / other - 1.0) if other > 0.0 else np.nan
+        before = vibration(here, state, periods, **arguments)
+        after = vibration(there, orbit.state, periods, **arguments)
+        for column, (figure, other) in enumerate(
+            ((before.force, after.force), (before.spread, after.spread))
+        ):
+            changes[row, column] = abs(figure / other - 1.0) if other > 0.0 else np.nan
         parts[row] = np.abs(before.parts - after.parts) / np.maximum(after.parts[2], 1e-300)
     return MotionChanges(changes[:, 0], changes[:, 1], parts)

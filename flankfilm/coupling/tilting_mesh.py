@@ -71,5 +71,5 @@ def change_over_cycle(train: Train, squares: Array, modes: Array, matrix: Array,
     moved = approach + (places - place)[:, None] * tilt
     more = train.mesh_stiffness * (np.einsum("pi,pj->pij", moved, moved) - np.outer(approach, approach))
     more += (resists - train.tilt_stiffness)[:, None, None] * np.outer(tilt, tilt)
-    found = np.linalg.eigvalsh(np.diag(squares) + more)
-    return float(np.max(np.abs(np.sqrt(np.maximum(found, 0.0) / squares) - 1.0)))
+    eigenvalues = np.linalg.eigvalsh(np.diag(squares) + more)
+    return float(np.max(np.abs(np.sqrt(np.maximum(eigenvalues, 0.0) / squares) - 1.0)))

@@ -109,12 +109,12 @@ def joined(
     load = np.zeros(n + m)
     load[first.torque], load[n + second.torque] = 1.0, -1.0
     t = sparse.csc_array(tilt[:, None])
-    found, points = list[DriveOutput](), dict[str, Array]()
+    outputs, points = list[DriveOutput](), dict[str, Array]()
     for which, side, room in zip(SIDES, sides, ((0, m), (n, 0)), strict=True):
         points |= {f"{which} {name}": np.pad(row, room) for name, row in side.points.items()}
-        for one in side.carried:
-            rows = np.pad(one.displacement, room), np.pad(one.speed, room)
-            found.append(DriveOutput(f"{which} {one.name}", one.unit, *rows))
+        for output in side.carried:
+            rows = np.pad(output.displacement, room), np.pad(output.speed, room)
+            outputs.append(DriveOutput(f"{which} {output.name}", output.unit, *rows))
     return Train(
         mass,
         (firm + tilt_stiffness * (t @ t.T)).tocsc(),
@@ -124,7 +124,7 @@ def joined(
         np.concatenate([first.free, second.free]),
         load,
         points,
-        tuple(found),
+        tuple(outputs),
         sides,
         mesh_stiffness,
         tilt_stiffness,
@@ -176,7 +176,7 @@ class ShaftDamping:
     def of(self, shapes: Array) -> Array:
         """Damping between shapes, one column each."""
         train = self.train
-        found = shapes.T @ (train.dampers @ shapes)
+        damping = shapes.T @ (train.dampers @ shapes)
         if self.rayleigh is not None:
             n = len(train.sides[0].free)
             free = np.zeros((len(train.rotation), 2))
@@ -185,11 +185,11 @@ class ShaftDamping:
             part = pushed.T @ shapes
             held = shapes.T @ (train.mass @ shapes) - part.T @ np.linalg.solve(free.T @ pushed, part)
             alpha, beta = self.rayleigh
-            return np.asarray(found + alpha * held + beta * shapes.T @ (train.out_of_mesh @ shapes))
+            return np.asarray(damping + alpha * held + beta * shapes.T @ (train.out_of_mesh @ shapes))
         part = self.modes.T @ (train.mass @ shapes)
         beyond = float(self.rates[-1]) if len(self.rates) < len(train.rotation) else 0.0
         rest = shapes.T @ (train.mass @ shapes) - part.T @ part
-        return np.asarray(found + part.T @ (self.rates[:, None] * part) + beyond * rest)
+        return np.asarray(damping + part.T @ (self.rates[:, None] * part) + beyond * rest)
 
 
 def shaft_damping(

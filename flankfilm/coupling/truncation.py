@@ -140,7 +140,7 @@ def with_order(motion: PairOscillator | PairDrive, order: int) -> Any:
 
 def longer_branches(
     longer: Longer,
-    found: dynamics.Diagram,
+    diagram: dynamics.Diagram,
     carried: Iterable[tuple[dynamics.SpecialPoint, dynamics.SpecialPoint | None]],
 ) -> dynamics.Diagram:
     """Branches of period 1 with the longer series: by searches, and from beside the jumps and the stable motions known.
@@ -148,19 +148,19 @@ def longer_branches(
     Parameters
     ----------
     longer : Longer
-    found : Diagram
+    diagram : Diagram
         With the series itself.
     carried : iterable
         Its jumps, each with that of the longer series.
     """
-    starts = [(s.value, s.state, 1) for s in found.stretches(stable=True) if s.periods == 1]
+    starts = [(s.value, s.state, 1) for s in diagram.stretches(stable=True) if s.periods == 1]
     for point, there in carried:
         if there is not None and point.periods == 1:
-            starts += _beside(found, point, there)
+            starts += _beside(diagram, point, there)
     return dynamics.diagram(
         longer.oscillator,
         "frequency",
-        found.bounds,
+        diagram.bounds,
         periods=(1,),
         searches=SEARCHES,
         swept=0,
@@ -170,11 +170,11 @@ def longer_branches(
 
 
 def _beside(
-    found: dynamics.Diagram, point: dynamics.SpecialPoint, there: dynamics.SpecialPoint
+    diagram: dynamics.Diagram, point: dynamics.SpecialPoint, there: dynamics.SpecialPoint
 ) -> list[tuple[float, Array, int]]:
     """Points of a fold's branch on both sides of it, moved with it."""
     starts = []
-    for branch in found.branches:
+    for branch in diagram.branches:
         if not any(point is fold for fold in branch.points):
             continue
         size = float(np.max(np.abs(branch.states)))
@@ -188,7 +188,7 @@ def _beside(
 
 
 def missed_jumps(
-    found: dynamics.Diagram,
+    diagram: dynamics.Diagram,
     jumps: Iterable[tuple[dynamics.SpecialPoint, str, bool]],
     carried: Iterable[float],
 ) -> tuple[MissedJump, ...]:
@@ -196,7 +196,7 @@ def missed_jumps(
 
     Parameters
     ----------
-    found : Diagram
+    diagram : Diagram
         Branches with the longer series.
     jumps : iterable
         Their jumps: fold, motion that ends, and whether it ends as the speed rises.
@@ -205,19 +205,19 @@ def missed_jumps(
     """
     known = list(carried)
     return tuple(
-        MissedJump(point.parameter, rising, label, _width(found, point))
+        MissedJump(point.parameter, rising, label, _width(diagram, point))
         for point, label, rising in jumps
-        if not any(abs(point.parameter / one - 1.0) < SAME for one in known)
+        if not any(abs(point.parameter / frequency - 1.0) < SAME for frequency in known)
     )
 
 
-def _width(found: dynamics.Diagram, point: dynamics.SpecialPoint) -> float:
+def _width(diagram: dynamics.Diagram, point: dynamics.SpecialPoint) -> float:
     """Relative distance of a fold to the next one along its branch."""
-    for branch in found.branches:
+    for branch in diagram.branches:
         folds = branch.special("saddle-node")
         places = [fold.parameter for fold in folds]
         at = next((k for k, fold in enumerate(folds) if fold is point), None)
         if at is not None:
             beside = [places[k] for k in (at - 1, at + 1) if 0 <= k < len(places)]
-            return min((abs(one / point.parameter - 1.0) for one in beside), default=math.inf)
+            return min((abs(place / point.parameter - 1.0) for place in beside), default=math.inf)
     return math.inf
