@@ -9,7 +9,7 @@ from base import Result, SolverError
 R = TypeVar("R", bound=Result)
 
 
-def believed(found: R, what: str) -> R:
+def believed(solution: R, what: str) -> R:
     """Hand back a result that converged.
 
     Raises
@@ -17,6 +17,6 @@ def believed(found: R, what: str) -> R:
     SolverError
         Of `what` did not.
     """
-    if not found.converged:
-        raise SolverError(f"{what}: {found.message}")
-    return found
+    if not solution.converged:
+        raise SolverError(f"{what}: {solution.message}")
+    return solution

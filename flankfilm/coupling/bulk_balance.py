@@ -13,9 +13,9 @@ class BulkBalance:
     def __init__(self) -> None:
         self.last: tuple[float, float] | None = None
 
-    def next(self, given: tuple[float, float], asked: tuple[float, float]) -> tuple[float, float]:
+    def next(self, tried: tuple[float, float], asked: tuple[float, float]) -> tuple[float, float]:
         """Temperatures to try next, after given ones have asked for others."""
-        at, wanted = 0.5 * sum(given), 0.5 * sum(asked)
+        at, wanted = 0.5 * sum(tried), 0.5 * sum(asked)
         slope = 0.0
         if self.last is not None and at != self.last[0]:
             slope = float(np.clip((wanted - self.last[1]) / (at - self.last[0]), -3.0, 0.5))

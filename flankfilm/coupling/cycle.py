@@ -162,6 +162,6 @@ class MeshCycle(MeshFigures):
         return {"secant": self.mean_secant_stiffness, "tangent": self.mean_stiffness}[kind]
 
     @classmethod
-    def fields_of(cls, found: object) -> dict[str, Any]:
+    def fields_of(cls, other: object) -> dict[str, Any]:
         """Fields of this class that another record has as well, for one made of it."""
-        return {one.name: getattr(found, one.name) for one in fields(cls) if hasattr(found, one.name)}
+        return {field.name: getattr(other, field.name) for field in fields(cls) if hasattr(other, field.name)}

@@ -116,7 +116,7 @@ def face_load_models(teeth: LoadedTeeth, cycle: MeshCycle) -> FaceLoadModels:
         raise InputError.at("cycle", cycle.label, "must have cells of the face", remedy)
     named = [own.setting.model, *(m for m in (WALLS, SLICES) if m != own.setting.model)]
     others = [_by(teeth, model, len(cycle.position)) for model in named[1:]]
-    faces = [own, *(one.face for one in others if one.face is not None)]
+    faces = [own, *(other.face for other in others if other.face is not None)]
     at = _at_pitch_point(cycle.contact)
     loads = [face.line_load[at] for face in faces]
     slope = own.setting.slope
@@ -125,10 +125,12 @@ def face_load_models(teeth: LoadedTeeth, cycle: MeshCycle) -> FaceLoadModels:
     first = loads[0]
     return FaceLoadModels(
         model=(*(LABELS[name] for name in named), ISO),
-        face_load_factor=np.array([*(one.greatest_face_load_factor for one in faces), factor]),
-        face_load_factor_error=np.array([*(one.error for one in faces), np.nan]),
+        face_load_factor=np.array(
+            [*(distribution.greatest_face_load_factor for distribution in faces), factor]
+        ),
+        face_load_factor_error=np.array([*(distribution.error for distribution in faces), np.nan]),
         pitch_point_factor=np.array([*(load.max() / load.mean() for load in loads[:-1]), factor]),
-        greatest_line_load=np.array([*(one.greatest_line_load for one in faces), np.nan]),
+        greatest_line_load=np.array([*(distribution.greatest_line_load for distribution in faces), np.nan]),
         line_load_difference=np.array(
             [float(np.sqrt(np.mean((load - first) ** 2)) / first.mean()) for load in loads]
         ),
@@ -144,8 +146,8 @@ def face_load_models(teeth: LoadedTeeth, cycle: MeshCycle) -> FaceLoadModels:
 def _by(teeth: LoadedTeeth, model: str, positions: int) -> fem.MeshCycle:
     """Loaded contact with another coupling of the cells."""
     other = replace(teeth, flanks=replace(teeth.flanks, face_model=model))
-    found = fem.mesh_cycle(other.pair, other.torque, positions=positions, **other.setting)
-    return believed(found, f"loaded tooth contact, {LABELS[model]}")
+    cycle = fem.mesh_cycle(other.pair, other.torque, positions=positions, **other.setting)
+    return believed(cycle, f"loaded tooth contact, {LABELS[model]}")
 
 
 def _at_pitch_point(contact: fem.MeshCycle) -> tuple[int, int]:
@@ -158,10 +160,10 @@ def _at_pitch_point(contact: fem.MeshCycle) -> tuple[int, int]:
 def _iso(teeth: LoadedTeeth, misalignment: float) -> tuple[float, str]:
     """Factor by ISO 6336-1, and why it has none."""
     try:
-        found = gears.closed_form.iso6336_face_load(teeth.pair, abs(teeth.torque), misalignment)
+        factors = gears.closed_form.iso6336_face_load(teeth.pair, abs(teeth.torque), misalignment)
     except GeometryError as error:
         return float("nan"), str(error)
-    return found.K_Hbeta, ""
+    return factors.K_Hbeta, ""
 
 
 def left_out_by_iso(face: fem.FaceLoads, pair: gears.GearPair) -> str:

@@ -87,8 +87,8 @@ def face_load_tolerance(teeth: LoadedTeeth, tolerance: float, positions: int = P
         faults.number("tolerance", tolerance, TOLERANCE)
     watch, meant = Stopwatch(), teeth.flanks.alignment or ALIGNED
     cases = meant.in_plane + tolerance * np.array([-1.0, 0.0, 1.0])
-    found = [_factor(teeth, replace(meant, in_plane=float(one)), positions) for one in cases]
-    factors, errors = np.array(found).T
+    rows = [_factor(teeth, replace(meant, in_plane=float(slope)), positions) for slope in cases]
+    factors, errors = np.array(rows).T
     return FaceTolerance(cases, factors, errors, Cost(watch.seconds))
 
 

@@ -153,8 +153,10 @@ def film_damping(
         chosen = np.flatnonzero(kept[loaded])
         answers = _answers([contacts[i] for i in chosen], film, omega, tolerance)
     slope = teeth.slopes[loaded[chosen], number[chosen]]
-    yielding = np.array([one.compliance for one in answers]) / pair.face_width
-    errors = np.array([one.error for one in answers]) + np.array([one.film.error for one in answers])
+    yielding = np.array([answer.compliance for answer in answers]) / pair.face_width
+    errors = np.array([answer.error for answer in answers]) + np.array(
+        [answer.film.error for answer in answers]
+    )
     series = np.divide(1.0, 1.0 / np.maximum(slope, 1e-300) + yielding)
     curve = np.zeros(cycle.position.size)
     np.add.at(curve, loaded[chosen], series.imag / omega)
@@ -199,7 +201,7 @@ def _answers(
     contacts: list[ehl.LineContact], model: FilmModel, omega: float, tolerance: float
 ) -> list[ehl.FilmResponse]:
     """Answers of all contacts' films, each film solved from its neighbour."""
-    found: list[ehl.FilmResponse] = []
+    answers: list[ehl.FilmResponse] = []
     start: ehl.Film | None = None
     for contact in contacts:
         film = ehl.solve(
@@ -208,8 +210,8 @@ def _answers(
         if not film.converged:
             raise SolverError(f"no film under {contact.load:.4g} N/m: {film.message}")
         start = film
-        found.append(ehl.film_response(film, omega))
-    return found
+        answers.append(ehl.film_response(film, omega))
+    return answers
 
 
 def _check(film: FilmModel, speed: Any, frequency: Any, tolerance: Any) -> None:

@@ -140,10 +140,10 @@ class FilmLaw:
         forces : ndarray
             Of the same shape [N].
         """
-        _, share, found = self._beside(rho1, forces)
-        separation, slope = ((1 - share) * a + share * b for a, b in zip(*found, strict=True))
-        some = np.isfinite(rho1)
-        return np.where(some, separation, 0.0), np.where(some, np.minimum(slope, 0.0), 0.0)
+        _, share, sides = self._beside(rho1, forces)
+        separation, slope = ((1 - share) * a + share * b for a, b in zip(*sides, strict=True))
+        known = np.isfinite(rho1)
+        return np.where(known, separation, 0.0), np.where(known, np.minimum(slope, 0.0), 0.0)
 
     def halves(self) -> tuple[FilmLaw, FilmLaw]:
         """Laws by every second film: from the first on with the last one too, and those left out.
@@ -189,8 +189,8 @@ class FilmLaw:
         ndarray
             NaN without force or place.
         """
-        (first, second), share, found = self._beside(rho1, forces)
-        (below, _), (above, _) = found
+        (first, second), share, sides = self._beside(rho1, forces)
+        (below, _), (above, _) = sides
         between = (1 - share) * figure[first] * below / self.separation[first]
         between = between + share * figure[second] * above / self.separation[second]
         return np.where(np.isfinite(rho1) & (forces > 0.0), between, np.nan)
@@ -220,16 +220,16 @@ class FilmLaw:
         # a meniscus lies where the force of its place put it: between two films, where the force between theirs would
         between = (1 - share) * self.force[first] + share * self.force[second]
         solved = [self.force[film] if self.held is None else between for film in (first, second)]
-        found = [
+        sides = [
             self._one(film, (first, second), forces, at)
             for film, at in zip((first, second), solved, strict=True)
         ]
-        return (first, second), share, found
+        return (first, second), share, sides
 
     def _one(
         self,
         film: NDArray[np.intp],
-        both: tuple[NDArray[np.intp], NDArray[np.intp]],
+        neighbours: tuple[NDArray[np.intp], NDArray[np.intp]],
         forces: Array,
         solved: Array,
     ) -> tuple[Array, Array]:
@@ -237,11 +237,11 @@ class FilmLaw:
         ratio = np.maximum(forces / solved, _LEAST_RATIO)
         least, here = ratio * solved, (self.separation, self.exponent)
         below = np.minimum(forces - least, 0.0)
-        separation, local = self._followed(film, both, least, here)
+        separation, local = self._followed(film, neighbours, least, here)
         if self.held is not None:
             flooded = self.held.flooded_separation, self.held.flooded_exponent
             at_rest = self.separation[film], self.exponent[film]
-            free = self._followed(film, both, least, flooded)
+            free = self._followed(film, neighbours, least, flooded)
             separation, local = self.held.bound(film, at_rest, ratio, free, (separation, local))
         slope = -local * separation / least
         return separation + slope * below, slope
@@ -249,25 +249,28 @@ class FilmLaw:
     def _followed(
         self,
         film: NDArray[np.intp],
-        both: tuple[NDArray[np.intp], NDArray[np.intp]],
+        neighbours: tuple[NDArray[np.intp], NDArray[np.intp]],
         forces: Array,
         solved: tuple[Array, Array],
     ) -> tuple[Array, Array]:
         """Separation by one of two films, solved with separate separations and exponents, and its exponent."""
-        fallen, local = self._fall(both, forces, *solved)
-        before, _ = self._fall(both, self.force[film], *solved)
+        fallen, local = self._fall(neighbours, forces, *solved)
+        before, _ = self._fall(neighbours, self.force[film], *solved)
         return solved[0][film] * np.exp(np.minimum(before - fallen, _LARGEST_LOGARITHM)), local
 
     def _fall(
         self,
-        both: tuple[NDArray[np.intp], NDArray[np.intp]],
+        neighbours: tuple[NDArray[np.intp], NDArray[np.intp]],
         forces: Array,
         separation: Array,
         exponent: Array,
     ) -> tuple[Array, Array]:
         """Logarithm by which separations between two films fall from the lesser of their forces, and n there."""
-        lighter = self.force[both[0]] <= self.force[both[1]]
-        light, heavy = np.where(lighter, both[0], both[1]), np.where(lighter, both[1], both[0])
+        lighter = self.force[neighbours[0]] <= self.force[neighbours[1]]
+        light, heavy = (
+            np.where(lighter, neighbours[0], neighbours[1]),
+            np.where(lighter, neighbours[1], neighbours[0]),
+        )
         width = np.log(self.force[heavy] / self.force[light])
         above = np.log(forces / self.force[light])
         part = np.clip(np.divide(above, width, out=np.zeros_like(above), where=width > 0.0), 0.0, 1.0)

@@ -50,10 +50,10 @@ def _with_asperities(
         replace(
             row,
             meaning=f"{row.meaning}; asperities in parallel",
-            stiffness=both,
-            loss=bodies / (bodies + both),
+            stiffness=stiffness,
+            loss=bodies / (bodies + stiffness),
         )
-        for row, both in zip(table, between, strict=True)
+        for row, stiffness in zip(table, between, strict=True)
     ]
     whole = -face_width / film.separation_slope
     meaning = "-1/(ds/dw) of film and asperities, the contact widening with the load"
@@ -87,7 +87,7 @@ def _fine(films: dict[str, ehl.Film]) -> dict[str, ehl.Film]:
     Spikes narrow with the pressure: after one that grids do not resolve, which takes seconds to find out,
     those of heavier contacts are left alone. Without its spike a film is as good as the one along the path.
     """
-    found = {name: replace(film, spike=None) for name, film in films.items()}
+    sharpened = {name: replace(film, spike=None) for name, film in films.items()}
     for name in sorted(films, key=lambda name: films[name].contact.peak_pressure):
         contact, supply = films[name].contact, films[name].supply
         if contact.lubricant.pressure_viscosity * contact.peak_pressure > _NARROW:
@@ -95,5 +95,5 @@ def _fine(films: dict[str, ehl.Film]) -> dict[str, ehl.Film]:
         sharp = ehl.solve(contact, spike=SPIKE, supply=supply)
         if not sharp.converged:
             break
-        found[name] = sharp
-    return found
+        sharpened[name] = sharp
+    return sharpened

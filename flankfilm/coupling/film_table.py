@@ -104,8 +104,8 @@ class FilmTable:
         separation = np.exp(self._of("separation", rho1, inside) - exponent * (log - inside))
         slope = -exponent * separation / (self.face_width * load)
         lighter = np.minimum(forces - self.face_width * load, 0.0)
-        some = np.isfinite(rho1)
-        return np.where(some, separation + slope * lighter, 0.0), np.where(some, slope, 0.0)
+        known = np.isfinite(rho1)
+        return np.where(known, separation + slope * lighter, 0.0), np.where(known, slope, 0.0)
 
     def thickness(self, figure: str, rho1: Array, load: Array) -> Array:
         """Thickness of films [m], of a name in `FIGURES`, at places under line loads [N/m].
@@ -142,12 +142,12 @@ class FilmTable:
         return self._missed("central_thickness")
 
     def _missed(self, name: str) -> float:
-        found, (rho1, log) = 0.0, np.meshgrid(self.rho1, np.log(self.load), indexing="ij")
+        missed, (rho1, log) = 0.0, np.meshgrid(self.rho1, np.log(self.load), indexing="ij")
         for along in (0, 1):
-            left = np.arange(1, self.separation.shape[along], 2)
+            omitted = np.arange(1, self.separation.shape[along], 2)
             off = self._every_second(along)._of(name, rho1, log) - np.log(getattr(self, name))
-            found = max(found, LEFT_OUT[name] * float(np.abs(np.take(off, left, axis=along)).max()))
-        return found
+            missed = max(missed, LEFT_OUT[name] * float(np.abs(np.take(off, omitted, axis=along)).max()))
+        return missed
 
     def _every_second(self, along: int) -> FilmTable:
         """Table by every second place (0), or load (1)."""

@@ -213,7 +213,7 @@ def with_light_ends(
     """
     ends = {0: float(rho1[0]) - step, -1: float(rho1[-1]) + step}
     ends = {end: place for end, place in ends.items() if pair.points.A < place < pair.points.E}
-    every, places = list(contacts), list(rho1)
+    extended, places = list(contacts), list(rho1)
     for end, place in ends.items():
         path = pair.path_at(np.array([place]))
         light = replace(
@@ -222,10 +222,10 @@ def with_light_ends(
             entrainment=float(path.entrainment(speed)[0]),
             radius=float(path.radius[0]),
         )
-        at = 0 if end == 0 else len(every)
-        every.insert(at, light)
+        at = 0 if end == 0 else len(extended)
+        extended.insert(at, light)
         places.insert(at, place)
-    return np.array(places), tuple(every), tuple(0 if end == 0 else len(every) - 1 for end in ends)
+    return np.array(places), tuple(extended), tuple(0 if end == 0 else len(extended) - 1 for end in ends)
 
 
 def films_of(
@@ -251,8 +251,8 @@ def films_of(
     flooded: tuple[ehl.Film, ...] = ()
     if model.supply is not None:
         smooth = replace(model, supply=None, roughness=None)
-        found = _solved(smooth, rho1, contacts, (None,) * len(contacts), old.flooded, tolerance)
-        flooded = tuple(map(film_inside, found))
+        smooth_films = _solved(smooth, rho1, contacts, (None,) * len(contacts), old.flooded, tolerance)
+        flooded = tuple(map(film_inside, smooth_films))
     supplies = tuple(supply_of(model.supply, contact) for contact in contacts)
     films = _solved(model, rho1, contacts, supplies, old.films, tolerance, beside)
     return PathFilms(rho1, films, flooded, beside)
@@ -279,9 +279,9 @@ def _solved(
     beside: tuple[int, ...] = (),
 ) -> tuple[Solved, ...]:
     """Solve contacts one after the other, each from what it was before, or from the last."""
-    found: list[Solved] = []
+    films: list[Solved] = []
     for i, (contact, supply) in enumerate(zip(contacts, supplies, strict=True)):
-        near = before[i] if before else found[-1] if found else None
+        near = before[i] if before else films[-1] if films else None
         film: ehl.Film | ehl.MixedFilm
         with warnings.catch_warnings():
             if i in beside:
@@ -294,8 +294,8 @@ def _solved(
                 film = ehl.solve_mixed(contact, model.roughness, tolerance, supply, near)
         if not film.converged:
             raise SolverError(f"no film at rho1 = {1e3 * rho1[i]:.3f} mm: {film.message}")
-        found.append(film)
-    return tuple(found)
+        films.append(film)
+    return tuple(films)
 
 
 def film_inside(film: Solved) -> ehl.Film:
@@ -314,9 +314,9 @@ def law_of(path: PathFilms, face_width: float, definition: str) -> FilmLaw:
     force = np.array([face_width * film.contact.load for film in path.films])
     separations = np.array([_separation(film) for film in path.films])
     if np.any(separations <= 0.0):
-        where = 1e3 * path.rho1[int(np.argmin(separations))]
+        place = 1e3 * path.rho1[int(np.argmin(separations))]
         raise SolverError(
-            f"the film at rho1 = {where:.3f} mm separates the flanks by less than its error: it is as good "
+            f"the film at rho1 = {place:.3f} mm separates the flanks by less than its error: it is as good "
             'as dry; take film.model = "none"'
         )
     exponent = np.array([_exponent(film, definition) for film in path.films])

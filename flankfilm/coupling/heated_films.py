@@ -99,7 +99,7 @@ class HeatedFilms:
         """Share of the load on asperities (n,)."""
         if not self.mixed:
             return np.zeros(len(self.films))
-        return np.array([one.asperity_share for one in self.mixed])
+        return np.array([film.asperity_share for film in self.mixed])
 
     @property
     def friction(self) -> Array:
@@ -155,7 +155,7 @@ class HeatedFilms:
         """Give the same films with another friction of the asperities, which no film feels."""
         return replace(self, oil=replace(self.oil, boundary_friction=friction))
 
-    def some(self, most: int) -> HeatedFilms:
+    def thinned_to(self, most: int) -> HeatedFilms:
         """Give so many of them at most, the first and the last as well."""
         kept = thinned(len(self.films), most)
         return replace(
@@ -230,12 +230,12 @@ def _rough(
     supply = oil.supply_of(contact)
     for start in (None,) if near is None else (near, None):
         for tolerance in (oil.tolerance, oil.looser):
-            found = ehl.solve_mixed_thermal(
+            film = ehl.solve_mixed_thermal(
                 contact, roughness, oil.solids, bulk, tolerance, supply, oil.boundary_friction, start
             )
-            if found.converged:
-                return found
-    raise _none_at(rho1, found.message)
+            if film.converged:
+                return film
+    raise _none_at(rho1, film.message)
 
 
 def _film(
@@ -254,14 +254,14 @@ def _film(
     starts = (None,) if near is None else (near, None)
     for start in starts:
         for tolerance in (oil.tolerance, oil.looser):
-            found = solved(contact, tolerance, start)
-            if found.converged:
-                return found
+            film = solved(contact, tolerance, start)
+            if film.converged:
+                return film
     if near is not None:
-        found = _by_way(contact, oil, bulk, near)
-    if not found.converged:
-        raise _none_at(rho1, found.message)
-    return found
+        film = _by_way(contact, oil, bulk, near)
+    if not film.converged:
+        raise _none_at(rho1, film.message)
+    return film
 
 
 def _by_way(
@@ -276,28 +276,26 @@ def _by_way(
         ahead = contact if part == 1.0 else _between(here.contact, contact, part)
         mixed = at + part * (np.array(bulk) - at)
         warm = (float(mixed[0]), float(mixed[1]))
-        found = ehl.solve_thermal(
-            ahead, oil.solids, warm, oil.looser, start=here, supply=oil.supply_of(ahead)
-        )
-        if found.converged and part == 1.0:
-            return found
-        if found.converged:
-            here, at, behind = found, mixed, behind + step
+        film = ehl.solve_thermal(ahead, oil.solids, warm, oil.looser, start=here, supply=oil.supply_of(ahead))
+        if film.converged and part == 1.0:
+            return film
+        if film.converged:
+            here, at, behind = film, mixed, behind + step
         elif step > SHORTEST:
             step *= 0.5
         else:
-            return found
+            return film
 
 
-def _between(one: ehl.LineContact, other: ehl.LineContact, part: float) -> ehl.LineContact:
+def _between(first: ehl.LineContact, other: ehl.LineContact, part: float) -> ehl.LineContact:
     """Contact so far from the first to the second, with the oil of the second."""
 
     def mixed(figure: str) -> float:
-        return float((1.0 - part) * getattr(one, figure) + part * getattr(other, figure))
+        return float((1.0 - part) * getattr(first, figure) + part * getattr(other, figure))
 
     return replace(
         other,
-        load=float(one.load ** (1.0 - part) * other.load**part),
+        load=float(first.load ** (1.0 - part) * other.load**part),
         entrainment=mixed("entrainment"),
         radius=mixed("radius"),
         sliding=mixed("sliding"),

@@ -78,7 +78,7 @@ class HeatedTable:
         if along == 0:
             return replace(self, rho1=self.rho1[::2], rows=self.rows[::2])
         kept = (len(self.load) + 1) // 2
-        return replace(self, load=self.load[::2], rows=tuple(row.some(kept) for row in self.rows))
+        return replace(self, load=self.load[::2], rows=tuple(row.thinned_to(kept) for row in self.rows))
 
     def at(self, figure: str, rho1: Array, load: Array) -> Array:
         """Figure of the films at places [m] under line loads [N/m]; those beyond the table have its nearest."""

@@ -139,8 +139,8 @@ def hottest_film(
     first, second = losses.bulk_temperatures.tolist()
     contact = _contact(pair, rho1, load, losses.speed, lubricant)
     fed = supply_of(supply, contact)
-    found = ehl.solve_thermal(contact, solids, (first, second), tolerance, supply=fed)
-    return replace(found, state=None, oils=None)
+    film = ehl.solve_thermal(contact, solids, (first, second), tolerance, supply=fed)
+    return replace(film, state=None, oils=None)
 
 
 def _at(rho1: Array, load: Array, at: int) -> tuple[float, float]:

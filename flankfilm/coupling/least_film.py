@@ -38,24 +38,24 @@ def least_of(film: Array, load: Array) -> tuple[float, float]:
     film, load : (n,) arrays
         In the order of the path [m], [N/m].
     """
-    found = [one for part in parts_of(load) for one in _candidates(film[part])]
-    least = min(value for value, _ in found)
-    return least, max(off for value, off in found if value - off <= least)
+    candidates = [candidate for part in parts_of(load) for candidate in _candidates(film[part])]
+    least = min(value for value, _ in candidates)
+    return least, max(off for value, off in candidates if value - off <= least)
 
 
 def _candidates(film: Array) -> list[tuple[float, float]]:
     """Minimum values within and at both ends of a smooth part, each with its error."""
     if film.size < 3:
         return [(float(film.min()), float(np.ptp(film)))]
-    found = []
+    candidates = []
     for start in (film[:3], film[:-4:-1]):
         straight = 1.5 * start[0] - 0.5 * start[1]
         value = float(max(_HALF_BEYOND @ start, 0.5 * start[0]))  # a curve that bends within a step or two
-        found.append((value, abs(value - float(straight))))
+        candidates.append((value, abs(value - float(straight))))
     at = int(np.argmin(film))
     if 0 < at < film.size - 1:
         before, here, after = film[at - 1 : at + 2].tolist()
         curve, slope = before - 2.0 * here + after, 0.5 * (after - before)
         lower = 0.5 * slope**2 / curve if curve > 0.0 else 0.0
-        found.append((here - lower, lower))
-    return found
+        candidates.append((here - lower, lower))
+    return candidates

@@ -33,7 +33,7 @@ def line_contacts(
         ehl.LineContact(
             load=w, entrainment=u, radius=r, reduced_modulus=pair.reduced_modulus, lubricant=lubricant
         )
-        for w, u, r in zip(*(one.tolist() for one in columns), strict=True)
+        for w, u, r in zip(*(column.tolist() for column in columns), strict=True)
     )
 
 
@@ -42,4 +42,4 @@ def with_sliding(
 ) -> tuple[ehl.LineContact, ...]:
     """Contacts with the sliding speeds of their places (n,) [m] as well, which heat them."""
     slides = pair.path_at(rho1).sliding(speed).tolist()
-    return tuple(replace(one, sliding=slip) for one, slip in zip(contacts, slides, strict=True))
+    return tuple(replace(contact, sliding=slip) for contact, slip in zip(contacts, slides, strict=True))

@@ -98,8 +98,8 @@ class LoadedTeeth:
         if self.model != "fem" or self.compliance is not None:
             return self
 
-        found = fem.compliance(self.pair, tolerance=tolerance)
-        return replace(self, compliance=believed(found, "tooth compliance"))
+        compliance = fem.compliance(self.pair, tolerance=tolerance)
+        return replace(self, compliance=believed(compliance, "tooth compliance"))
 
     @property
     def setting(self) -> dict[str, Any]:
@@ -145,17 +145,17 @@ class LoadedTeeth:
         if (self.model, self.pairs) != ("fem", "coupled"):
             assert film is None or isinstance(film, FilmLaw)  # closed forms know no cells of the face
             laws = tuple((law, share) for law, share in varied if isinstance(law, FilmLaw))
-            given = self.pair, self.torque, self.model, self.pairs, self.compliance
-            return SharingPairs(*given, film, tolerance, laws).cycle(positions)
-        found = fem.mesh_cycle(
+            arguments = self.pair, self.torque, self.model, self.pairs, self.compliance
+            return SharingPairs(*arguments, film, tolerance, laws).cycle(positions)
+        contact = fem.mesh_cycle(
             self.pair, self.torque, positions=positions, film=film, tolerance=tolerance, **self.setting
         )
-        found = self.measured(believed(found, "loaded tooth contact"))
-        if film is not None and found.problem is not None:
+        contact = self.measured(believed(contact, "loaded tooth contact"))
+        if film is not None and contact.problem is not None:
             corners = film.corners(self.pair)
-            problem = replace(found.problem, corners=corners, film_yields=True, varied=varied)
-            found = replace(found, problem=problem)
-        return MeshCycle(label=MODELS["fem"], **MeshCycle.fields_of(found), contact=found)
+            problem = replace(contact.problem, corners=corners, film_yields=True, varied=varied)
+            contact = replace(contact, problem=problem)
+        return MeshCycle(label=MODELS["fem"], **MeshCycle.fields_of(contact), contact=contact)
 
     def sampled(self, sampling: float, transmission_error: float) -> MeshCycle:
         """Dry mesh cycle whose arcs leave out less than two tolerances.
@@ -172,10 +172,10 @@ class LoadedTeeth:
         SolverError
             Where the loaded contact has no solution at some positions, or between them.
         """
-        found = self.cycle(POSITIONS, tolerance=min(sampling, transmission_error))
-        arcs = found.arcs  # raises where there is no solution between the positions
+        cycle = self.cycle(POSITIONS, tolerance=min(sampling, transmission_error))
+        arcs = cycle.arcs  # raises where there is no solution between the positions
         assert arcs is not None
-        return found
+        return cycle
 
     def others(self, positions: int) -> tuple[MeshCycle, ...]:
         """Dry cycles of independent pairs by every other closed form, and by finite elements if these are at hand."""

@@ -79,13 +79,13 @@ def torque_curves(teeth: LoadedTeeth, torques: Iterable[float], positions: int) 
     >>> found.torque.tolist(), bool(found.secant_stiffness[0] < found.secant_stiffness[1])
     ([300.0, 600.0], True)
     """
-    found = fem.mesh_cycle(
+    over_torque = fem.mesh_cycle(
         teeth.pair,
         sorted({*torques, teeth.torque}),
         positions=positions,
         **teeth.setting,
     )
-    cycles = [teeth.measured(cycle) for cycle in found]
+    cycles = [teeth.measured(cycle) for cycle in over_torque]
     refused = {cycle.torque: why for cycle in cycles if (why := _refusal(cycle))}
     good = [cycle for cycle in cycles if cycle.torque not in refused]
     if not good:
@@ -128,8 +128,8 @@ def _harmonics_error(cycle: fem.MeshCycle) -> float:
 
 def _error(cycle: fem.MeshCycle, *names: str) -> float:
     """Largest relative error of some figures; nan where they have none."""
-    found = [cycle.errors[name] for name in names]
-    return max((one for one in found if one is not None), default=float("nan"))
+    errors = [cycle.errors[name] for name in names]
+    return max((error for error in errors if error is not None), default=float("nan"))
 
 
 def revolution(

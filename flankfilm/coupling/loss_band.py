@@ -34,31 +34,32 @@ def loss_band(rounds: LossRounds, agreed: Agreed, path: HeatedFilms, few: int, e
     error : float
         Relative, of the losses at the stress that was given.
     """
-    some = path.some(few)
-    found, along, off = [], [], []
+    films = path.thinned_to(few)
+    averages, along, off = [], [], []
     for stress in BAND:
-        ratios = _ratios(rounds, some, stress, agreed.bulk)
+        ratios = _ratios(rounds, films, stress, agreed.bulk)
         means, coarser = (
-            rounds.means(agreed.cycle, agreed.films, one) for one in (ratios, ratios.some((few + 1) // 2))
+            rounds.means(agreed.cycle, agreed.films, carried)
+            for carried in (ratios, ratios.thinned_to((few + 1) // 2))
         )
-        found.append(means)
+        averages.append(means)
         along.append(Carried.of(path, ratios).friction)
         off.append(error + coarser.off(means))
-    return _record(found, np.array(along), np.array(off), rounds.power)
+    return _record(averages, np.array(along), np.array(off), rounds.power)
 
 
-def _ratios(rounds: LossRounds, some: HeatedFilms, stress: float, bulk: tuple[float, float]) -> Carried:
+def _ratios(rounds: LossRounds, films: HeatedFilms, stress: float, bulk: tuple[float, float]) -> Carried:
     """Friction and rolling of some films at another stress, over those at the given one."""
     if stress == rounds.lubricant.eyring_stress:
-        return Carried.ones(some.rho1)
+        return Carried.ones(films.rho1)
     oil = replace(rounds.lubricant, eyring_stress=stress)
-    contacts = [replace(one, lubricant=oil) for one in some.contacts]
-    return Carried.of(heated_films(some.rho1, contacts, rounds.oil, bulk, some)).over(Carried.of(some))
+    contacts = [replace(contact, lubricant=oil) for contact in films.contacts]
+    return Carried.of(heated_films(films.rho1, contacts, rounds.oil, bulk, films)).over(Carried.of(films))
 
 
-def _record(found: Sequence[Means], along: Array, error: Array, power: float) -> LossBand:
+def _record(means: Sequence[Means], along: Array, error: Array, power: float) -> LossBand:
     def each(name: str) -> Array:
-        return np.array([getattr(one, name) for one in found])
+        return np.array([getattr(mean, name) for mean in means])
 
     loss = each("mesh_loss")
     return LossBand(
@@ -84,12 +85,12 @@ def boundary_band_of(rounds: LossRounds, agreed: Agreed, ends: tuple[float, floa
     ends : (float, float)
         Coefficients of friction.
     """
-    found = [rounds.means(agreed.cycle, agreed.films.rubbing(end)) for end in ends]
+    means = [rounds.means(agreed.cycle, agreed.films.rubbing(end)) for end in ends]
     rubbed = rounds.means(agreed.cycle, agreed.films.rubbing(0.0)).mesh_loss
     whole = agreed.means.mesh_loss
 
     def each(name: str) -> Array:
-        return np.array([getattr(one, name) for one in found])
+        return np.array([getattr(mean, name) for mean in means])
 
     return BoundaryBand(
         boundary_friction=np.array(ends),

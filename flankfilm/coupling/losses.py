@@ -125,10 +125,10 @@ def mesh_losses(
     True
     """
     loaded = LoadedTeeth(pair, torque, **teeth)
-    with Faults() as found:
-        check_bodies(found, loaded, lubricant, solids)
-        check_temperatures(found, bulk_temperatures, heat_transfer, ambient_temperature)
-        check_numbers(found, boundary_friction, boundary_band, positions, roughness, supply)
+    with Faults() as faults:
+        check_bodies(faults, loaded, lubricant, solids)
+        check_temperatures(faults, bulk_temperatures, heat_transfer, ambient_temperature)
+        check_numbers(faults, boundary_friction, boundary_band, positions, roughness, supply)
     with warned_once():
         loaded, _ = resolved(loaded, tolerance, speed=speed)
         with unclocked():
@@ -156,18 +156,18 @@ def _solved(rounds: LossRounds, bulk: tuple[float, float], ends: tuple[float, fl
     watch = Stopwatch()
     first = rounds.agree(FEW, FIRST_FRICTION, bulk)
     agreed = rounds.agree(None, first.means.friction, first.bulk, first.films)
-    means, every = agreed.means, rounds.cycle(agreed.means.friction, rounds.positions)
-    along = rounds.along(agreed, every)
+    means, full_cycle = agreed.means, rounds.cycle(agreed.means.friction, rounds.positions)
+    along = rounds.along(agreed, full_cycle)
     path = losses_along(rounds.teeth.pair, along, agreed.bulk)
     over, carried = None, 0.0
     if isinstance(agreed.films, HeatedTable):
         halves = (rounds.means(agreed.cycle, agreed.films.every_second(axis)) for axis in (0, 1))
         carried = sum(HALVED * half.off(means) for half in halves)
-        over = face_losses(rounds.teeth.pair, every, rounds.speed, agreed.films, carried)
-        path = of_all_cells(path, over, every)
+        over = face_losses(rounds.teeth.pair, full_cycle, rounds.speed, agreed.films, carried)
+        path = of_all_cells(path, over, full_cycle)
     lost = path.sliding_loss
     by_films = np.average(path.friction_error, weights=lost) if lost.any() else 0.0
-    error = float(by_films) + rounds.means(every, agreed.films).off(means) + agreed.shares + carried
+    error = float(by_films) + rounds.means(full_cycle, agreed.films).off(means) + agreed.shares + carried
     return MeshLosses(
         cycle=agreed.cycle,
         path=path,

@@ -143,23 +143,23 @@ class LossesAlongPath:
         return of_greatest(self.contact_temperature, self.contact_temperature_error)
 
 
-def losses_along(pair: gears.GearPair, found: HeatedFilms, bulk: tuple[float, float]) -> LossesAlongPath:
+def losses_along(pair: gears.GearPair, heated: HeatedFilms, bulk: tuple[float, float]) -> LossesAlongPath:
     """Read friction, losses and temperatures off heated films.
 
     Parameters
     ----------
     pair : gears.GearPair
-    found : HeatedFilms
+    heated : HeatedFilms
     bulk : (float, float)
         Temperatures of pinion and wheel [K].
     """
-    films, contacts, width = found.films, found.contacts, pair.face_width
-    friction = found.friction
+    films, contacts, width = heated.films, heated.contacts, pair.face_width
+    friction = heated.friction
     half_width = _each(contacts, "half_width")
     load, sliding = _each(contacts, "load"), _each(contacts, "sliding")
     rises = np.array([_surface_rises(film, bulk) for film in films]).T
     return LossesAlongPath(
-        rho1=found.rho1,
+        rho1=heated.rho1,
         load=load,
         hertz_pressure=_each(contacts, "peak_pressure"),
         sliding_speed=sliding,
@@ -168,21 +168,21 @@ def losses_along(pair: gears.GearPair, found: HeatedFilms, bulk: tuple[float, fl
         shear_stress=np.sign(sliding) * friction * load / (2.0 * half_width),
         rolling_friction=_each(films, "rolling_friction"),
         sliding_loss=width * friction * load * np.abs(sliding),
-        rolling_loss=width * found.rolling,
+        rolling_loss=width * heated.rolling,
         oil_temperature_rise=_each(films, "oil_temperature_rise"),
         surface_temperature_rise=rises,
         contact_temperature=np.max(rises + np.array(bulk)[:, None], axis=0),
         flash_temperature=np.array(
             [
-                ehl.blok_flash_temperature(contact, mu, found.solids)
+                ehl.blok_flash_temperature(contact, mu, heated.solids)
                 for contact, mu in zip(contacts, friction.tolist(), strict=True)
             ]
         ),
-        minimum_thickness=found.minimum_thickness,
-        film_ratio=found.film_ratio,
-        asperity_share=found.asperity_share if found.rough else None,
+        minimum_thickness=heated.minimum_thickness,
+        film_ratio=heated.film_ratio,
+        asperity_share=heated.asperity_share if heated.rough else None,
         closure=np.array([film.losses.closure for film in films if film.losses is not None]),
-        friction_error=found.friction_error,
+        friction_error=heated.friction_error,
         temperature_error=_each(films, "temperature_error"),
         film_error=_each(films, "error"),
     )

@@ -17,52 +17,52 @@ POSITIONS = Limit(2, whole=True)
 
 
 def check_bodies(
-    found: Faults, teeth: LoadedTeeth, lubricant: ehl.Lubricant, solids: tuple[ehl.Solid, ehl.Solid]
+    faults: Faults, teeth: LoadedTeeth, lubricant: ehl.Lubricant, solids: tuple[ehl.Solid, ehl.Solid]
 ) -> None:
     """Note what is missing of the oil and the bodies, and friction that is given where it is sought."""
     if lubricant.eyring_stress is None:
         remedy = "5e6 to 1e7 Pa is usual: a Newtonian oil's friction and heat have no bound at the pressures of gears"
-        found.add("lubricant.eyring_stress", None, "must be given for losses", remedy)
+        faults.add("lubricant.eyring_stress", None, "must be given for losses", remedy)
     if teeth.flanks.friction:
-        found.add("flanks.friction", teeth.flanks.friction, "must be 0: it is found here", "leave it out")
+        faults.add("flanks.friction", teeth.flanks.friction, "must be 0: it is found here", "leave it out")
     remedy = "give ehl.Solid(conductivity, density, heat_capacity) of pinion and wheel"
-    if len(solids) != 2 or not all(isinstance(one, ehl.Solid) for one in solids):
-        found.add("solids", solids, "must be two of ehl.Solid", remedy)
+    if len(solids) != 2 or not all(isinstance(solid, ehl.Solid) for solid in solids):
+        faults.add("solids", solids, "must be two of ehl.Solid", remedy)
         return
     for name, body, material in zip(("pinion", "wheel"), solids, teeth.pair.materials, strict=True):
         if material.youngs_modulus < COMPLIANT and body == ehl.STEEL:
-            given = f"steel, of a {name} of {1e-9 * material.youngs_modulus:.3g} GPa"
-            found.add("solids", given, "must be the gear's own", remedy)
+            description = f"steel, of a {name} of {1e-9 * material.youngs_modulus:.3g} GPa"
+            faults.add("solids", description, "must be the gear's own", remedy)
 
 
 def check_temperatures(
-    found: Faults,
+    faults: Faults,
     bulk: tuple[float, float] | None,
     transfer: tuple[float, float] | None,
     ambient: float | None,
 ) -> None:
     """Note temperatures and heat transfer that are out of bounds or do not go together."""
-    for where, two, limit in (("bulk_temperatures", bulk, TEMPERATURE), ("heat_transfer", transfer, BALANCE)):
+    for name, two, limit in (("bulk_temperatures", bulk, TEMPERATURE), ("heat_transfer", transfer, BALANCE)):
         if two is None:
             continue
         if np.shape(two) != (2,):
-            found.add(where, two, "must be two numbers", "give pinion and wheel")
+            faults.add(name, two, "must be two numbers", "give pinion and wheel")
             continue
         for value in two:
-            found.number(where, value, limit)
+            faults.number(name, value, limit)
     if ambient is not None:
-        found.number("ambient_temperature", ambient, TEMPERATURE)
+        faults.number("ambient_temperature", ambient, TEMPERATURE)
     if bulk is not None and transfer is not None:
-        found.add("bulk_temperatures", bulk, "must be left out beside heat_transfer", "give one of them")
+        faults.add("bulk_temperatures", bulk, "must be left out beside heat_transfer", "give one of them")
     if (ambient is None) != (transfer is None):
-        given, missing = "ambient_temperature", "heat_transfer"
+        present, missing = "ambient_temperature", "heat_transfer"
         if ambient is None:
-            given, missing = missing, given
-        found.add(missing, None, f"must be given beside {given}", "give both, or neither")
+            present, missing = missing, present
+        faults.add(missing, None, f"must be given beside {present}", "give both, or neither")
 
 
 def check_numbers(
-    found: Faults,
+    faults: Faults,
     boundary: float,
     band: tuple[float, float] | None,
     positions: int,
@@ -70,16 +70,16 @@ def check_numbers(
     supply: Held,
 ) -> None:
     """Note faults of the rest."""
-    found.number("boundary_friction", boundary, BOUNDARY)
+    faults.number("boundary_friction", boundary, BOUNDARY)
     if band is not None and not _around(band, boundary):
         allowed = f"must be two numbers from 0 to {BOUNDARY.high:g} with {boundary:g} between them"
-        found.add("boundary_band", band, allowed, "(0.08, 0.12) is usual")
-    found.number("positions", positions, POSITIONS)
+        faults.add("boundary_band", band, allowed, "(0.08, 0.12) is usual")
+    faults.number("positions", positions, POSITIONS)
     if roughness is not None and not isinstance(roughness, ehl.Roughness):
-        found.add("roughness", roughness, "must be an ehl.Roughness", "build one, or leave it out")
+        faults.add("roughness", roughness, "must be an ehl.Roughness", "build one, or leave it out")
     if supply is not None and not isinstance(supply, ehl.Meniscus | ehl.OilLayer | PlacedMeniscus):
         allowed = "must be an ehl.Meniscus, an ehl.OilLayer or a coupling.PlacedMeniscus"
-        found.add("supply", supply, allowed, "build one, or leave it out for flooded contacts")
+        faults.add("supply", supply, allowed, "build one, or leave it out for flooded contacts")
 
 
 def _around(band: tuple[float, float], boundary: float) -> bool:

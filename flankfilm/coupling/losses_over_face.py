@@ -66,8 +66,8 @@ class FaceLosses(FaceCells):
     @described("W/m", "cell", no_error=_AS_FILMS)
     def mean_loss(self) -> Array:
         """Mean power lost by sliding and rolling per length of face."""
-        both = self.sliding_loss + self.rolling_loss
-        return np.asarray(both.sum(axis=(0, 1)) / both.shape[0])
+        loss = self.sliding_loss + self.rolling_loss
+        return np.asarray(loss.sum(axis=(0, 1)) / loss.shape[0])
 
     @described("K")
     def greatest_cell_temperature(self) -> float:
@@ -117,19 +117,20 @@ def face_losses(
     )
 
 
-def of_all_cells(path: LossesAlongPath, found: FaceLosses, cycle: MeshCycle) -> LossesAlongPath:
+def of_all_cells(path: LossesAlongPath, over_face: FaceLosses, cycle: MeshCycle) -> LossesAlongPath:
     """Losses along the path of the most loaded cells, with the powers of all cells together.
 
     Parameters
     ----------
     path : LossesAlongPath
-    found : FaceLosses
+    over_face : FaceLosses
     cycle : MeshCycle
         Of both.
     """
     position, number = touching(cycle)
-    width = found.pair.face_width / found.face_position.size
+    width = over_face.pair.face_width / over_face.face_position.size
     sliding, rolling = (
-        width * one.sum(axis=-1)[position, number] for one in (found.sliding_loss, found.rolling_loss)
+        width * loss.sum(axis=-1)[position, number]
+        for loss in (over_face.sliding_loss, over_face.rolling_loss)
     )
     return replace(path, sliding_loss=sliding, rolling_loss=rolling)

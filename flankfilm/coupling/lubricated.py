@@ -184,12 +184,12 @@ def lubricate(
         ehl.solve  # noqa: B018 - loads the solver
     with pressures_unsaid():
         if dry.face is None:
-            found = _even(teeth, dry, speed, lubricant, resolution, model, profiles=profiles)
+            lubricated = _even(teeth, dry, speed, lubricant, resolution, model, profiles=profiles)
         else:
-            found = lubricate_face(teeth, dry, speed, lubricant, resolution, model, profiles=profiles)
+            lubricated = lubricate_face(teeth, dry, speed, lubricant, resolution, model, profiles=profiles)
     if model.name == "ehl":
-        warn_of_pressure(lubricant, found.film.greatest_pressure)
-    return found
+        warn_of_pressure(lubricant, lubricated.film.greatest_pressure)
+    return lubricated
 
 
 def _even(

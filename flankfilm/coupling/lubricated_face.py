@@ -76,8 +76,8 @@ def lubricate_face(
 
 def _least(thickness: Array) -> Array:
     """Smallest over the cells (positions, pairs); nan where none is known."""
-    found = np.where(np.isfinite(thickness), thickness, np.inf).min(axis=-1)
-    return np.where(np.isfinite(found), found, np.nan)
+    least = np.where(np.isfinite(thickness), thickness, np.inf).min(axis=-1)
+    return np.where(np.isfinite(least), least, np.nan)
 
 
 def _along_path(

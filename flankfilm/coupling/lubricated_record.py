@@ -53,7 +53,7 @@ class LubricatedCycle(MeshCycle):
         See `MeshCycle.against`.
         """
         measured = super().against(reference, bore_inertia)
-        others = {name: one.against(reference, bore_inertia) for name, one in self.otherwise.items()}
+        others = {name: cycle.against(reference, bore_inertia) for name, cycle in self.otherwise.items()}
         return replace(measured, dry=self.dry.against(reference, bore_inertia), otherwise=others)
 
     @described("m", shown="um", error="thinnest_film_error", no_error=FORMULA)

@@ -68,17 +68,17 @@ class Carried:
     @classmethod
     def of(cls, films: HeatedFilms, ratios: Carried | None = None) -> Carried:
         """Read films, times ratios at other places."""
-        found = cls(films.rho1, films.friction, films.rolling, films.first_part)
+        carried = cls(films.rho1, films.friction, films.rolling, films.first_part)
         if ratios is None:
-            return found
+            return carried
         by = ratios.at(films.rho1)
-        return replace(found, friction=found.friction * by.friction, rolling=found.rolling * by.rolling)
+        return replace(carried, friction=carried.friction * by.friction, rolling=carried.rolling * by.rolling)
 
     @classmethod
     def ones(cls, rho1: Array) -> Carried:
         """Ratios that change nothing."""
-        one = np.ones(rho1.size)
-        return cls(rho1, one, one, one)
+        unity = np.ones(rho1.size)
+        return cls(rho1, unity, unity, unity)
 
     def over(self, other: Carried) -> Carried:
         """Ratios to what other films at the same places give; 1 where these give nothing."""
@@ -93,14 +93,16 @@ class Carried:
             first_part=np.ones(self.rho1.size),
         )
 
-    def some(self, most: int) -> Carried:
+    def thinned_to(self, most: int) -> Carried:
         """Give so many places at most, the first and the last as well."""
         kept = thinned(self.rho1.size, most)
         return Carried(self.rho1[kept], self.friction[kept], self.rolling[kept], self.first_part[kept])
 
     def at(self, rho1: Array) -> Carried:
         """Carry to other places."""
-        values = (np.interp(rho1, self.rho1, one) for one in (self.friction, self.rolling, self.first_part))
+        values = (
+            np.interp(rho1, self.rho1, figure) for figure in (self.friction, self.rolling, self.first_part)
+        )
         return Carried(rho1, *values)
 
     def borne(self, cycle: MeshCycle, face_width: float) -> Borne:
@@ -133,7 +135,7 @@ class Means:
         return abs(self.mesh_loss / other.mesh_loss - 1.0) if other.mesh_loss else 0.0
 
 
-def means_of(pair: gears.GearPair, cycle: MeshCycle, speed: float, power: float, given: Known) -> Means:
+def means_of(pair: gears.GearPair, cycle: MeshCycle, speed: float, power: float, known: Known) -> Means:
     """Average over the positions of a cycle.
 
     Parameters
@@ -145,15 +147,15 @@ def means_of(pair: gears.GearPair, cycle: MeshCycle, speed: float, power: float,
         Of the pinion [rad/s].
     power : float
         Put in [W].
-    given : Known
+    known : Known
         Friction and rolling.
     """
-    positions, here = cycle.position.size, given.borne(cycle, pair.face_width)
+    positions, here = cycle.position.size, known.borne(cycle, pair.face_width)
     slid = here.force * np.abs(pair.path_at(here.rho1).sliding(speed))
     lost = here.friction * slid
     rolled = here.width * here.rolling
-    both = float(slid.sum())
-    friction = float(lost.sum()) / both if both else 0.0
+    total_slid = float(slid.sum())
+    friction = float(lost.sum()) / total_slid if total_slid else 0.0
     edges = _edges(cycle, speed)
     first = float(np.sum(here.first_part * (lost + rolled)) / positions)
     on_path = float(np.sum(lost + rolled) / positions)
@@ -163,7 +165,7 @@ def means_of(pair: gears.GearPair, cycle: MeshCycle, speed: float, power: float,
         sliding_loss=float(lost.sum()) / positions,
         rolling_loss=float(rolled.sum()) / positions,
         edge_loss=friction * edges,
-        loss_factor=(both / positions + edges) / power,
+        loss_factor=(total_slid / positions + edges) / power,
         heat=np.array([first, on_path + friction * edges - first]),
     )
 

@@ -139,15 +139,15 @@ def passage_film(
     watch = Stopwatch()
     rho1, contacts = contacts_of(pair, cycle, speed, lubricant)
     times = (rho1 - rho1[0]) / (speed * pair.base_radii[0])
-    load = _smooth(times, np.array([one.load for one in contacts]))
+    load = _smooth(times, np.array([contact.load for contact in contacts]))
     chosen = np.unique(np.linspace(0, times.size - 1, min(INSTANTS, times.size)).round().astype(int))
     with warned_once():
         moving = ehl.solve_transient(
             contacts[0],
             load,
             times[chosen],
-            entrainment=_smooth(times, np.array([one.entrainment for one in contacts])),
-            radius=_smooth(times, np.array([one.radius for one in contacts])),
+            entrainment=_smooth(times, np.array([contact.entrainment for contact in contacts])),
+            radius=_smooth(times, np.array([contact.radius for contact in contacts])),
             tolerance=tolerance,
         )
         if not moving.converged:
@@ -157,7 +157,7 @@ def passage_film(
     for i, film in zip(chosen, steady, strict=True):
         if not film.converged:
             raise SolverError(f"no film at rho1 = {1e3 * rho1[i]:.3f} mm: {film.message}")
-    units = np.array([one.half_width / one.entrainment for one in same])
+    units = np.array([contact.half_width / contact.entrainment for contact in same])
     return PassageFilm(
         time=times[chosen],
         rho1=rho1[chosen],

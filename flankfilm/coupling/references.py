@@ -139,12 +139,12 @@ def stiffness_references(
         allowed = "requires a loaded contact by finite elements of coupled pairs"
         raise InputError.at("cycle", cycle.label, allowed, "take a mesh cycle by finite elements")
     each = [cycle.against(name, bore_inertia) for name in MEANINGS]
-    errors = np.array([one.mean_error for one in each], dtype=float)
+    errors = np.array([measured.mean_error for measured in each], dtype=float)
     parts = deflection_parts(cycle.contact, compliance)
     return StiffnessReferences(
         reference=tuple(MEANINGS),
-        mean_stiffness=np.array([one.mean_stiffness for one in each]),
-        mean_secant_stiffness=np.array([one.mean_secant_stiffness for one in each]),
+        mean_stiffness=np.array([measured.mean_stiffness for measured in each]),
+        mean_secant_stiffness=np.array([measured.mean_secant_stiffness for measured in each]),
         mean_error=errors,
         iso_mesh_stiffness=1e9 * pair.face_width * iso6336(pair, force=abs(cycle.contact.force)).c_gamma,
         deflection=_with_hubs_apart(parts, *each),
@@ -157,14 +157,14 @@ def _with_hubs_apart(
     parts: Mapping[str, Array], body: MeshCycle, bore: MeshCycle, teeth: MeshCycle
 ) -> dict[str, float]:
     """Means of the parts of a deflection against the bores [m], the wind-up split at the bodies."""
-    found = {name: float(part.mean()) for name, part in parts.items()}
+    means = {name: float(part.mean()) for name, part in parts.items()}
     on_teeth, on_body, on_bore = (
-        float(np.mean(abs(one.contact.force) / one.contact.secant_stiffness))
-        for one in (teeth, body, bore)
-        if one.contact is not None
+        float(np.mean(abs(cycle.contact.force) / cycle.contact.secant_stiffness))
+        for cycle in (teeth, body, bore)
+        if cycle.contact is not None
     )
-    windup, hubs = found.pop("windup"), on_bore - on_body
-    found["body_windup"] = on_body - on_teeth
+    windup, hubs = means.pop("windup"), on_bore - on_body
+    means["body_windup"] = on_body - on_teeth
     # springs at the bores turn as well: what they turn is the hubs'
-    found["support"] += windup - found["body_windup"] - hubs
-    return {name: found[name] for name in PARTS if name != "hub_windup"} | {"hub_windup": hubs}
+    means["support"] += windup - means["body_windup"] - hubs
+    return {name: means[name] for name in PARTS if name != "hub_windup"} | {"hub_windup": hubs}

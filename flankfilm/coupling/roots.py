@@ -80,7 +80,7 @@ def root_stresses(pair: gears.GearPair, cycle: fem.MeshCycle, fillets: fem.Fille
         from gears import GeometryError
         from gears.closed_form import iso6336_3, iso6336_face_load
     watch = Stopwatch()
-    found = fem.root_stress(pair, cycle, replace(fillets, pair=pair))
+    stresses = fem.root_stress(pair, cycle, replace(fillets, pair=pair))
     iso, fault = None, ""
     try:
         iso = iso6336_3(pair, abs(pair.normal_force(cycle.torque)))
@@ -92,8 +92,8 @@ def root_stresses(pair: gears.GearPair, cycle: fem.MeshCycle, fillets: fem.Fille
         try:
             over = iso6336_face_load(pair, abs(cycle.torque), abs(face.setting.slope))
         except GeometryError as error:
-            fault = "; ".join(one for one in (fault, str(error)) if one)
-    return RootStresses(found, iso, fault, over, left_out, found.error, Cost(watch.seconds))
+            fault = "; ".join(reason for reason in (fault, str(error)) if reason)
+    return RootStresses(stresses, iso, fault, over, left_out, stresses.error, Cost(watch.seconds))
 
 
 def fillets_over_face(

@@ -132,10 +132,10 @@ class SharingPairs:
             clear = clear - self.film(rho1, np.zeros_like(rho1))[0]
             added = film_yielding(self.film, rho1, share.forces, share.forces / self.force)
             secant = secant * moved / (moved + added)
-        left = np.minimum(-clear / moved.mean(), -1e-300)
+        reserve = np.minimum(-clear / moved.mean(), -1e-300)
         return Sampled(
             np.stack([self._lag(moved), tangent, secant]),
-            np.where(share.forces > 0.0, share.forces / self.force, left),
+            np.where(share.forces > 0.0, share.forces / self.force, reserve),
             self._each(rho1, share),
         )
 

@@ -149,9 +149,9 @@ class Verification:
         LookupError
             Where there is no such comparison.
         """
-        for found in self.differences:
-            if (found.model, found.reference, found.figure) == (model, reference, figure):
-                return found.difference
+        for comparison in self.differences:
+            if (comparison.model, comparison.reference, comparison.figure) == (model, reference, figure):
+                return comparison.difference
         raise LookupError(f"no comparison of {model} with {reference} in {figure}")
 
 
@@ -255,9 +255,9 @@ def _closed_form_curves(pair: gears.GearPair, torque: float) -> Iterator[Curves]
     watch = Stopwatch()
     iso = forms.iso6336(pair, force=abs(pair.normal_force(torque)))
     stiffness = {"one pair, largest": iso.single_stiffness, "mesh, mean": iso.mesh_stiffness}
-    found = {name: Estimate(1e-9 / pair.face_width * value, None) for name, value in stiffness.items()}
+    figures = {name: Estimate(1e-9 / pair.face_width * value, None) for name, value in stiffness.items()}
     nothing = np.zeros(0)
-    yield Curves("ISO 6336-1", nothing, nothing, nothing, found, Cost(watch.seconds))
+    yield Curves("ISO 6336-1", nothing, nothing, nothing, figures, Cost(watch.seconds))
 
 
 def _reference_curves(
@@ -274,10 +274,10 @@ def _reference_curves(
             None if left_out else measured.reference
         )  # without parts a compliance measures its own way
         teeth = replace(measured, compliance=parts, flanks=flanks, reference=reference)
-        found = _curves(label, teeth, compliance.error)
+        curves = _curves(label, teeth, compliance.error)
         # without coupling each pair has a separate rotation, with the hubs' wind-up or without
         own = "teeth" if "hub_windup" in left_out else "bore"
-        yield replace(found, left_out=left_out, deflection_reference=found.deflection_reference or own)
+        yield replace(curves, left_out=left_out, deflection_reference=curves.deflection_reference or own)
 
 
 def _curves(label: str, teeth: LoadedTeeth, error: float | None = None) -> Curves:
@@ -294,9 +294,9 @@ def _curves(label: str, teeth: LoadedTeeth, error: float | None = None) -> Curve
         bore_inertia=teeth.bore_inertia,
     )
     assert cycle.arcs is not None
-    found = single_figures(pair, single, error) | mesh_figures(pair, cycle.arcs)
+    figures = single_figures(pair, single, error) | mesh_figures(pair, cycle.arcs)
     curves = single, cycle.secant_stiffness, cycle.transmission_error
-    return Curves(label, *curves, found, Cost(watch.seconds), error, deflection_reference=cycle.reference)
+    return Curves(label, *curves, figures, Cost(watch.seconds), error, deflection_reference=cycle.reference)
 
 
 def single_figures(pair: gears.GearPair, single: Array, error: float | None) -> dict[str, Estimate]:
@@ -328,20 +328,20 @@ def single_figures(pair: gears.GearPair, single: Array, error: float | None) -> 
 def mesh_figures(pair: gears.GearPair, arcs: MeshArcs) -> dict[str, Estimate]:
     """Figures of the mesh in the units of `UNITS`, from curves on smooth arcs."""
     scale, name, orders = 1e-9 / pair.face_width, "secant_stiffness", np.array([1, 2, 3])
-    found = {"mesh, mean": _times(scale, arcs.mean(name))}
+    figures = {"mesh, mean": _times(scale, arcs.mean(name))}
     low, high = max(pair.contact_ratio - 2.0, 0.0), min(pair.contact_ratio - 1.0, 1.0)
     if low < high:
-        found["mesh, two pairs, mean"] = _times(scale, arcs.mean(name, (low, high)))
-    found["transmission error, peak to peak"] = _times(1e6, arcs.range("transmission_error"))
+        figures["mesh, two pairs, mean"] = _times(scale, arcs.mean(name, (low, high)))
+    figures["transmission error, peak to peak"] = _times(1e6, arcs.range("transmission_error"))
     sizes, errors = arcs.amplitudes(name, orders, over_mean=True)
     for place, order in enumerate(orders):
         error = None if errors is None else float(errors[place])
-        found[f"harmonic {order} over mean"] = Estimate(float(sizes[place]), error)
-    return found
+        figures[f"harmonic {order} over mean"] = Estimate(float(sizes[place]), error)
+    return figures
 
 
-def _times(scale: float, found: Estimate) -> Estimate:
-    return Estimate(scale * found.value, None if found.error is None else scale * found.error)
+def _times(scale: float, estimate: Estimate) -> Estimate:
+    return Estimate(scale * estimate.value, None if estimate.error is None else scale * estimate.error)
 
 
 def _differences(references: tuple[Curves, ...], models: tuple[Curves, ...]) -> Iterator[Difference]:
@@ -349,8 +349,8 @@ def _differences(references: tuple[Curves, ...], models: tuple[Curves, ...]) -> 
     for reference in references:
         for model in models:
             for name, unit in UNITS.items():
-                known, found = reference.figures.get(name), model.figures.get(name)
-                if known is None or known.relative is None or found is None:
+                known, estimate = reference.figures.get(name), model.figures.get(name)
+                if known is None or known.relative is None or estimate is None:
                     continue
                 labels = reference.label, model.label
-                yield Difference(name, unit, *labels, known.value, known.relative, found.value)
+                yield Difference(name, unit, *labels, known.value, known.relative, estimate.value)

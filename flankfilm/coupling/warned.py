@@ -25,7 +25,7 @@ def _joined(group: Sequence[warnings.WarningMessage]) -> warnings.WarningMessage
     first = group[0]
     parts = [
         said[0] if len(set(said)) == 1 else f"{min(said, key=float)} to {max(said, key=float)}"
-        for said in zip(*(NUMBER.split(str(one.message)) for one in group), strict=True)
+        for said in zip(*(NUMBER.split(str(warning.message)) for warning in group), strict=True)
     ]
     text = "".join(parts)
     if text == str(first.message):

@@ -102,7 +102,7 @@ def test_values_are_carried_along_the_path():
     assert given.over(given).friction == pytest.approx(1.0)
     nothing = Carried(rho1, np.zeros(5), np.zeros(5), np.full(5, 0.5))
     assert nothing.over(nothing).rolling == pytest.approx(1.0)
-    assert given.some(3).rho1 == pytest.approx([8e-3, 12e-3, 16e-3])
+    assert given.thinned_to(3).rho1 == pytest.approx([8e-3, 12e-3, 16e-3])
 
 
 def test_the_first_and_the_last_are_kept():
