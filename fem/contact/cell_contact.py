@@ -108,7 +108,7 @@ class CellContact:
         def coupling(strip: float) -> tuple[CellCoupling, CellCoupling]:
             """Of the bodies, and with the shafts."""
             own = cell_coupling(replace(face, strip=strip), self.bodies, self.where, self.kappa, self.matrix)
-            return own, own if shafts is None else own.plus(shafts.both, self.kappa)
+            return own, own if shafts is None else own.plus(shafts.compliance, self.kappa)
 
         @lru_cache(maxsize=1)
         def law(strip: float, some: tuple[int, ...]) -> DeflectionLaw:

@@ -75,7 +75,7 @@ def moved_over_face(
         ):  # corners touch at the approach of the flanks, to which shafts do not contribute
             bent = shafts.bent(stays.forces[some], flanks.kappa).sum(axis=-2)[..., None, :] / kappa[..., None]
             still = replace(still, along=still.along + bent.reshape(*bent.shape[:-2], -1))
-            cells = replace(still, coupling=still.coupling.plus(shafts.both, kappa))
+            cells = replace(still, coupling=still.coupling.plus(shafts.compliance, kappa))
         found = _found(cells, whole[some], stays.forces[some])
         if found is None:
             return None

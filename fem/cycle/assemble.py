@@ -36,7 +36,7 @@ WIDE_CONTACT = 0.07
 
 
 def cycle_of(
-    given: MeshSetup,
+    setup: MeshSetup,
     bodies: PairCompliance,
     film: Film | None,
     tolerance: float,
@@ -47,8 +47,8 @@ def cycle_of(
     cost: Cost,
 ) -> MeshCycle:
     """Put the figures of one torque of a solution together."""
-    where, pairs = contact.where, len(contact.where.offset)
-    force = torque / given.pair.base_radii[0]
+    candidates, pairs = contact.where, len(contact.where.offset)
+    force = torque / setup.pair.base_radii[0]
     opposite = contact.opposite
     turned = contact.share.forces[number]  # kappa F
     deflection = contact.deflection(number).ravel()
@@ -62,59 +62,59 @@ def cycle_of(
         else float(contact.face.errors.relative[number] + contact.face.errors.ends[number])
     )
     forces = (turned / contact.kappa).reshape(-1, pairs) + bad
-    edge = np.tile(where.edge, (given.pitches, 1))
-    on_path = where.touchable & ~where.edge
-    rho = contact.flank_rho(given.pair, number).reshape(2, -1, pairs)
-    lost = [one.reshape(2, -1, pairs) for one in contact.lever_loss(number)]
-    large = [] if refusal else _large(given, contact, number, forces, bodies.plane)
+    edge = np.tile(candidates.edge, (setup.pitches, 1))
+    on_path = candidates.touchable & ~candidates.edge
+    rho = contact.flank_rho(setup.pair, number).reshape(2, -1, pairs)
+    lost = [loss.reshape(2, -1, pairs) for loss in contact.lever_loss(number)]
+    large = [] if refusal else _large(setup, contact, number, forces, bodies.plane)
     if large:
         warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
     held, supports = held_turns(bodies)
     approach = contact.share.transmission_error[number]
-    both = opposite is not None and bool(np.any(opposite.forces[number] > 0.0))
-    behind = (opposite.where, opposite.forces[number]) if opposite is not None and both else None
+    both_sides = opposite is not None and bool(np.any(opposite.forces[number] > 0.0))
+    behind = (opposite.where, opposite.forces[number]) if opposite is not None and both_sides else None
     return MeshCycle(
         torque=torque,
         force=force,
-        position=where.position,
-        pair_offset=where.offset,
-        rho1=np.tile(np.where(on_path, where.place, np.nan), (given.pitches, 1)),
+        position=candidates.position,
+        pair_offset=candidates.offset,
+        rho1=np.tile(np.where(on_path, candidates.place, np.nan), (setup.pitches, 1)),
         edge=edge,
-        flank_rho=np.where(np.tile(where.touchable, (given.pitches, 1)), rho, np.nan),
+        flank_rho=np.where(np.tile(candidates.touchable, (setup.pitches, 1)), rho, np.nan),
         forces=forces,
         load_share=(
             contact.torques(number).reshape(-1, pairs) / abs(force) if force else np.full_like(forces, np.nan)
         )
         + bad,
-        gaps=where.gap.reshape(-1, pairs),
-        transmission_error=(-(given.pair.backlash + moved) if given.back else moved) + bad,
+        gaps=candidates.gap.reshape(-1, pairs),
+        transmission_error=(-(setup.pair.backlash + moved) if setup.back else moved) + bad,
         stiffness=stiffness + bad,
         secant_stiffness=(abs(force) / deflection if force else stiffness) + bad,
         pair_stiffness=(contact.share.pair_stiffness[number] / contact.kappa).reshape(-1, pairs) + bad,
         plane=bodies.plane,
-        beyond_path=given.beyond_path,
+        beyond_path=setup.beyond_path,
         error=bodies.error + by_cells,
-        moving_contact=given.moving_contact,
-        strips_at_corners=given.strips_at_corners,
+        moving_contact=setup.moving_contact,
+        strips_at_corners=setup.strips_at_corners,
         lever_loss=lost[0],
         further_lever_loss=lost[1],
         cost=cost,
         converged=bodies.converged and not refusal,
         message=refusal
-        or "; ".join([bodies.message, *_remarks(given, contact, number, forces, edge), *large]),
-        pair=given.pair,
-        candidates=where,
-        friction=float(given.friction),
+        or "; ".join([bodies.message, *_remarks(setup, contact, number, forces, edge), *large]),
+        pair=setup.pair,
+        candidates=candidates,
+        friction=float(setup.friction),
         supports=supports,
         reference=held,
-        face=None if refusal else face_loads(given, contact, number, bodies.plane),
+        face=None if refusal else face_loads(setup, contact, number, bodies.plane),
         loaded=None
         if refusal
-        else LoadedContacts(given, bodies, where, _on_faces(contact, number), approach, force, behind),
+        else LoadedContacts(setup, bodies, candidates, _on_faces(contact, number), approach, force, behind),
         problem=None
         if refusal
         else ContactProblem(
-            replace(given, both=both),
+            replace(setup, both=both_sides),
             bodies,
             force,
             film,
@@ -123,21 +123,21 @@ def cycle_of(
             scatter=None if contact.face is None else contact.face.errors.of(number),
             ends_error=0.0 if contact.face is None else float(contact.face.errors.ends[number]),
         ),
-        flank="back" if given.back else "front",
-        opposite=_opposite(given, contact, number) if both else None,
+        flank="back" if setup.back else "front",
+        opposite=_opposite(setup, contact, number) if both_sides else None,
     )
 
 
-def _opposite(given: MeshSetup, contact: ContactState, number: int) -> OppositeFlanks:
+def _opposite(setup: MeshSetup, contact: ContactState, number: int) -> OppositeFlanks:
     """Flanks on the other side under one torque, where they bear."""
     assert contact.opposite is not None
-    found, back = contact.opposite.flanks(number), contact.back
+    flanks, back = contact.opposite.flanks(number), contact.back
     if back is None:
-        return found
-    rho = back.flank_rho(given.pair, number).reshape(found.flank_rho.shape)
-    lost, further = (one.reshape(2, *found.forces.shape) for one in back.lever_loss(number))
-    places = np.where(np.isfinite(found.flank_rho), rho, np.nan)
-    return replace(found, flank_rho=places, lever_loss=lost, further_lever_loss=further)
+        return flanks
+    rho = back.flank_rho(setup.pair, number).reshape(flanks.flank_rho.shape)
+    lost, further = (loss.reshape(2, *flanks.forces.shape) for loss in back.lever_loss(number))
+    places = np.where(np.isfinite(flanks.flank_rho), rho, np.nan)
+    return replace(flanks, flank_rho=places, lever_loss=lost, further_lever_loss=further)
 
 
 def _on_faces(contact: ContactState, number: int) -> Array:
@@ -148,25 +148,29 @@ def _on_faces(contact: ContactState, number: int) -> Array:
     return np.asarray(forces.shape[-1] * np.moveaxis(forces, -1, 0))
 
 
-def _large(given: MeshSetup, contact: ContactState, number: int, forces: Array, plane: str) -> list[str]:
+def _large(setup: MeshSetup, contact: ContactState, number: int, forces: Array, plane: str) -> list[str]:
     """Deflections and contacts that are large for a law of the first order."""
-    part = np.max(contact.share.transmission_error[number]) / given.pair.module
+    part = np.max(contact.share.transmission_error[number]) / setup.pair.module
     loaded = np.where(contact.where.edge, 0.0, forces.reshape(contact.share.forces[number].shape))
     rho1, rho2 = contact.where.rho
     radius = rho1 * rho2 / (rho1 + rho2)
-    width = hertz_half_width(loaded / given.pair.face_width, radius, reduced_modulus(given.pair, plane))
+    width = hertz_half_width(loaded / setup.pair.face_width, radius, reduced_modulus(setup.pair, plane))
     wide = np.max(width / radius)
-    found, far = [], contact.shafts_give_way(number)
+    remarks, far = [], contact.shafts_give_way(number)
     if far > LARGE_SHIFT:
-        found.append(
+        remarks.append(
             f"the shafts give way by {far:.2g} modules along the line of action; that the path of contact gets shorter "
             "by as much is left out"
         )
     if part > LARGE_DEFLECTION:
-        found.append(f"the teeth deflect by {part:.2g} modules, where what the first order leaves out counts")
+        remarks.append(
+            f"the teeth deflect by {part:.2g} modules, where what the first order leaves out counts"
+        )
     if wide > WIDE_CONTACT:
-        found.append(f"the half-width of a contact is {wide:.2g} of its radius, not small as Hertz takes it")
-    return found if contact.face is None else found + _short(contact.face.forces[number])
+        remarks.append(
+            f"the half-width of a contact is {wide:.2g} of its radius, not small as Hertz takes it"
+        )
+    return remarks if contact.face is None else remarks + _short(contact.face.forces[number])
 
 
 def _short(forces: Array) -> list[str]:
@@ -184,24 +188,24 @@ def _short(forces: Array) -> list[str]:
 
 
 def _remarks(
-    given: MeshSetup, contact: ContactState, number: int, forces: Array, edge: Booleans
+    setup: MeshSetup, contact: ContactState, number: int, forces: Array, edge: Booleans
 ) -> list[str]:
     """Remarks for a reader of the figures."""
-    where, remarks = contact.where, []
+    candidates, remarks = contact.where, []
     if np.any(forces[edge] > 0):
-        sharp = [one.radius == 0.0 for one in given.rounds]
+        sharp = [rounding.radius == 0.0 for rounding in setup.rounds]
         form = (
             "sharp corners" if all(sharp) else "rounded or sharp corners" if any(sharp) else "rounded corners"
         )
-        tilted = ", tilted by the same friction as flanks" if given.friction else " without friction"
+        tilted = ", tilted by the same friction as flanks" if setup.friction else " without friction"
         remarks.append(
             f"tip edges outside the path touch as {form}{tilted}; the shares that they take are uncertain by "
             "several per cent for real edges"
         )
-    if given.friction:
+    if setup.friction:
         remarks.append("friction changes the lever arms only, not the compliance")
-    if (overlap := -1e6 * float(np.min(where.back_gap))) > 0.0:
-        left_out = "" if given.pair.tight else ", which is left out; give more backlash, or a tight pair"
+    if (overlap := -1e6 * float(np.min(candidates.back_gap))) > 0.0:
+        left_out = "" if setup.pair.tight else ", which is left out; give more backlash, or a tight pair"
         remarks.append(
             f"the teeth jam: without load their back flanks overlap by up to {overlap:.3g} um{left_out}"
         )

@@ -51,7 +51,7 @@ def deflection_parts(cycle: MeshCycle, bodies: PairCompliance) -> Mapping[str, A
         whole.pinion.own(place) / width - whole.plane_windup[0],
         whole.wheel.own(pair.line_of_action - place) / width - whole.plane_windup[1],
     )
-    found = {
+    parts = {
         "hertz": np.sum(weight * whole.hertz(place).approach(force), axis=-1),
         "pinion": np.sum(weight * own[0] * force, axis=-1),
         "wheel": np.sum(weight * own[1] * force, axis=-1),
@@ -62,4 +62,4 @@ def deflection_parts(cycle: MeshCycle, bodies: PairCompliance) -> Mapping[str, A
     whole_deflection = cycle.against("bore").transmission_error
     if cycle.flank == "back":
         whole_deflection = -(whole_deflection + pair.backlash)
-    return MappingProxyType({**found, "rest": whole_deflection - sum(found.values())})
+    return MappingProxyType({**parts, "rest": whole_deflection - sum(parts.values())})

@@ -14,33 +14,33 @@ if TYPE_CHECKING:
 __all__ = ["check_row", "require_row"]
 
 
-def check_row(found: Faults, cycle: MeshCycle, row: int, *, over_face: bool = False) -> None:
+def check_row(faults: Faults, cycle: MeshCycle, row: int, *, over_face: bool = False) -> None:
     """Note a row that the cycle does not have, that has no finite forces, or with flanks that bear on both sides.
 
     Of fields over the face also one without cells, of others one with them.
     """
     last = len(cycle.position) - 1
     known = np.isfinite(
-        found.number("row", row, Limit(0, last, remedy="give a row of the cycle", whole=True))
+        faults.number("row", row, Limit(0, last, remedy="give a row of the cycle", whole=True))
     )
     if known and not np.all(np.isfinite(cycle.forces[row])):
-        found.add("cycle", f"row {row} without forces", "must have converged", cycle.message)
+        faults.add("cycle", f"row {row} without forces", "must have converged", cycle.message)
     elif known and over_face and cycle.face is None:
-        found.add(
+        faults.add(
             "cycle", "without cells", "must have cells of the face", "give cells, or take loaded_fields"
         )
     elif known and cycle.face is not None and not over_face:
         remedy = "leave cells, alignment and leads out"
-        found.add(
+        faults.add(
             "cycle", "with cells of the face", "must be even along the face for fields and stresses", remedy
         )
     elif known and cycle.opposite_force[row] > 0.0:
         allowed = "must have flanks that bear on one side of the teeth, where fields and stresses are wanted"
-        found.add("cycle", f"row {row} with flanks that bear on both sides", allowed, "give more backlash")
+        faults.add("cycle", f"row {row} with flanks that bear on both sides", allowed, "give more backlash")
 
 
 def require_row(cycle: MeshCycle, row: int) -> None:
     """Raise unless the cycle has that row, with finite forces."""
-    found = Faults()
-    check_row(found, cycle, row)
-    found.raise_if_any()
+    faults = Faults()
+    check_row(faults, cycle, row)
+    faults.raise_if_any()

@@ -38,7 +38,7 @@ class ContactProblem:
 
     Attributes
     ----------
-    given : MeshSetup
+    setup : MeshSetup
     bodies : PairCompliance
     force : float
         Torque over the pinion's base radius [N], negative where back flanks bear.
@@ -61,7 +61,7 @@ class ContactProblem:
         Relative, of stiffness and deflection by free ends of the face.
     """
 
-    given: MeshSetup
+    setup: MeshSetup
     bodies: PairCompliance
     force: float
     film: Film | None = None
@@ -92,9 +92,9 @@ class ContactProblem:
         others = [(replace(self, film=film), share) for film, share in self.varied]
         varied = tuple((other._alike(self.bodies, fine), share) for other, share in others)
         fewer = None
-        if self.given.face is not None and self.scatter is not None:
-            few, share = half_as_many(self.given.face)
-            problem = replace(self, given=replace(self.given, face=few))
+        if self.setup.face is not None and self.scatter is not None:
+            few, share = half_as_many(self.setup.face)
+            problem = replace(self, setup=replace(self.setup, face=few))
             fewer = FewerCells(problem._alike(self.bodies, fine), share, self.scatter)
         return MeshArcs(fine, coarse, self.bodies.gain, self.ends_error, varied, fewer)
 
@@ -104,28 +104,28 @@ class ContactProblem:
 
     def _sampler(self, bodies: PairCompliance) -> Sampler:
         known = self.tables
-        tables = EdgeTables(self.given, bodies) if known is None else known.serving(bodies)
+        tables = EdgeTables(self.setup, bodies) if known is None else known.serving(bodies)
 
         def sample(position: Array) -> Sampled:
-            found = solve_contact(
-                self.given.at(position), bodies, np.array([abs(self.force)]), self.film, tables
+            state = solve_contact(
+                self.setup.at(position), bodies, np.array([abs(self.force)]), self.film, tables
             )
-            if why := found.refusal(0):
+            if why := state.refusal(0):
                 raise SolverError(f"between the positions of the mesh cycle {why}")
-            reserve = _reserve(found, abs(self.force), self.given)
-            return Sampled(self._curves(found), reserve, self._pairs(found))
+            reserve = _reserve(state, abs(self.force), self.setup)
+            return Sampled(self._curves(state), reserve, self._pairs(state))
 
         return sample
 
     def _alike(self, bodies: PairCompliance, known: Division) -> Arcs:
         """Arcs with another mesh, whose events are close to those that are known, but for a very near miss."""
-        found = arcs_alike(self._sampler(bodies), NAMES, known, self.given.pitches)
-        return self._divided(bodies).arcs if found is None else found
+        arcs = arcs_alike(self._sampler(bodies), NAMES, known, self.setup.pitches)
+        return self._divided(bodies).arcs if arcs is None else arcs
 
     def _divided(self, bodies: PairCompliance) -> Division:
         """Arcs with a mesh."""
         sample, tolerance = self._sampler(bodies), SAMPLING * self.tolerance
-        return arcs_between_events(sample, NAMES, self._corners(bodies), self.given.pitches, tolerance)
+        return arcs_between_events(sample, NAMES, self._corners(bodies), self.setup.pitches, tolerance)
 
     def _corners(self, bodies: PairCompliance) -> Array:
         """Corners of the geometry, and places near the tips that part what the compliance does there.
@@ -133,7 +133,7 @@ class ContactProblem:
         Nearer to a tip corner than its fit goes, a flank's compliance stays the same; up to there it grows as a
         logarithm, which arcs resolve that grow with the distance.
         """
-        pair, (start, end) = self.given.pair, self.given.ends
+        pair, (start, end) = self.setup.pair, self.setup.ends
         clear = np.array(
             [end - bodies.pinion.rho_range[1], pair.line_of_action - bodies.wheel.rho_range[1] - start]
         )
@@ -142,67 +142,69 @@ class ContactProblem:
             if first > 0.0:
                 steps = first * GRADING ** np.arange(3)
                 places += (at + sign * steps[steps < 0.25 * pair.base_pitch]).tolist()
-        if self.given.removed is not None:
-            places += [*ends_of_flanks(self.given), *starts_of_relief(self.given)]
-        if self.given.moving_contact:  # beyond these ends the flanks' motion stays the same
+        if self.setup.removed is not None:
+            places += [*ends_of_flanks(self.setup), *starts_of_relief(self.setup)]
+        if self.setup.moving_contact:  # beyond these ends the flanks' motion stays the same
             pinion, wheel = bodies.motions
             places += [*pinion.rho_range, *(pair.line_of_action - rho for rho in wheel.rho_range)]
         more = (np.array(places) - pair.points.A) / pair.base_pitch % 1.0
         film = np.zeros(0) if self.corners is None else self.corners
-        return self.given.seen(np.concatenate([self.given.corners, more, film]))
+        return self.setup.seen(np.concatenate([self.setup.corners, more, film]))
 
-    def _pairs(self, found: ContactState) -> Array | None:
+    def _pairs(self, state: ContactState) -> Array | None:
         """Share, normal force, places and line loads of every pair (positions, pairs, kinds), as of `arcs.Arc`.
 
         None without a torque to share.
         """
         if not self.force:
             return None
-        forces = found.share.forces[0, 0] / found.kappa
-        rho = found.flank_rho(self.given.pair, 0)[:, 0]
-        whole = np.stack([found.torques(0)[0] / abs(self.force), forces, *rho], axis=-1)
-        if found.face is None:
+        forces = state.share.forces[0, 0] / state.kappa
+        rho = state.flank_rho(self.setup.pair, 0)[:, 0]
+        whole = np.stack([state.torques(0)[0] / abs(self.force), forces, *rho], axis=-1)
+        if state.face is None:
             return whole
-        cells = found.face.forces[0, 0] / found.kappa[..., None]
-        return np.concatenate([whole, cells * cells.shape[-1] / self.given.pair.face_width], axis=-1)
+        cells = state.face.forces[0, 0] / state.kappa[..., None]
+        return np.concatenate([whole, cells * cells.shape[-1] / self.setup.pair.face_width], axis=-1)
 
-    def _curves(self, found: ContactState) -> Array:
+    def _curves(self, state: ContactState) -> Array:
         """Transmission error, tangent and secant stiffness, moments and their slopes (7, positions)."""
-        share, where, turned = found.share, found.where, found.share.forces[0, 0]
-        size, deflection = abs(self.force), found.deflection(0)[0]
-        moved, tangent = found.turn(0)[0], share.stiffness[0, 0]
+        share, candidates, turned = state.share, state.where, state.share.forces[0, 0]
+        size, deflection = abs(self.force), state.deflection(0)[0]
+        moved, tangent = state.turn(0)[0], share.stiffness[0, 0]
         secant = size / deflection if size else tangent
         if self.film is not None and self.film_yields:
-            rho1 = np.where(where.touchable & ~where.edge, np.clip(where.place, *self.given.ends), np.nan)
-            shares = turned * found.levers / size if size else turned / turned.sum(axis=-1, keepdims=True)
-            if found.face is None:
-                added = film_yielding(self.film, rho1, turned / found.kappa, shares)
+            rho1 = np.where(
+                candidates.touchable & ~candidates.edge, np.clip(candidates.place, *self.setup.ends), np.nan
+            )
+            shares = turned * state.levers / size if size else turned / turned.sum(axis=-1, keepdims=True)
+            if state.face is None:
+                added = film_yielding(self.film, rho1, turned / state.kappa, shares)
             else:
-                forces = found.face.forces[0, 0] / found.kappa[..., None]
+                forces = state.face.forces[0, 0] / state.kappa[..., None]
                 added = yielding_over_face(self.film, rho1, forces, shares)
             secant = size / (size / secant + added) if size else secant
-        if self.given.back:
-            moved = -(self.given.pair.backlash + moved)
-        lost, further = (one[:, 0] for one in found.lever_loss(0))
-        other, behind = found.opposite, [one[:, 0] for one in found.lever_loss_behind(0)]
-        moments = found.moments(turned, None if other is None else other.forces[0, 0], lost, behind[0])
+        if self.setup.back:
+            moved = -(self.setup.pair.backlash + moved)
+        lost, further = (loss[:, 0] for loss in state.lever_loss(0))
+        other, behind = state.opposite, [loss[:, 0] for loss in state.lever_loss_behind(0)]
+        moments = state.moments(turned, None if other is None else other.forces[0, 0], lost, behind[0])
         moments = moments / size if size else np.zeros_like(moments)
-        slopes = found.moments(
+        slopes = state.moments(
             share.pair_stiffness[0, 0],
             None if other is None else other.pair_stiffness[0, 0],
             further,
             behind[1],
         )
         curves = np.stack([moved, tangent, secant, *moments, *slopes])
-        return curves if self.turn is None else _less(curves, self.force, self.turn, self.given.pair.tight)
+        return curves if self.turn is None else _less(curves, self.force, self.turn, self.setup.pair.tight)
 
 
-def measured_less(found: MeshArcs, force: float, turn: Array, pressed: bool = False) -> MeshArcs:
+def measured_less(mesh_arcs: MeshArcs, force: float, turn: Array, pressed: bool = False) -> MeshArcs:
     """Arcs with a turn of pinion and wheel per force (2,) [m/N] left out of the deflection (``fem.pair.references``).
 
     Parameters
     ----------
-    found : MeshArcs
+    mesh_arcs : MeshArcs
         By finite elements.
     force : float
         [N]
@@ -212,17 +214,17 @@ def measured_less(found: MeshArcs, force: float, turn: Array, pressed: bool = Fa
     """
 
     def less(arcs: Arcs) -> Arcs:
-        every = tuple(replace(arc, values=_less(arc.values, force, turn, pressed)) for arc in arcs.arcs)
-        return replace(arcs, arcs=every)
+        shifted = tuple(replace(arc, values=_less(arc.values, force, turn, pressed)) for arc in arcs.arcs)
+        return replace(arcs, arcs=shifted)
 
-    before = None if found.before is None else less(found.before)
-    division = replace(found.division, arcs=less(found.division.arcs))
+    before = None if mesh_arcs.before is None else less(mesh_arcs.before)
+    division = replace(mesh_arcs.division, arcs=less(mesh_arcs.division.arcs))
     return replace(
-        found,
+        mesh_arcs,
         division=division,
         before=before,
-        varied=tuple((less(arcs), share) for arcs, share in found.varied),
-        fewer=None if found.fewer is None else replace(found.fewer, arcs=less(found.fewer.arcs)),
+        varied=tuple((less(arcs), share) for arcs, share in mesh_arcs.varied),
+        fewer=None if mesh_arcs.fewer is None else replace(mesh_arcs.fewer, arcs=less(mesh_arcs.fewer.arcs)),
     )
 
 
@@ -237,26 +239,26 @@ def _less(curves: Array, force: float, turn: Array, pressed: bool) -> Array:
     return np.stack([moved - shift, tangent / slope, secant, *moments, *(slopes / slope)])
 
 
-def _reserve(found: ContactState, force: float, given: MeshSetup) -> Array:
+def _reserve(state: ContactState, force: float, setup: MeshSetup) -> Array:
     """Reserves of contacts by force or gap, and of the nearest pair by its lead over the next one.
 
     Which pair is nearest without load changes between pairs on the path only where flanks deviate.
     """
-    size = float(np.mean(found.share.transmission_error))
-    loads, left = found.share.forces[0, 0], found.open[0, 0]
-    if given.both and found.opposite is not None:
+    size = float(np.mean(state.share.transmission_error))
+    loads, gaps = state.share.forces[0, 0], state.open[0, 0]
+    if setup.both and state.opposite is not None:
         # both sides may be pressed together without a torque, or with next to none
-        loads = np.concatenate([loads, found.opposite.forces[0, 0]], axis=-1)
-        left = np.concatenate([left, found.opposite.open[0, 0]], axis=-1)
+        loads = np.concatenate([loads, state.opposite.forces[0, 0]], axis=-1)
+        gaps = np.concatenate([gaps, state.opposite.open[0, 0]], axis=-1)
         force, size = (
             float(loads.sum(axis=-1).mean()),
-            float(loads.sum(axis=-1).mean() / np.mean(found.share.stiffness)),
+            float(loads.sum(axis=-1).mean() / np.mean(state.share.stiffness)),
         )
-    bears = np.where(loads > 0.0, loads / force, -np.maximum(left, 0.0) / size - 1e-300)
-    if given.even:
+    bears = np.where(loads > 0.0, loads / force, -np.maximum(gaps, 0.0) / size - 1e-300)
+    if setup.even:
         return np.asarray(bears)
     # flanks that both fit touch together: what is less than rounding is no difference
-    return np.concatenate([bears, _nearest(found.where.gap[0]) / size + 1e-10], axis=1)
+    return np.concatenate([bears, _nearest(state.where.gap[0]) / size + 1e-10], axis=1)
 
 
 def _nearest(gap: Array) -> Array:

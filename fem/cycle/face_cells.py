@@ -45,4 +45,4 @@ class FaceCells:
     @property
     def cells(self) -> dict[str, Any]:
         """These alone, as keyword arguments of another record of the same cells."""
-        return {one.name: getattr(self, one.name) for one in fields(FaceCells)}
+        return {field.name: getattr(self, field.name) for field in fields(FaceCells)}

@@ -144,50 +144,50 @@ class FaceLoads(FaceCells):
         return float(np.mean(np.any(self.line_load > 0.0, axis=(0, 1))))
 
 
-def face_loads(given: MeshSetup, contact: ContactState, number: int, plane: str) -> FaceLoads | None:
+def face_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str) -> FaceLoads | None:
     """Line loads of one torque of a solution; None where the face has no cells.
 
     Parameters
     ----------
-    given : MeshSetup
+    setup : MeshSetup
     contact : ContactState
     number : int
         Of the torque.
     plane : {"strain", "stress"}
     """
     over = contact.face
-    if over is None or given.face is None:
+    if over is None or setup.face is None:
         return None
-    pair, cells = given.pair, given.face.cells
+    pair, cells = setup.pair, setup.face.cells
     forces = (over.forces[number] / contact.kappa[..., None]).reshape(-1, *over.forces.shape[-2:])
     factors = face_load_factors(forces)
-    where, (rho1, rho2) = contact.where, contact.where.rho
-    radius = np.where(where.touchable & ~where.edge, rho1 * rho2 / (rho1 + rho2), np.nan)
-    travel = np.where(where.touchable, where.place - pair.points.A, np.nan)
+    candidates, (rho1, rho2) = contact.where, contact.where.rho
+    radius = np.where(candidates.touchable & ~candidates.edge, rho1 * rho2 / (rho1 + rho2), np.nan)
+    travel = np.where(candidates.touchable, candidates.place - pair.points.A, np.nan)
     return FaceLoads(
-        face_position=given.face.middles(pair.face_width),
-        travel=np.tile(travel, (given.pitches, 1)),
+        face_position=setup.face.middles(pair.face_width),
+        travel=np.tile(travel, (setup.pitches, 1)),
         line_load=forces * cells / pair.face_width,
         pair=pair,
         face_load_factor=factors,
-        setting=given.face,
+        setting=setup.face,
         plane=plane,
-        curvature_radius=np.tile(radius, (given.pitches, 1)),
+        curvature_radius=np.tile(radius, (setup.pitches, 1)),
         gap=np.maximum(over.left[number], 0.0).reshape(forces.shape),
         error=float(over.errors.factor[number]),
         line_load_error=float(over.errors.line_load[number]),
-        **_shafts(given, over, number),
+        **_shafts(setup, over, number),
     )
 
 
-def _shafts(given: MeshSetup, over: FaceShare, number: int) -> dict[str, Any]:
+def _shafts(setup: MeshSetup, over: FaceShare, number: int) -> dict[str, Any]:
     """What the shafts do, as fields of the record."""
     if over.shafts is None:
         return {"shaft_misalignment": np.zeros((2, over.bent(number).size))}
     held, error = over.shafts.at(number), over.errors
-    sign = -1.0 if given.back else 1.0
+    sign = -1.0 if setup.back else 1.0
     return {
-        "shaft_misalignment": held.tilt.T * given.pair.face_width,
+        "shaft_misalignment": held.tilt.T * setup.pair.face_width,
         "shaft_deflection": held.deflection.T,
         "shaft_transmission_error": sign * held.deflection.sum(axis=-1),
         "tilt_transmission_error": sign * held.tilt_touch,

@@ -142,7 +142,7 @@ def mesh_cycle(
     >>> round(cycle.mean_stiffness / 40e-3 / 1e9, 1)  # N/(mm um)
     24.3
     """
-    given = MeshSetup(
+    setup = MeshSetup(
         pair,
         positions,
         beyond_path,
@@ -155,77 +155,77 @@ def mesh_cycle(
         base_pitch_difference=base_pitch_difference,
         face=face_setting(pair, alignment, cells, face_model, shafts),
     )
-    _check(given, torque, compliance, film, reference, plane)
+    _check(setup, torque, compliance, film, reference, plane)
     watch = Stopwatch()
     bodies = (
         compliance if compliance is not None else _compliance(pair, tolerance, plane, tip_edges=beyond_path)
     )
     ready = watch.seconds
-    tables = edge_tables(given, bodies)
-    found: dict[int, tuple[MeshSetup, ContactState, int]] = {}
+    tables = edge_tables(setup, bodies)
+    solutions: dict[int, tuple[MeshSetup, ContactState, int]] = {}
     for back, chosen in ((False, torque > 0.0), (True, torque < 0.0), (False, torque == 0.0)):
         numbers = np.flatnonzero(chosen)
         if numbers.size:
             asked = np.abs(torque[numbers]) / pair.base_radii[0]
-            side = replace(given, back=back)
+            side = replace(setup, back=back)
             for contact, which in _solved(side, bodies, asked, film, tables):
-                found.update({int(numbers[k]): (side, contact, n) for n, k in enumerate(which)})
+                solutions.update({int(numbers[k]): (side, contact, n) for n, k in enumerate(which)})
     before = Cost(0.0) if compliance is not None else bodies.cost
     cost = Cost(
         watch.seconds,
         bodies.cost.unknowns,
-        max(contact.share.iterations for _, contact, _ in found.values()),
+        max(contact.share.iterations for _, contact, _ in solutions.values()),
         parts={**before.parts, "contact": watch.seconds - ready},
         counts=bodies.cost.counts,
     )
     cycles = tuple(
         cycle_of(side, bodies, film, tolerance, tables, contact, number, float(torque[k]), cost)
-        for k, (side, contact, number) in sorted(found.items())
+        for k, (side, contact, number) in sorted(solutions.items())
     )
     named = reference or default_reference(bodies)
     return cycles if named == "bore" else tuple(cycle.against(named) for cycle in cycles)
 
 
 def _solved(
-    given: MeshSetup, bodies: PairCompliance, force: Array, film: Film | None, tables: EdgeTables
+    setup: MeshSetup, bodies: PairCompliance, force: Array, film: Film | None, tables: EdgeTables
 ) -> list[tuple[ContactState, list[int]]]:
     """Solutions for forces (torques,) [N], each with separate numbers: one by one where one does not settle."""
-    contact, every = solve_contact(given, bodies, force, film, tables), list(range(len(force)))
-    if contact.settled or len(every) == 1:
-        return [(contact, every)]
-    return [(solve_contact(given, bodies, force[n : n + 1], film, tables), [n]) for n in every]
+    contact, numbers = solve_contact(setup, bodies, force, film, tables), list(range(len(force)))
+    if contact.settled or len(numbers) == 1:
+        return [(contact, numbers)]
+    return [(solve_contact(setup, bodies, force[n : n + 1], film, tables), [n]) for n in numbers]
 
 
 def _check(
-    given: MeshSetup,
+    setup: MeshSetup,
     torque: Array,
     compliance: PairCompliance | None,
     film: Film | None,
     reference: str | None,
     plane: str,
 ) -> None:
-    found = Faults()
-    ready = found.instance("compliance", compliance, PairCompliance, "as of fem.compliance", optional=True)
+    faults = Faults()
+    ready = faults.instance("compliance", compliance, PairCompliance, "as of fem.compliance", optional=True)
     known = compliance if ready else None
-    if given.face is not None and (plane if known is None else known.plane) != "strain":
-        found.add("plane", plane, 'must be "strain" where the face has cells', "leave plane out")
+    if setup.face is not None and (plane if known is None else known.plane) != "strain":
+        faults.add("plane", plane, 'must be "strain" where the face has cells', "leave plane out")
     if reference is not None:
-        found.choice("reference", reference, REFERENCES)
+        faults.choice("reference", reference, REFERENCES)
     if not torque.size:
-        found.add("torque", "none", "must be at least one", "give torques in N m")
-    for one in torque.tolist():
-        found.number("torque", one, TORQUE)
-    if known is not None and known.pair != given.pair:
-        found.add("compliance", "of another pair", "must be of this pair", "compute it anew")
-    found.number("base_pitch_difference", given.base_pitch_difference, Limit(unit="m", remedy="give metres"))
+        faults.add("torque", "none", "must be at least one", "give torques in N m")
+    for moment in torque.tolist():
+        faults.number("torque", moment, TORQUE)
+    if known is not None and known.pair != setup.pair:
+        faults.add("compliance", "of another pair", "must be of this pair", "compute it anew")
+    faults.number("base_pitch_difference", setup.base_pitch_difference, Limit(unit="m", remedy="give metres"))
     if film is not None and not callable(film):
-        found.add("film", shorten(film), "must be a function of places and forces", "see fem.Film")
-    given.check(found)
-    found.raise_if_any()
+        faults.add("film", shorten(film), "must be a function of places and forces", "see fem.Film")
+    setup.check(faults)
+    faults.raise_if_any()
     if np.any(torque == 0.0):  # needs a setting without faults
-        play = float(np.max(contact_candidates(given).back_gap))
+        play = float(np.max(contact_candidates(setup).back_gap))
         if play >= 0.0:
             allowed = f"must not be 0 where no flank bears: there is backlash of {1e6 * play:.4g} um at some positions"
             remedy = "leave it out, or give less backlash; unloaded_transmission_error is that of rigid gears"
-            found.add("torque", "0", allowed, remedy)
-    found.raise_if_any()
+            faults.add("torque", "0", allowed, remedy)
+    faults.raise_if_any()

@@ -29,9 +29,9 @@ class LoadedContacts:
 
     Attributes
     ----------
-    given : MeshSetup
+    setup : MeshSetup
     bodies : PairCompliance
-    where : ContactCandidates
+    candidates : ContactCandidates
     force : (..., pairs) array, or (cells, ..., pairs) array
         Forces times their levers over the base radius [N]; of whole faces at the line loads of the cells.
     approach : (...) array
@@ -42,9 +42,9 @@ class LoadedContacts:
         The flanks on the other side and their forces, where they bear.
     """
 
-    given: MeshSetup
+    setup: MeshSetup
     bodies: PairCompliance
-    where: ContactCandidates
+    candidates: ContactCandidates
     force: Array
     approach: Array
     load: float
@@ -61,21 +61,21 @@ class LoadedContacts:
         With what the motion changes in all, by solutions with and without it: beside the corners, and where flanks on
         both sides bear, that is more than along the flanks.
         """
-        moving, found = self.given.moving_contact, 0.0
+        moving, error = self.setup.moving_contact, 0.0
         if self.behind is not None:
-            where, force = self.behind
-            law = np.abs(self._moves(where).thrust(force, 1)[0])
+            candidates, force = self.behind
+            law = np.abs(self._moves(candidates).thrust(force, 1)[0])
             borne = self.force.sum(axis=-1) * self.approach
-            found = float(np.max(np.sum(force * law, axis=-1) / borne))
-        return found + model_error(
-            self._moves(self.where), self.force, self.approach, moving, self._changed()
+            error = float(np.max(np.sum(force * law, axis=-1) / borne))
+        return error + model_error(
+            self._moves(self.candidates), self.force, self.approach, moving, self._changed()
         )
 
-    def _moves(self, where: ContactCandidates) -> ContactMoves:
-        moves = contact_moves(self.bodies, where)
-        if not self.given.beyond_path:
+    def _moves(self, candidates: ContactCandidates) -> ContactMoves:
+        moves = contact_moves(self.bodies, candidates)
+        if not self.setup.beyond_path:
             return moves
-        ends = contact_moves(self.bodies, where, corners=True)
+        ends = contact_moves(self.bodies, candidates, corners=True)
         return replace(moves, cubic=ends.cubic, local=ends.local)
 
     def _changed(self) -> float:
@@ -84,22 +84,22 @@ class LoadedContacts:
         Half the change of the mean tangent, if that is more: near the end of the first order, where strained teeth
         stiffen without bound, it grows first.
         """
-        both = self.behind is not None
-        if not both and not (self.given.beyond_path and self.load):
+        both_sides = self.behind is not None
+        if not both_sides and not (self.setup.beyond_path and self.load):
             return 0.0
-        force, found = np.array([abs(self.load)]), []
+        force, shares = np.array([abs(self.load)]), []
         for moving in (False, True):
-            given = replace(self.given, moving_contact=moving, pitches=1, both=both)
-            tables = EdgeTables(given, self.bodies)
-            if both:
-                solution = solve_contact(given, self.bodies, force, None, tables)
+            setup = replace(self.setup, moving_contact=moving, pitches=1, both=both_sides)
+            tables = EdgeTables(setup, self.bodies)
+            if both_sides:
+                solution = solve_contact(setup, self.bodies, force, None, tables)
             else:
-                flanks = loaded_flanks(given, self.bodies, None, REACHES[0], float(force[0]), tables)
-                solution = solve_one_side(given, self.bodies, force, flanks, tables)
+                flanks = loaded_flanks(setup, self.bodies, None, REACHES[0], float(force[0]), tables)
+                solution = solve_one_side(setup, self.bodies, force, flanks, tables)
             if not solution.settled:
                 return 1.0
-            found.append(solution.share)
-        stays, moves = found
+            shares.append(solution.share)
+        stays, moves = shares
         tangent = abs(float(moves.stiffness.mean() / stays.stiffness.mean()) - 1)
         deflection = np.abs(moves.transmission_error / stays.transmission_error - 1)
         return max(float(np.max(deflection)), 0.5 * tangent)

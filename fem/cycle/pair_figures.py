@@ -45,8 +45,8 @@ class PairFigures:
     @described("N", "position")
     def separating_force(self) -> Array:
         """Force of the flanks on both sides that pushes the gears apart, along the line of centres."""
-        both = self.forces.sum(axis=-1) + self.opposite_force
-        return np.asarray(both * np.sin(self.pair.working_pressure_angle))
+        force = self.forces.sum(axis=-1) + self.opposite_force
+        return np.asarray(force * np.sin(self.pair.working_pressure_angle))
 
     @described("N", "position")
     def bearing_force(self) -> Array:
@@ -137,8 +137,8 @@ class PairFigures:
         """Net normal force by its levers about both gears, and its slope by D (2, n)."""
         lever = np.where(self.forces > 0, self.candidates.lever, 0.0)
         sums = [
-            np.sum((lever - np.where(self.forces > 0, lost, 0.0)) * one, axis=-1)
-            for lost, one in (
+            np.sum((lever - np.where(self.forces > 0, lost, 0.0)) * per_pair, axis=-1)
+            for lost, per_pair in (
                 (self.lever_loss, self.forces),
                 (self.further_lever_loss, self.pair_stiffness),
             )
@@ -146,9 +146,9 @@ class PairFigures:
         if self.opposite is not None:
             other = self.opposite
             bears = other.forces > 0
-            for total, one, lost in (
+            for total, per_pair, lost in (
                 (sums[0], other.forces, other.lever_loss),
                 (sums[1], other.pair_stiffness, other.further_lever_loss),
             ):
-                total -= np.sum(np.where(bears, other.lever - lost, 0.0) * one, axis=-1)
+                total -= np.sum(np.where(bears, other.lever - lost, 0.0) * per_pair, axis=-1)
         return sums[0], sums[1]

@@ -203,9 +203,9 @@ class MeshCycle(PairFigures, MeshFigures):
         base.InputError
             No such reference, a negative inertia, or a compliance without coupling.
         """
-        found = Faults()
-        check_reference(found, self.reference, reference, bore_inertia)
-        found.raise_if_any()
+        faults = Faults()
+        check_reference(faults, self.reference, reference, bore_inertia)
+        faults.raise_if_any()
         less = turns(self.pair, self.supports, self.reference, self.bore_inertia)
         less = less - turns(self.pair, self.supports, reference, bore_inertia)
         moments, slopes = self._moments()
@@ -275,11 +275,11 @@ class MeshCycle(PairFigures, MeshFigures):
         """
         if self.loaded is None:
             return float("nan")
-        found, held = self.loaded.model_error(), self.loaded.reference
+        error, held = self.loaded.model_error(), self.loaded.reference
         if held in ("", self.reference):
-            return found
+            return error
         # of a smaller D the same error is a larger part
-        return found * float(np.max(self.secant_stiffness / self.against(held).secant_stiffness))
+        return error * float(np.max(self.secant_stiffness / self.against(held).secant_stiffness))
 
     @described("m", "position", shown="um", no_error=EXACT)
     def unloaded_transmission_error(self) -> Array:

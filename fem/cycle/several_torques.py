@@ -43,9 +43,9 @@ def one_or_several(
     def either(
         pair: GearPair, torque: float | Sequence[float] | Array, *args: Options.args, **kwargs: Options.kwargs
     ) -> MeshCycle | tuple[MeshCycle, ...]:
-        with Faults() as found:
-            check_pair(found, pair)
-            torques = numbers_of(found, "torque", torque, "give N m")
+        with Faults() as faults:
+            check_pair(faults, pair)
+            torques = numbers_of(faults, "torque", torque, "give N m")
         cycles = sweep(pair, np.atleast_1d(torques).ravel(), *args, **kwargs)
         return cycles if np.ndim(torque) else cycles[0]
 

@@ -32,7 +32,7 @@ class _Front:
     """One group: unknowns that it eliminates and those that it leaves, L^-1 and W."""
 
     done: Integers
-    left: Integers
+    shared: Integers
     inverse: Array
     coupling: Array
 
@@ -84,7 +84,7 @@ class Condensation:
         for front in self.fronts:
             own = front.inverse @ reduced[front.done]
             reduced[front.done] = own
-            reduced[front.left] -= front.coupling.T @ own
+            reduced[front.shared] -= front.coupling.T @ own
             work += np.einsum("ul,ul->l", own, own)
         return reduced, reduced[self.cut] * self.modulus, work * self.modulus
 
@@ -103,7 +103,7 @@ class Condensation:
         moved = np.zeros((unknowns, cuts.shape[1]))
         moved[self.cut] = cuts
         for front in reversed(self.fronts):
-            own = -(front.coupling @ moved[front.left])
+            own = -(front.coupling @ moved[front.shared])
             if reduced is not None:
                 own += reduced[front.done]
             moved[front.done] = front.inverse.T @ own
@@ -156,54 +156,54 @@ def condensation(
     number = np.empty(len(points), dtype=np.int64)  # of each node in the group at work
     fronts: list[_Front] = []
 
-    def few(some: Integers) -> _Group:
-        times = np.bincount(triangles[some].ravel())
+    def few(members: Integers) -> _Group:
+        times = np.bincount(triangles[members].ravel())
         nodes = np.flatnonzero(times)
         order, ends = _order(users[nodes], times[nodes])
         nodes = nodes[order]
         number[nodes] = np.arange(len(nodes))
-        unknown = unknowns_of(number[triangles[some].ravel()], components).reshape(len(some), -1)
+        unknown = unknowns_of(number[triangles[members].ravel()], components).reshape(len(members), -1)
         size = components * len(nodes)
         place = (unknown[:, :, None] * size + unknown[:, None, :]).ravel()
-        given = elements(some) if callable(elements) else elements[some]
-        summed = np.bincount(place, given.ravel(), size * size)
+        element_matrices = elements(members) if callable(elements) else elements[members]
+        summed = np.bincount(place, element_matrices.ravel(), size * size)
         matrix = np.asarray(summed, dtype=float).reshape(size, size)
         return eliminated(nodes, times[nodes], matrix, ends)
 
-    def both(first: _Group, second: _Group) -> _Group:
+    def merged(first: _Group, second: _Group) -> _Group:
         times = np.zeros(len(points), dtype=np.int64)
-        for one in (first, second):
-            times[one.nodes] += one.used
+        for part in (first, second):
+            times[part.nodes] += part.used
         nodes = np.flatnonzero(times)
         order, ends = _order(users[nodes], times[nodes])
         nodes = nodes[order]
         number[nodes] = np.arange(len(nodes))
         matrix = np.zeros((components * len(nodes), components * len(nodes)))
-        for one in (first, second):
-            unknown = unknowns_of(number[one.nodes], components)
+        for part in (first, second):
+            unknown = unknowns_of(number[part.nodes], components)
             # columns, then whole rows: twice as fast as both at once
             rows = np.zeros((len(unknown), len(matrix)))
-            rows[:, unknown] = one.stiffness
+            rows[:, unknown] = part.stiffness
             matrix[unknown] += rows
         return eliminated(nodes, times[nodes], matrix, ends)
 
     def eliminated(nodes: Integers, used: Integers, matrix: Array, ends: tuple[int, int]) -> _Group:
         first, last = (components * end for end in ends)
-        done, left = slice(first), slice(first, last)
+        done, rest = slice(first), slice(first, last)
         inverse = _inverse_of_factor(matrix[done, done])
-        coupling = inverse @ matrix[done, left]
+        coupling = inverse @ matrix[done, rest]
         kept = nodes[ends[0] : ends[1]]
-        own, shared = (unknowns_of(some, components) for some in (nodes[: ends[0]], kept))
+        own, shared = (unknowns_of(group_nodes, components) for group_nodes in (nodes[: ends[0]], kept))
         fronts.append(_Front(own, shared, inverse, coupling))
-        return _Group(kept, used[ends[0] : ends[1]], matrix[left, left] - coupling.T @ coupling)
+        return _Group(kept, used[ends[0] : ends[1]], matrix[rest, rest] - coupling.T @ coupling)
 
-    def group(some: Integers) -> _Group:
-        if len(some) <= max(LEAST, 2 * FEW // components):
-            return few(some)
-        place = middles[some]
+    def group(members: Integers) -> _Group:
+        if len(members) <= max(LEAST, 2 * FEW // components):
+            return few(members)
+        place = middles[members]
         along = place[:, int(np.argmax(np.ptp(place, axis=0)))]
-        order = np.argpartition(along, len(some) // 2)
-        return both(group(some[order[: len(some) // 2]]), group(some[order[len(some) // 2 :]]))
+        order = np.argpartition(along, len(members) // 2)
+        return merged(group(members[order[: len(members) // 2]]), group(members[order[len(members) // 2 :]]))
 
     whole = group(np.arange(len(triangles)))
     number[whole.nodes] = np.arange(len(whole.nodes))

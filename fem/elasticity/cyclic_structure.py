@@ -116,8 +116,8 @@ def cyclic_structure(stiffness: Array, links: int) -> CyclicStructure:
     from_right, from_left = middle, middle  # with everything on one side left out
     size = np.abs(middle).max()
     for _ in range(STEPS):
-        both = np.linalg.solve(diagonal, np.concatenate([to_last, to_next], axis=1))
-        by_last, by_next = both[:, :n], both[:, n:]
+        by_neighbours = np.linalg.solve(diagonal, np.concatenate([to_last, to_next], axis=1))
+        by_last, by_next = by_neighbours[:, :n], by_neighbours[:, n:]
         over_right, over_left = to_next @ by_last, to_last @ by_next
         from_right, from_left = from_right - over_right, from_left - over_left
         diagonal = diagonal - over_right - over_left

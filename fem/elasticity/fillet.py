@@ -191,12 +191,12 @@ def fillet_edges(mesh: SectorMesh, profile: ToothProfile, line: FilletLine, side
         else:
             arcs.append(line.foot + np.interp(place, t, along))
         edges.append(mesh.facets[name])
-    both = np.concatenate(arcs)
-    arc = both.ravel()
+    gauss_arcs = np.concatenate(arcs)
+    arc = gauss_arcs.ravel()
     order = np.argsort(arc)
     weights = np.zeros((len(line.arc), len(arc)))
     weights[:, order] = local_cubic(arc[order], line.arc)
-    return FilletEdges(np.concatenate(edges), np.sign(both[:, 1] - both[:, 0]), weights)
+    return FilletEdges(np.concatenate(edges), np.sign(gauss_arcs[:, 1] - gauss_arcs[:, 0]), weights)
 
 
 def fillet_stress_matrix(

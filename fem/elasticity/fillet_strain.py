@@ -73,8 +73,8 @@ def _of_side(mesh: SectorMesh, profile: ToothProfile, line: FilletLine, side: st
     speed = np.linalg.norm(np.einsum("qk,eka->eqa", rises, mesh.points[edges.nodes]), axis=2)
     slopes = rises * (edges.outward[:, None] / speed)[..., None]
     value, slope = (
-        csr_array(weights @ _scattered(edges.nodes, some, count))
-        for some in (np.broadcast_to(values, slopes.shape), slopes)
+        csr_array(weights @ _scattered(edges.nodes, factors, count))
+        for factors in (np.broadcast_to(values, slopes.shape), slopes)
     )
     tangents = line.side(side == "left")[1]
     moved = sum(

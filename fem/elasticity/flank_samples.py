@@ -65,11 +65,11 @@ def sampled(ring: Ring, rho: Array, reach: int = 1, flank: str = "left") -> Flan
     return samples_of(flank_loads(ring, rho, flank), reach, flank)
 
 
-def samples_of(every: LineLoads, reach: int = 1, flank: str = "left") -> FlankSamples:
+def samples_of(all_loads: LineLoads, reach: int = 1, flank: str = "left") -> FlankSamples:
     """As ``sampled``, by ``flank_loads``."""
-    count = len(every.at.rho) - 1
-    loads = every.part(slice(count))
+    count = len(all_loads.at.rho) - 1
+    loads = all_loads.part(slice(count))
     teeth = [tooth if flank == "left" else -tooth for tooth in range(1, reach + 1)]
-    there = np.array([loads.on_neighbour(tooth, every) for tooth in teeth])
+    there = np.array([loads.on_neighbour(tooth, all_loads) for tooth in teeth])
     cross, corner = np.swapaxes(there[:, :count], 1, 2), there[:, count]
     return FlankSamples(loads.at.rho, loads.regular_at_load(), cross, corner)

@@ -72,11 +72,11 @@ class HalfFace:
         piece = np.clip(np.searchsorted(self.ends, z) - 1, 0, len(self.ends) - 2)
         start, long = self.ends[piece], np.diff(self.ends)[piece]
         local = 2 * (z - start) / long - 1
-        found = np.zeros((2, len(self.mass), len(z)))
+        values_and_slopes = np.zeros((2, len(self.mass), len(z)))
         rows, columns = ORDER * piece[:, None] + np.arange(ORDER + 1), np.arange(len(z))[:, None]
-        found[0, rows, columns] = _values(local)
-        found[1, rows, columns] = _slopes(local) * (2 / long)[:, None]
-        return found
+        values_and_slopes[0, rows, columns] = _values(local)
+        values_and_slopes[1, rows, columns] = _slopes(local) * (2 / long)[:, None]
+        return values_and_slopes
 
     def means(self, edges: Array) -> tuple[Array, Array]:
         """Means over cells of every function, and of its opposite on the other half.

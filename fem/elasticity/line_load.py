@@ -48,16 +48,16 @@ class FlankPoints:
     weights: Array
     lean: float | Array = 0.0
 
-    def part(self, some: slice) -> FlankPoints:
+    def part(self, subset: slice) -> FlankPoints:
         """Take some of the points."""
         return replace(
             self,
-            rho=self.rho[some],
-            points=self.points[some],
-            inward=self.inward[some],
-            nodes=self.nodes[some],
-            weights=self.weights[some],
-            lean=self.leans[some],
+            rho=self.rho[subset],
+            points=self.points[subset],
+            inward=self.inward[subset],
+            nodes=self.nodes[subset],
+            weights=self.weights[subset],
+            lean=self.leans[subset],
         )
 
     def towards_tip(self) -> FlankPoints:
@@ -96,8 +96,8 @@ def flank_points(mesh: SectorMesh, rho: Array, flank: str = "left") -> FlankPoin
     slack = 1e-9 * high
     if not np.all((rho >= low - slack) & (rho <= high + slack)):
         allowed = f"must be {low:g} to {high:g} m, the involute"
-        given = f"{rho.min():g} to {rho.max():g} m"
-        raise InputError([Fault("rho", given, allowed, "keep loads on the flank")])
+        span = f"{rho.min():g} to {rho.max():g} m"
+        raise InputError([Fault("rho", span, allowed, "keep loads on the flank")])
     rho = np.clip(rho, low, high)
     order = np.argsort(t.min(axis=1))
     which = order[np.clip(np.searchsorted(t.min(axis=1)[order], rho, side="right") - 1, 0, len(t) - 1)]
@@ -116,7 +116,7 @@ def joined(*points: FlankPoints) -> FlankPoints:
     """Several points' lists one after the other."""
     return FlankPoints(
         *(
-            np.concatenate([getattr(some, name) for some in points])
+            np.concatenate([getattr(part, name) for part in points])
             for name in ("rho", "points", "inward", "nodes", "weights", "leans")
         )
     )
@@ -150,14 +150,14 @@ class LineLoads:
         down = self.ring.condensed.down(np.zeros_like(self.cut_force), self.reduced)
         return np.asarray(down[self.ring.inner])
 
-    def part(self, some: slice) -> LineLoads:
+    def part(self, subset: slice) -> LineLoads:
         """Some of the loads."""
         return replace(
             self,
-            at=self.at.part(some),
-            cut_force=self.cut_force[:, some],
-            reduced=self.reduced[:, some],
-            held=self.held[some],
+            at=self.at.part(subset),
+            cut_force=self.cut_force[:, subset],
+            reduced=self.reduced[:, subset],
+            held=self.held[subset],
         )
 
     def regular_at_load(self) -> Array:
@@ -174,25 +174,25 @@ class LineLoads:
         observed = self if places is None else places
         return np.asarray(observed.cut_force.T @ self.ring.interfaces(self.cut_force, tooth))
 
-    def on_tooth(self, tooth: int, where: FlankPoints) -> Array:
+    def on_tooth(self, tooth: int, points: FlankPoints) -> Array:
         """Displacement along the points' directions on another tooth's flank: (points, loads).
 
         On tooth 0 itself this is the regular part u_r, to which ``singular`` has to be added.
         """
-        nodes, local = np.unique(where.nodes, return_inverse=True)
+        nodes, local = np.unique(points.nodes, return_inverse=True)
         # no point of a flank is on a cut or on the hub
         asked = np.searchsorted(self.ring.inner, (2 * nodes[:, None] + np.arange(2)).ravel())
         moved = self.inner(tooth)[asked].reshape(len(nodes), 2, -1)
-        return replace(where, nodes=local.reshape(where.nodes.shape)).component(moved)
+        return replace(points, nodes=local.reshape(points.nodes.shape)).component(moved)
 
-    def singular(self, where: FlankPoints) -> Array:
+    def singular(self, points: FlankPoints) -> Array:
         """u_s along the directions of points of tooth 0 (points, loads); zero at the loads themselves."""
         at, law, length = self.at, self.ring.law, self.ring.mesh.module
-        there = where.points[:, None]
+        there = points.points[:, None]
         apart = np.any(there != at.points, axis=2)
         there = np.where(apart[..., None], there, at.points + length * at.inward)
         u = flamant.displacement(there, at.points, at.inward, law, length, at.lean)
-        return np.asarray(np.where(apart, np.sum(u * where.direction[:, None], axis=2), 0.0))
+        return np.asarray(np.where(apart, np.sum(u * points.direction[:, None], axis=2), 0.0))
 
     def inner(self, tooth: int) -> Array:
         """Inner unknowns of a tooth's sector: (unknowns, loads)."""
@@ -229,7 +229,7 @@ def line_loads(ring: Ring, at: FlankPoints) -> LineLoads:
 def _free_edges(mesh: SectorMesh) -> tuple[Integers, Array]:
     """Free edges (k, 3) with their thickness over the face width; a step counts with that by which it changes."""
     edges = [*mesh.free.values()]
-    thickness = [np.ones(len(some)) for some in edges]
+    thickness = [np.ones(len(line)) for line in edges]
     outside = 1.0
     for name, (_, below) in zip(STEPS, mesh.steps, strict=False):
         edges.append(mesh.facets[name])

@@ -174,14 +174,14 @@ def _near(ring: Ring, moved: Array, place: tuple[Array, Array], half_width: floa
     """Integrals (3,) over the triangles that are divided for the integration, displaced (nodes, 2, 1)."""
     mesh, total = ring.mesh, np.zeros(3)
     for depth in range(1, DEEPEST + 1):
-        some = mesh.triangles[level == depth]
-        if not len(some):
+        triangles = mesh.triangles[level == depth]
+        if not len(triangles):
             continue
         xi, eta, weight = _quadrature(depth)
-        gradient, area = physical_gradients(mesh.points, some, xi, eta)
+        gradient, area = physical_gradients(mesh.points, triangles, xi, eta)
         area *= mesh.thickness[level == depth, None]
-        strain, turn = _strained(_slopes(gradient, moved, some))
-        own, own_turn = _pressed(_points(mesh.points[some], xi, eta), place, half_width, ring.law)
+        strain, turn = _strained(_slopes(gradient, moved, triangles))
+        own, own_turn = _pressed(_points(mesh.points[triangles], xi, eta), place, half_width, ring.law)
         sums = strain[0][..., 0] + own[0], strain[1][..., 0] + own[1], strain[2][..., 0] + own[2]
         total += np.sum(densities(sums, turn[..., 0] + own_turn, ring.law) * area * weight, axis=(1, 2))
     return total
@@ -194,8 +194,8 @@ def _displacements(loads: LineLoads, tooth: int) -> Array:
     moved[ring.inner] = loads.inner(tooth)
     moved[ring.cut] = ring.polar @ ring.interfaces(loads.cut_force, tooth)
     if tooth == 0:
-        for some in (ring.cut, ring.hub):
-            moved[some] -= _singular(loads, some)
+        for unknowns in (ring.cut, ring.hub):
+            moved[unknowns] -= _singular(loads, unknowns)
     return moved.reshape(-1, 2, len(loads.at.rho))
 
 
@@ -222,7 +222,7 @@ def half_plane(law: PlaneElasticity) -> Array:
     of_trace, of_square, of_rotation = np.array([-192.0, -128.0, -64.0]) / 45 * (2 / np.pi) ** 3
     ones = (1 - nu) ** 3 * of_trace  # in units of 1/E*^3, like what follows
     mixed = (1 - nu) * ((1 + nu) ** 2 * of_square - 2 * nu * of_trace)
-    lam, mu = (one / law.plane_modulus for one in law.lame)
+    lam, mu = (constant / law.plane_modulus for constant in law.lame)
     stiff = 0.5 * (lam * mixed + mu * (3 * mixed - ones) + of_rotation)
     return np.array([stiff, mixed / law.plane_modulus, ones / law.plane_modulus]) / law.plane_modulus**2
 

@@ -28,9 +28,9 @@ __all__ = [
 ]
 
 
-def check_plane(found: Faults, plane: str) -> None:
+def check_plane(faults: Faults, plane: str) -> None:
     """Note a plane that is neither strain nor stress."""
-    found.choice("plane", plane, ("strain", "stress"), "wide gears are nearer plane strain")
+    faults.choice("plane", plane, ("strain", "stress"), "wide gears are nearer plane strain")
 
 
 @dataclass(frozen=True)
@@ -52,9 +52,9 @@ class PlaneElasticity:
 
     def __post_init__(self) -> None:
         """Refuse an unknown plane."""
-        found = Faults()
-        check_plane(found, self.plane)
-        found.raise_if_any()
+        faults = Faults()
+        check_plane(faults, self.plane)
+        faults.raise_if_any()
 
     @classmethod
     def of(cls, material: Material, plane: str) -> PlaneElasticity:
@@ -109,7 +109,7 @@ def physical_gradients(points: Array, triangles: Integers, xi: Array, eta: Array
     determinant = x_xi * y_eta - x_eta * y_xi
     by_xi, by_eta = np.moveaxis(reference, (1, 2), (1, 0))[:, None]  # (1, q, 6)
     gradient = np.empty((*determinant.shape, 6, 2))
-    scaled = [(one / determinant)[..., None] for one in (x_xi, x_eta, y_xi, y_eta)]
+    scaled = [(derivative / determinant)[..., None] for derivative in (x_xi, x_eta, y_xi, y_eta)]
     gradient[..., 0] = by_xi * scaled[3] - by_eta * scaled[2]
     gradient[..., 1] = by_eta * scaled[0] - by_xi * scaled[1]
     return gradient, determinant

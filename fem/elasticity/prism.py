@@ -65,29 +65,29 @@ class Section:
     laplace: Array
     slopes: Array
 
-    def elements(self, face: Face, some: Integers) -> Array:
+    def elements(self, face: Face, triangles: Integers) -> Array:
         """Stiffness matrices of some triangles (k, 6 n, 6 n), n unknowns a node: pairs (u, v) of each psi, then w."""
         lam, mu = self.law.lame
         in_plane, across = len(face.masses[0]), len(face.masses[1])
-        count, n = len(some), 2 * in_plane + across
-        found = np.empty((count, 6, n, 6, n))
-        both = np.einsum("kiajb,pq->kipajqb", self.plane[some], face.masses[0], optimize=True)
-        along = mu * np.einsum("kij,pq->kipjq", self.mass[some], face.stiffnesses[0], optimize=True)
+        count, n = len(triangles), 2 * in_plane + across
+        stiffness = np.empty((count, 6, n, 6, n))
+        plane_block = np.einsum("kiajb,pq->kipajqb", self.plane[triangles], face.masses[0], optimize=True)
+        along = mu * np.einsum("kij,pq->kipjq", self.mass[triangles], face.stiffnesses[0], optimize=True)
         for a in range(2):
-            both[:, :, :, a, :, :, a] += along
+            plane_block[:, :, :, a, :, :, a] += along
         m = 2 * in_plane
-        found[:, :, :m, :, :m] = both.reshape(count, 6, m, 6, m)
-        mixed = lam * np.einsum("kiaj,pq->kipajq", self.slopes[some], face.by_across, optimize=True)
-        mixed += mu * np.einsum("kjai,pq->kipajq", self.slopes[some], face.by_plane, optimize=True)
+        stiffness[:, :, :m, :, :m] = plane_block.reshape(count, 6, m, 6, m)
+        mixed = lam * np.einsum("kiaj,pq->kipajq", self.slopes[triangles], face.by_across, optimize=True)
+        mixed += mu * np.einsum("kjai,pq->kipajq", self.slopes[triangles], face.by_plane, optimize=True)
         coupled = mixed.reshape(count, 6, m, 6, across)
-        found[:, :, :m, :, m:] = coupled
-        found[:, :, m:, :, :m] = np.transpose(coupled, (0, 3, 4, 1, 2))
-        own = mu * np.einsum("kij,pq->kipjq", self.laplace[some], face.masses[1], optimize=True)
+        stiffness[:, :, :m, :, m:] = coupled
+        stiffness[:, :, m:, :, :m] = np.transpose(coupled, (0, 3, 4, 1, 2))
+        own = mu * np.einsum("kij,pq->kipjq", self.laplace[triangles], face.masses[1], optimize=True)
         own += (lam + 2 * mu) * np.einsum(
-            "kij,pq->kipjq", self.mass[some], face.stiffnesses[1], optimize=True
+            "kij,pq->kipjq", self.mass[triangles], face.stiffnesses[1], optimize=True
         )
-        found[:, :, m:, :, m:] = own
-        return found.reshape(count, 6 * n, 6 * n)
+        stiffness[:, :, m:, :, m:] = own
+        return stiffness.reshape(count, 6 * n, 6 * n)
 
 
 @record
@@ -110,11 +110,11 @@ class Face:
     @classmethod
     def wave(cls, wavenumber: float) -> Face:
         """Give u, v ~ cos k z and w ~ sin k z, over the mean of cos^2; u and v alone without a wave."""
-        one, k = np.ones((1, 1)), np.full((1, 1), float(wavenumber))
+        unit, k = np.ones((1, 1)), np.full((1, 1), float(wavenumber))
         if wavenumber:
-            return cls((one, one), (k**2, k**2), k, -k)
+            return cls((unit, unit), (k**2, k**2), k, -k)
         none, empty = np.zeros((0, 0)), np.zeros((1, 0))
-        return cls((one, none), (0.0 * one, none), empty, empty)
+        return cls((unit, none), (0.0 * unit, none), empty, empty)
 
 
 def section(mesh: SectorMesh, law: PlaneElasticity) -> Section:
@@ -215,12 +215,12 @@ class Prism:
         """
         reduced, on_cuts, _ = self.condensed.up(self._nodal(at))
         pull = np.asarray(self.polar.T @ on_cuts)
-        nodes, found = len(self.mesh.points), []
+        nodes, moved = len(self.mesh.points), []
         for tooth in teeth:
             cuts = np.asarray(self.polar @ self.links.at_ends(pull, tooth))
             loads = reduced if tooth % self.mesh.teeth == 0 else np.zeros_like(reduced)
-            found.append(self.condensed.down(cuts, loads).reshape(nodes, -1, reduced.shape[1]))
-        return np.asarray(found)
+            moved.append(self.condensed.down(cuts, loads).reshape(nodes, -1, reduced.shape[1]))
+        return np.asarray(moved)
 
     def _nodal(self, at: FlankPoints) -> Array:
         """Nodal forces that stand for unit line loads psi(z) (unknowns, loads psi)."""
@@ -246,7 +246,9 @@ def prism(over: Section, face: Face) -> Prism:
     mesh, psi, phi = over.mesh, len(face.masses[0]), len(face.masses[1])
     n = 2 * psi + phi
     cut, hub = held_and_cut(mesh)
-    condensed = condensation(mesh.points, mesh.triangles, lambda some: over.elements(face, some), cut, hub, n)
+    condensed = condensation(
+        mesh.points, mesh.triangles, lambda triangles: over.elements(face, triangles), cut, hub, n
+    )
     polar = polar_components(mesh.points[cut], psi, phi)
     stiffness = polar.T @ (polar.T @ condensed.stiffness).T
     nodes = np.setdiff1d(np.arange(len(mesh.points)), np.concatenate([cut, hub]))

@@ -181,28 +181,28 @@ def polar_components(points: Array, pairs: int = 1, others: int = 0) -> csc_arra
     components = 2 * pairs + others
     turns = np.zeros((len(points), components, components))
     turns[:, 2 * pairs :, 2 * pairs :] = np.eye(others)
-    for one in range(0, 2 * pairs, 2):
-        turns[:, one : one + 2, one] = outward
-        turns[:, one, one + 1], turns[:, one + 1, one + 1] = -outward[:, 1], outward[:, 0]
+    for first in range(0, 2 * pairs, 2):
+        turns[:, first : first + 2, first] = outward
+        turns[:, first, first + 1], turns[:, first + 1, first + 1] = -outward[:, 1], outward[:, 0]
     # one block for each node, column by column
     blocks, size = np.swapaxes(turns, 1, 2).ravel(), components * len(points)
     rows = np.repeat(np.arange(size).reshape(-1, components), components, axis=0).ravel()
     return csc_array((blocks, rows, np.arange(0, components * size + 1, components)), shape=(size, size))
 
 
-def _columns(mesh: SectorMesh, elements: Array, some: Integers) -> csc_array:
+def _columns(mesh: SectorMesh, elements: Array, wanted: Integers) -> csc_array:
     """Columns of the sector's stiffness matrix for some unknowns, from the elements that have them."""
     from scipy.sparse import coo_array
 
     number = np.full(mesh.unknowns, -1)
-    number[some] = np.arange(len(some))
+    number[wanted] = np.arange(len(wanted))
     unknown = (2 * mesh.triangles[:, :, None] + np.arange(2)).reshape(len(mesh.triangles), 12)
     element, column = np.nonzero(number[unknown] >= 0)
     rows = unknown[element]
     columns = np.broadcast_to(number[unknown[element, column]][:, None], rows.shape)
     values = elements[element, :, column]
     return coo_array(
-        (values.ravel(), (rows.ravel(), columns.ravel())), shape=(mesh.unknowns, len(some))
+        (values.ravel(), (rows.ravel(), columns.ravel())), shape=(mesh.unknowns, len(wanted))
     ).tocsc()
 
 

@@ -55,9 +55,9 @@ class LineForces:
     inward: Array
     lean: Array
 
-    def part(self, some: Integers) -> LineForces:
+    def part(self, subset: Integers) -> LineForces:
         """Some of the loads, each as often as it is named."""
-        return LineForces(self.place[some], self.inward[some], self.lean[some])
+        return LineForces(self.place[subset], self.inward[subset], self.lean[subset])
 
 
 def traction_integrals(

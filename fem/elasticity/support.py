@@ -55,17 +55,17 @@ class Support:
 
     def __post_init__(self) -> None:
         """Refuse values that no support has."""
-        found = Faults()
+        faults = Faults()
         for name, value, unit in (
             ("radial_stiffness", self.radial_stiffness, "N/m"),
             ("torsional_stiffness", self.torsional_stiffness, "N m/rad"),
         ):
             if not value > 0:
                 allowed = f"must be more than 0 {unit}, inf for rigid"
-                found.add(f"support.{name}", f"{value!r}", allowed, "give its stiffness")
+                faults.add(f"support.{name}", f"{value!r}", allowed, "give its stiffness")
         if self.hub_radius is not None:
-            found.number("support.hub_radius", self.hub_radius, HUB_RADIUS)
-        found.raise_if_any()
+            faults.number("support.hub_radius", self.hub_radius, HUB_RADIUS)
+        faults.raise_if_any()
 
     def compliance(self, base_radius: float) -> float:
         """1/k_r + r_b^2/k_t along the line of action [m/N]."""
@@ -94,18 +94,21 @@ def held_profiles(pair: GearPair, supports: tuple[Support, Support]) -> tuple[To
     base.InputError
         A hub inside the bore, one that leaves less than 0.05 modules of rim, or less than 0.25 modules of web.
     """
-    found, held = Faults(), []
+    faults, held = Faults(), []
     for name, profile, support in zip(("pinion", "wheel"), pair.teeth_profiles, supports, strict=True):
         radius = profile.bore_radius if support.hub_radius is None else support.hub_radius
-        most, left = profile.root_radius - 0.05 * profile.module, "0.05 modules under the root circle"
+        most, margin = profile.root_radius - 0.05 * profile.module, "0.05 modules under the root circle"
         if profile.steps:
-            most, left = profile.zones[0].inner - 0.25 * profile.module, "0.25 modules of web inside the rim"
+            most, margin = (
+                profile.zones[0].inner - 0.25 * profile.module,
+                "0.25 modules of web inside the rim",
+            )
         if abs(radius - profile.bore_radius) < ROUNDING * profile.bore_radius:
             radius = profile.bore_radius
         if support.hub_radius is not None and not profile.bore_radius <= radius <= most:
-            allowed = f"must be {profile.bore_radius:.6g} m (bore) to {rounded_down(most)} m ({left})"
+            allowed = f"must be {profile.bore_radius:.6g} m (bore) to {rounded_down(most)} m ({margin})"
             remedy = "the hub fills the bore and leaves a rim"
-            found.add(f"{name}.support.hub_radius", f"{radius:g} m", allowed, remedy)
+            faults.add(f"{name}.support.hub_radius", f"{radius:g} m", allowed, remedy)
         held.append(replace(profile, bore_radius=radius))
-    found.raise_if_any()
+    faults.raise_if_any()
     return held[0], held[1]

@@ -193,8 +193,8 @@ def gear_drawing(ring: Ring) -> GearDrawing:
     picture = picture_of(mesh)
     cuts = by_cut.shape[1]
 
-    def stress_at(some: Integers) -> Array:
-        rows = (3 * some[:, None] + np.arange(3)).ravel()
+    def stress_at(nodes: Integers) -> Array:
+        rows = (3 * nodes[:, None] + np.arange(3)).ravel()
         return np.asarray(recovery.matrix[rows] @ by_cut)
 
     seam = stress_at(_side_nodes(ring, "right")), stress_at(_side_nodes(ring, "left"))

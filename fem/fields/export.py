@@ -84,25 +84,25 @@ def write_mesh(
     path = Path(path)
     form = _format(format or path.suffix.lstrip("."))
     if isinstance(gears, LoadedGear):
-        some: tuple[LoadedGear, ...] = (gears,)
+        loaded: tuple[LoadedGear, ...] = (gears,)
     else:
-        some = tuple(gears) if isinstance(gears, Sequence) else placed_gears(gears)
+        loaded = tuple(gears) if isinstance(gears, Sequence) else placed_gears(gears)
     if form == "abaqus":
-        return write_abaqus(path, *some)
+        return write_abaqus(path, *loaded)
     if form == "gmsh":
-        if len(some) != 1:
+        if len(loaded) != 1:
             allowed = "must be one gear for gmsh, whose names hold for all of a file"
-            raise InputError([Fault("gears", f"{len(some)}", allowed, "write each to a separate file")])
-        return write_msh(path, some[0].mesh)
+            raise InputError([Fault("gears", f"{len(loaded)}", allowed, "write each to a separate file")])
+        return write_msh(path, loaded[0].mesh)
     fields = {
-        gear.name: {"force_N": np.column_stack([gear.forces, 0.0 * gear.forces[:, 0]])} for gear in some
+        gear.name: {"force_N": np.column_stack([gear.forces, 0.0 * gear.forces[:, 0]])} for gear in loaded
     }
     if form == "vtm":
-        return write_blocks(path, {gear.name: gear.mesh for gear in some}, fields)
-    prefix = {gear.name: f"{gear.name}_" if len(some) > 1 else "" for gear in some}
+        return write_blocks(path, {gear.name: gear.mesh for gear in loaded}, fields)
+    prefix = {gear.name: f"{gear.name}_" if len(loaded) > 1 else "" for gear in loaded}
     return write_by_meshio(
         path,
-        {prefix[gear.name]: gear.mesh for gear in some},
+        {prefix[gear.name]: gear.mesh for gear in loaded},
         form,
         {prefix[name]: values for name, values in fields.items()},
     )
@@ -238,9 +238,9 @@ def export_position(
     base.InputError
         Torque, position or format that make no sense.
     """
-    found = Faults()
-    found.number("position", position, POSITION)
-    found.raise_if_any()
+    faults = Faults()
+    faults.number("position", position, POSITION)
+    faults.raise_if_any()
     _format(form)
     cycle = mesh_cycle(pair, torque, PLACES, compliance, plane=plane)
     row = int(np.argmin(np.abs(cycle.position - position)))

@@ -82,9 +82,9 @@ def face_fields(
     base.InputError
         A row that the cycle does not have, or that has no finite forces; a cycle without cells.
     """
-    found = Faults()
-    check_row(found, cycle, row, over_face=True)
-    found.raise_if_any()
+    faults = Faults()
+    check_row(faults, cycle, row, over_face=True)
+    faults.raise_if_any()
     ready = prisms or gear_prisms(bodies, cycle)
     first, second = (_face_field(pair, cycle, row, bodies, gear, ready[gear]) for gear in (0, 1))
     return first, second
@@ -103,9 +103,9 @@ def _face_field(
     moved = waves.moved(ready, places, apart)
     if ready.ends is not None and cycle.face is not None:
         edges = (cycle.face.setting.edges(pair) - pair.face_offsets[gear]) / module
-        for load, place, some in zip(cycle.face.line_load[row, loaded], places, apart, strict=True):
+        for load, place, offsets in zip(cycle.face.line_load[row, loaded], places, apart, strict=True):
             forces = load * pair.face_width / len(load)
-            added = ready.ends.moved(float(place.rho[0]), forces, edges, some) / module
+            added = ready.ends.moved(float(place.rho[0]), forces, edges, offsets) / module
             moved[:, :, ready.ends.nodes] += added
     moved /= flexible.law.plane_modulus
     angle, centre = frames(pair, float(pair.points.A + cycle.loaded_position[row] * pair.base_pitch))[gear]
@@ -131,8 +131,8 @@ def _solid(
     size = len(used) * len(z)
     section = module * ready.points[used]
     return ToothField(
-        np.concatenate([one.points(section, z) for one in place]),
+        np.concatenate([stand.points(section, z) for stand in place]),
         np.concatenate([wedges + size * i for i in range(len(teeth))]),
-        np.concatenate([one.vectors(own[:, used]) for one, own in zip(place, moved, strict=True)]),
+        np.concatenate([stand.vectors(own[:, used]) for stand, own in zip(place, moved, strict=True)]),
         np.repeat(np.array(teeth), len(wedges)),
     )

@@ -49,10 +49,10 @@ def face_blocks(
 
 def face_grids(pinion: FaceField, wheel: FaceField) -> dict[str, pyvista.UnstructuredGrid]:
     """Grids of both gears by the names of their blocks."""
-    both = {"pinion": pinion, "wheel": wheel}
-    teeth = {name: _teeth(field.teeth, gear) for gear, (name, field) in enumerate(both.items())}
+    gears = {"pinion": pinion, "wheel": wheel}
+    teeth = {name: _teeth(field.teeth, gear) for gear, (name, field) in enumerate(gears.items())}
     return teeth | {
-        f"{name}_flanks": _flanks(field.flanks, i) for i, (name, field) in enumerate(both.items())
+        f"{name}_flanks": _flanks(field.flanks, i) for i, (name, field) in enumerate(gears.items())
     }
 
 

@@ -75,11 +75,11 @@ class GearPrisms:
 
     def displacements(self, at: FlankPoints, teeth: Sequence[int]) -> Array:
         """Displacements (waves, teeth, nodes, 3, loads) in each tooth's frame by unit line loads on tooth 0."""
-        found = np.zeros((len(self.prisms), len(teeth), len(self.mesh.points), 3, len(at.rho)))
-        for wave, one in zip(found, self.prisms, strict=True):
-            n = 2 * one.psi + one.phi
-            wave[:, :, :n] = one.displacements(at, teeth)
-        return found
+        moved = np.zeros((len(self.prisms), len(teeth), len(self.mesh.points), 3, len(at.rho)))
+        for wave, solved in zip(moved, self.prisms, strict=True):
+            n = 2 * solved.psi + solved.phi
+            wave[:, :, :n] = solved.displacements(at, teeth)
+        return moved
 
 
 def gear_prisms(bodies: PairCompliance, cycle: MeshCycle) -> tuple[GearPrisms, GearPrisms]:
@@ -168,12 +168,12 @@ class FaceWaves:
         teeth : sequence of sequences of int
             Teeth that are drawn, counted from that of each load.
         """
-        found = np.zeros((len(teeth[0]), len(self.layers), len(ready.mesh.points), 3))
-        for even, odd, place, some in zip(self.even, self.odd, at, teeth, strict=True):
-            by_wave = ready.displacements(place, some)[..., 0]
-            found[..., :2] += np.einsum("lw,wtna->tlna", even, by_wave[..., :2], optimize=True)
-            found[..., 2] += np.einsum("lw,wtn->tln", odd, by_wave[..., 2], optimize=True)
-        return found
+        displacements = np.zeros((len(teeth[0]), len(self.layers), len(ready.mesh.points), 3))
+        for even, odd, place, drawn in zip(self.even, self.odd, at, teeth, strict=True):
+            by_wave = ready.displacements(place, drawn)[..., 0]
+            displacements[..., :2] += np.einsum("lw,wtna->tlna", even, by_wave[..., :2], optimize=True)
+            displacements[..., 2] += np.einsum("lw,wtn->tln", odd, by_wave[..., 2], optimize=True)
+        return displacements
 
 
 def on_flank(mesh: SectorMesh, rho: float | Array) -> FlankPoints:

@@ -127,7 +127,9 @@ class FlankPatch:
         section = self.module * self.at.points
         strips, cells = self.force.shape
         own = np.einsum("pk,lpka->lpa", self.at.weights, moved[:, self.at.nodes], optimize=True)
-        between = np.array([np.interp(self.face, layers, one) for one in own.reshape(len(layers), -1).T])
+        between = np.array(
+            [np.interp(self.face, layers, component) for component in own.reshape(len(layers), -1).T]
+        )
         points = place.points(section, self.face)
         corner = np.arange(strips) + (strips + 1) * np.arange(cells)[:, None]
         quads = np.stack([corner, corner + 1, corner + strips + 2, corner + strips + 1], axis=-1)
@@ -159,8 +161,8 @@ def _semicircle(place: Array) -> Array:
 
 def joined(parts: Sequence[FlankField]) -> FlankField:
     """Several flanks as one."""
-    starts = np.cumsum([0, *(len(one.points) for one in parts[:-1])])
-    moved = [replace(one, cells=one.cells + start) for one, start in zip(parts, starts, strict=True)]
+    starts = np.cumsum([0, *(len(flank.points) for flank in parts[:-1])])
+    moved = [replace(flank, cells=flank.cells + start) for flank, start in zip(parts, starts, strict=True)]
     return FlankField(
-        *(np.concatenate([getattr(one, name.name) for one in moved]) for name in fields(FlankField))
+        *(np.concatenate([getattr(flank, name.name) for flank in moved]) for name in fields(FlankField))
     )

@@ -140,10 +140,10 @@ def flank_forces(
 
 
 def _check(cycle: MeshCycle, row: int, spread: str) -> None:
-    found = Faults()
-    check_row(found, cycle, row)
-    found.choice("spread", spread, ("hertz", "line"), "the pressure is nearer the truth")
-    found.raise_if_any()
+    faults = Faults()
+    check_row(faults, cycle, row)
+    faults.choice("spread", spread, ("hertz", "line"), "the pressure is nearer the truth")
+    faults.raise_if_any()
 
 
 def _inward(profile: ToothProfile, rho: float | Array) -> Array:
@@ -230,9 +230,9 @@ def loaded_gears(
         if 0 <= row < len(cycle.position)
         else 0.0
     )
-    both = flank_forces(pair, cycle, row, spread)
+    gear_loads = flank_forces(pair, cycle, row, spread)
     gears = []
-    for gear, loads in enumerate(both):
+    for gear, loads in enumerate(gear_loads):
         profile = pair.teeth_profiles[gear]
         usual = mesh_sector(profile, sizes, refinements)
         fine = mesh_sector(profile, loaded_sizes, refinements) if loaded_sizes else usual

@@ -68,11 +68,11 @@ def picture_of(mesh: SectorMesh, focus: tuple[Array, float] | None = None) -> Pi
 
     def large(parent: Integers, place: Array) -> Booleans:
         side = np.max(np.linalg.norm(place - np.roll(place, -1, axis=1), axis=2), axis=1)
-        found = curved[parent] & (side > longest)
+        to_split = curved[parent] & (side > longest)
         if focus is not None:
             away = np.min(np.linalg.norm(place - focus[0], axis=2), axis=1)
-            found = found | (np.sqrt(np.abs(_area(place))) > np.maximum(focus[1], 0.5 * away))
-        return np.asarray(found)
+            to_split = to_split | (np.sqrt(np.abs(_area(place))) > np.maximum(focus[1], 0.5 * away))
+        return np.asarray(to_split)
 
     return _split(mesh, large)
 

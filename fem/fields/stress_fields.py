@@ -85,12 +85,12 @@ class GearField:
 
 def of_axis(fields: object, axis: str) -> Mapping[str, Any]:
     """Figures of a record along an axis by name, without the points and cells themselves."""
-    found = quantities(fields).items()
+    entries = quantities(fields).items()
     return MappingProxyType(
         {
-            name: one.value
-            for name, one in found
-            if one.figure.dims[:1] == (axis,) and name not in ("points", "cells")
+            name: entry.value
+            for name, entry in entries
+            if entry.figure.dims[:1] == (axis,) and name not in ("points", "cells")
         }
     )
 

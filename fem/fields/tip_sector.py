@@ -86,30 +86,30 @@ class TipSector:
 
     def _forces(self) -> Array:
         """Consistent nodal forces (n, 2) [N/m]."""
-        one = self.pressure
+        strips = self.pressure
         place, weight = np.polynomial.legendre.leggauss(GAUSS_POINTS)
-        at = self._places((one.distance[:, None] + 0.5 * one.width[:, None] * place).ravel())
-        lean = np.repeat(one.lean, GAUSS_POINTS)[:, None]
+        at = self._places((strips.distance[:, None] + 0.5 * strips.width[:, None] * place).ravel())
+        lean = np.repeat(strips.lean, GAUSS_POINTS)[:, None]
         direction = np.cos(lean) * at.inward - np.sin(lean) * at.towards_tip().direction
-        size = (one.loads[:, None] * 0.5 * weight).ravel()
+        size = (strips.loads[:, None] * 0.5 * weight).ravel()
         forces = np.zeros((len(self.mesh.points), 2))
         np.add.at(forces, at.nodes, (size[:, None] * at.weights)[..., None] * direction[:, None])
         return forces
 
     def _tractions(self, nodes: Integers) -> Array:
         """Tractions (k, 2) [Pa] at nodes of the flank: means over half the way to the next ones on either side."""
-        one, base = self.pressure, self.mesh.base_radius
+        strips, base = self.pressure, self.mesh.base_radius
         end = float(np.max(self.mesh.parameters["flank_left"]))
         distance = end - 0.5 * (np.sum(self.mesh.points[nodes] ** 2, axis=1) - base**2) / base
         order = np.argsort(distance)
         s = np.maximum(distance[order], 0.0)
         middle = np.concatenate([s[:1], 0.5 * (s[1:] + s[:-1]), s[-1:]])
-        edges = np.append(one.distance - 0.5 * one.width, one.extent)
-        borne = np.diff(np.interp(middle, edges, np.append(0.0, np.cumsum(one.loads))))
+        edges = np.append(strips.distance - 0.5 * strips.width, strips.extent)
+        borne = np.diff(np.interp(middle, edges, np.append(0.0, np.cumsum(strips.loads))))
         pressure = np.empty_like(s)
         pressure[order] = borne / np.diff(middle)
         at = self._places(np.maximum(distance, 0.0))
-        lean = np.interp(distance, one.distance, one.lean)[:, None]
+        lean = np.interp(distance, strips.distance, strips.lean)[:, None]
         direction = np.cos(lean) * at.inward - np.sin(lean) * at.towards_tip().direction
         return np.asarray(pressure[:, None] * direction)
 

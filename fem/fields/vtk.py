@@ -70,8 +70,8 @@ def field_blocks(
 
     if cycle.face is not None:
         return face_blocks(pair, cycle, row, compliance)
-    both = loaded_fields(pair, cycle, row, compliance, drawings)
-    return pyvista.MultiBlock(_blocks(*both, contact_forces(pair, cycle, row)))
+    gear_fields = loaded_fields(pair, cycle, row, compliance, drawings)
+    return pyvista.MultiBlock(_blocks(*gear_fields, contact_forces(pair, cycle, row)))
 
 
 def write_vtk_series(
@@ -130,9 +130,9 @@ def _even(
     drawings = draw_gears(pair, bodies, min(bodies.refinements, PICTURE_REFINEMENTS))
 
     def at(row: int) -> Mapping[str, Any]:
-        both = loaded_fields(pair, cycle, row, bodies, drawings)
-        stresses.extend(fillet_stress(field) for field in both)
-        return _blocks(*both, contact_forces(pair, cycle, row))
+        gear_fields = loaded_fields(pair, cycle, row, bodies, drawings)
+        stresses.extend(fillet_stress(field) for field in gear_fields)
+        return _blocks(*gear_fields, contact_forces(pair, cycle, row))
 
     return at
 

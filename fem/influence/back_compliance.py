@@ -110,9 +110,9 @@ def _teeth(ring: Ring, reach: int) -> range:
     return range(-most, most + 1)
 
 
-def _seen(loads: LineLoads, tooth: int, where: FlankPoints) -> Array:
-    moved = loads.on_tooth(tooth, where)
-    return moved if tooth else moved + loads.singular(where)
+def _seen(loads: LineLoads, tooth: int, points: FlankPoints) -> Array:
+    moved = loads.on_tooth(tooth, points)
+    return moved if tooth else moved + loads.singular(points)
 
 
 def _fitted(rho: Array, seen: Mapping[int, Array]) -> BackCompliance:

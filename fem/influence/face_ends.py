@@ -72,10 +72,10 @@ class EndFields:
         place = _by_root(np.clip([rho], *self.rho_range), self.rho_range, self.rho_end)[0]
         end = self.half.ends[-1]
         same, opposite = self.half.means(np.clip(edges, -end, end))
-        some = np.asarray(teeth) + self.beside
+        positions = np.asarray(teeth) + self.beside
         parts = (self.even, same @ forces), (self.odd, opposite[1:] @ forces)
-        found = [np.einsum("a,p,aptlnc->tlnc", place, by, table[:, :, some]) for table, by in parts]
-        return np.asarray(0.5 * (found[0] + found[1]))
+        by_parity = [np.einsum("a,p,aptlnc->tlnc", place, by, table[:, :, positions]) for table, by in parts]
+        return np.asarray(0.5 * (by_parity[0] + by_parity[1]))
 
 
 def end_fields(
@@ -106,31 +106,31 @@ def end_fields(
     def table(even: bool) -> Array:
         added: Array = np.zeros(())
         for free in (True, False):
-            one = prism(over, half.face(even, free))
-            by_load = one.displacements(at, teeth)[:, nodes]
-            added = added + (1.0 if free else -1.0) * _at_layers(by_load, one, half, z, even)
-        found = added.reshape(*added.shape[:-1], len(rho), -1)  # (teeth, layers, used, 3, places, psi)
-        return np.asarray(np.einsum("ai,tlncip->aptlnc", by_place, found, optimize=True))
+            solved = prism(over, half.face(even, free))
+            by_load = solved.displacements(at, teeth)[:, nodes]
+            added = added + (1.0 if free else -1.0) * _at_layers(by_load, solved, half, z, even)
+        moved = added.reshape(*added.shape[:-1], len(rho), -1)  # (teeth, layers, used, 3, places, psi)
+        return np.asarray(np.einsum("ai,tlncip->aptlnc", by_place, moved, optimize=True))
 
     return EndFields(half, span, end, nodes, z, beside, table(True), table(False))
 
 
-def _at_layers(by_load: Array, one: Prism, half: HalfFace, z: Array, even: bool) -> Array:
+def _at_layers(by_load: Array, solved: Prism, half: HalfFace, z: Array, even: bool) -> Array:
     """Displacements (teeth, layers, used, 3, loads) from factors of the functions over half a face."""
     values, side = half.values(np.abs(z)), np.sign(z)
     first = 0 if even else 1
-    psi = values[first : first + one.psi] * (1.0 if even else side)
-    phi = values[1 - first : 1 - first + one.phi] * (side if even else 1.0)
+    psi = values[first : first + solved.psi] * (1.0 if even else side)
+    phi = values[1 - first : 1 - first + solved.phi] * (side if even else 1.0)
     teeth, used, _, loads = by_load.shape
-    plane = by_load[:, :, : 2 * one.psi].reshape(teeth, used, one.psi, 2, loads)
-    found = np.empty((teeth, len(z), used, 3, loads))
-    found[:, :, :, :2] = np.einsum("tnpar,pl->tlnar", plane, psi, optimize=True)
-    found[:, :, :, 2] = np.einsum("tnqr,ql->tlnr", by_load[:, :, 2 * one.psi :], phi, optimize=True)
-    return found
+    plane = by_load[:, :, : 2 * solved.psi].reshape(teeth, used, solved.psi, 2, loads)
+    moved = np.empty((teeth, len(z), used, 3, loads))
+    moved[:, :, :, :2] = np.einsum("tnpar,pl->tlnar", plane, psi, optimize=True)
+    moved[:, :, :, 2] = np.einsum("tnqr,ql->tlnr", by_load[:, :, 2 * solved.psi :], phi, optimize=True)
+    return moved
 
 
 def _by_root(rho: Array, span: tuple[float, float], end: float) -> Array:
     """Chebyshev polynomials (..., PLACES) of the root of what rho lacks to the tip corner."""
-    near, far = (np.sqrt(end - one) for one in span[::-1])
+    near, far = (np.sqrt(end - radius) for radius in span[::-1])
     unit = np.clip((2 * np.sqrt(end - rho) - near - far) / (far - near), -1.0, 1.0)
     return np.asarray(chebyshev.chebvander(unit, PLACES - 1))

@@ -84,19 +84,19 @@ class FilletEnds:
         finer = local_cubic(np.linspace(0.0, 1.0, SAMPLES), np.linspace(0.0, 1.0, samples), 4)
         # the face that was solved ends where cells and places do, to the last bit
         most = float(self.half.ends[-1])
-        edges, z = (np.clip(some, -most, most) for some in (edges, z))
+        edges, z = (np.clip(coordinate, -most, most) for coordinate in (edges, z))
         values, slopes = self.half.values(np.abs(z)), self.half.slopes(np.abs(z))
         total = np.zeros((2, len(rho), len(z), 2, SAMPLES))
         for means, series, sign, skipped in zip(
             self.half.means(edges), (self.even, self.odd), (np.ones_like(z), np.sign(z)), (0, 1), strict=True
         ):
             unit = force @ means[skipped:].T
-            for kind, (some, first) in enumerate(((values, skipped), (slopes, 1 - skipped))):
+            for kind, (functions, first) in enumerate(((values, skipped), (slopes, 1 - skipped))):
                 by_function = np.einsum(
                     "la,lp,apqsn->lqsn", by_place, unit, series[kind][TEETH.index(tooth)], optimize=True
                 )
                 total[kind] += 0.5 * np.einsum(
-                    "lqsn,qz->lzsn", by_function, some[first:] * sign, optimize=True
+                    "lqsn,qz->lzsn", by_function, functions[first:] * sign, optimize=True
                 )
         along, across = total @ finer.T
         return along, across
@@ -124,14 +124,16 @@ def fillet_ends(shape: GearShape, face_width: float, rho_low: float) -> FilletEn
     line = fillet_line(profile, SAMPLES)
     over, half = section(mesh, solid_of(shape.poisson)), half_face(0.5 * face_width, 1.0, LAST, GROWTH)
     fit = np.linalg.pinv(chebyshev.chebvander(unit, DEGREE))
-    both = []
+    series = []
     for even in (True, False):
         free, walls = (_strains(over, profile, half, even, ends, at, line) for ends in (True, False))
         # between walls w has no value at the end
         w = free[1]
         w[:, :, :, : walls[1].shape[3]] -= walls[1]
-        both.append(tuple(np.einsum("al,tlpqsn->tapqsn", fit, one) for one in (free[0] - walls[0], w)))
-    (even_t, even_z), (odd_t, odd_z) = both
+        series.append(
+            tuple(np.einsum("al,tlpqsn->tapqsn", fit, functions) for functions in (free[0] - walls[0], w))
+        )
+    (even_t, even_z), (odd_t, odd_z) = series
     return FilletEnds((low, high), half, (even_t, even_z), (odd_t, odd_z))
 
 
@@ -152,10 +154,12 @@ def _strains(
     along = np.zeros((len(TEETH), loads, psi, psi, 2, len(line.arc)))
     across = np.zeros((len(TEETH), loads, psi, phi, 2, len(line.arc)))
     for number, here in enumerate(moved):
-        for side, one in enumerate(strains):
+        for side, strain in enumerate(strains):
             for q in range(psi):
                 plane = here[:, 2 * q : 2 * q + 2].reshape(2 * nodes, -1)
-                along[number, :, :, q, side] = (one.along @ plane).T.reshape(loads, psi, -1)
+                along[number, :, :, q, side] = (strain.along @ plane).T.reshape(loads, psi, -1)
             for q in range(phi):
-                across[number, :, :, q, side] = (one.value @ here[:, 2 * psi + q]).T.reshape(loads, psi, -1)
+                across[number, :, :, q, side] = (strain.value @ here[:, 2 * psi + q]).T.reshape(
+                    loads, psi, -1
+                )
     return along, across

@@ -77,10 +77,10 @@ class FilletFace:
         if tooth not in self.influence.series:
             return np.zeros((len(rho), len(z), 2, len(self.influence.line.arc)))
         by_wave, (even, _) = self._by_wave(tooth, rho), self._shapes(load, z)
-        both = by_wave[:, :, ALONG] + self.nu * by_wave[:, :, ACROSS]
-        found: Array = np.einsum("lwz,lwsn->lzsn", even, both, optimize=True)
+        stress_by_wave = by_wave[:, :, ALONG] + self.nu * by_wave[:, :, ACROSS]
+        stress: Array = np.einsum("lwz,lwsn->lzsn", even, stress_by_wave, optimize=True)
         more = self._by_ends(tooth, rho, load, z)
-        return found if more is None else found + more[0] + self.nu * more[1]
+        return stress if more is None else stress + more[0] + self.nu * more[1]
 
     def components(self, tooth: int, rho: Array, load: Array, z: Array) -> tuple[Array, Array, Array]:
         """E* eps_t, E* eps_z and tau (loads, places, 2, samples) [Pa], arguments as of ``tangential``."""
@@ -97,9 +97,9 @@ class FilletFace:
 
     def _by_wave(self, tooth: int, rho: Array) -> Array:
         """E* eps_t, E* eps_z and tau by the solved waves (loads, waves, 3, 2, samples) [1/m]."""
-        found = self.waves.beyond(tooth, rho / self.module) / self.module
-        found[:, :, ALONG] += self.influence.stress(tooth, rho)[:, None]
-        return found
+        stress = self.waves.beyond(tooth, rho / self.module) / self.module
+        stress[:, :, ALONG] += self.influence.stress(tooth, rho)[:, None]
+        return stress
 
     def _shapes(self, load: Array, z: Array) -> tuple[Array, Array]:
         """Solved waves over the places by loads, as cosines and as sines (loads, waves, places) [N/m]."""
@@ -121,7 +121,7 @@ class FilletFace:
 
     def von_mises(self, parts: Sequence[tuple[Array, Array, Array]]) -> Array:
         """Von Mises stress (places, 2, samples) [Pa] of loads that act together, of ``components`` of each."""
-        along, across, shear = (sum(one[kind].sum(axis=0) for one in parts) for kind in range(3))
+        along, across, shear = (sum(part[kind].sum(axis=0) for part in parts) for kind in range(3))
         return von_mises(along + self.nu * across, across + self.nu * along, shear)
 
     def _waves(self) -> tuple[Array, Array]:

@@ -86,15 +86,15 @@ def fillet_waves(mesh: SectorMesh, influence: FilletInfluence) -> FilletWaves:
     at, teeth = flank_points(mesh, rho), sorted(influence.series)
     law = solid_of(influence.law.plane_poisson)
     over, strains = section(mesh, law), fillet_strains(mesh, influence.profile, influence.line)
-    found = np.array(
+    stresses = np.array(
         [_stress(prism(over, Face.wave(k)), at, teeth, strains, k, law) for k in solved_waves()[1]]
     )
     even = np.array([influence.stress(tooth, rho) for tooth in teeth])
-    still = found[-1]
+    still = stresses[-1]
     lack = even - still[:, :, ALONG]
-    sizes = np.linalg.norm(found[:, :, :, ALONG], axis=(-1, -2))
+    sizes = np.linalg.norm(stresses[:, :, :, ALONG], axis=(-1, -2))
     decay = np.divide(sizes, sizes[-1], out=np.zeros_like(sizes), where=sizes[-1] > 0.0)
-    beyond = found - still
+    beyond = stresses - still
     beyond[:, :, :, ALONG] += (np.minimum(decay, 1.0) - 1.0)[..., None, None] * lack
     fit = np.linalg.pinv(chebyshev.chebvander(unit, DEGREE))
     series = {
@@ -114,13 +114,13 @@ def _stress(
     """E* eps_t, E* eps_z and tau (teeth, loads, 3, 2, samples) by a wave of unit line load at each place."""
     moved = solved.displacements(at, teeth)
     in_plane = moved[:, :, :2].reshape(len(teeth), -1, len(at.rho))
-    found = np.zeros((len(teeth), len(at.rho), 3, len(strains), strains[0].along.shape[0]))
+    stress = np.zeros((len(teeth), len(at.rho), 3, len(strains), strains[0].along.shape[0]))
     for number, (plane, all_of_it) in enumerate(zip(in_plane, moved, strict=True)):
-        for side, one in enumerate(strains):
-            found[number, :, ALONG, side] = (one.along @ plane).T
+        for side, strain in enumerate(strains):
+            stress[number, :, ALONG, side] = (strain.along @ plane).T
             if wavenumber:
                 w = all_of_it[:, 2]
-                found[number, :, ACROSS, side] = wavenumber * (one.value @ w).T
-                turned = one.slope @ w - wavenumber * (one.moved @ plane)
-                found[number, :, SHEAR, side] = law.shear_modulus * turned.T
-    return np.asarray(found * np.array([law.plane_modulus, law.plane_modulus, 1.0])[:, None, None])
+                stress[number, :, ACROSS, side] = wavenumber * (strain.value @ w).T
+                turned = strain.slope @ w - wavenumber * (strain.moved @ plane)
+                stress[number, :, SHEAR, side] = law.shear_modulus * turned.T
+    return np.asarray(stress * np.array([law.plane_modulus, law.plane_modulus, 1.0])[:, None, None])

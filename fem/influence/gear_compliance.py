@@ -268,7 +268,7 @@ def gear_compliance(
         logarithm,
         own,
         {tooth + 1: series for tooth, series in enumerate(cross)},
-        {tooth + 1: fit @ some for tooth, some in enumerate(samples.corner)},
+        {tooth + 1: fit @ corner for tooth, corner in enumerate(samples.corner)},
         hub_windup(profile, ring.law),
         _tail(own),
         remainder,

@@ -72,8 +72,8 @@ class AxialHarmonics:
         places = chebyshev.chebvander(
             np.clip((2 * root - near - far) / (far - near), -1, 1), len(self.own) - 1
         )
-        found = places @ (self.own @ _waves(wavenumber, self.own.shape[1]).T)
-        return np.asarray(found - _logarithm(wavenumber))
+        smooth = places @ (self.own @ _waves(wavenumber, self.own.shape[1]).T)
+        return np.asarray(smooth - _logarithm(wavenumber))
 
     def cross_at(self, tooth: int, load: Array, point: Array, wavenumber: Array) -> Array:
         """c(k) - c(0) on a neighbour (..., waves), counted from 1 to the side of growing rho."""
@@ -146,8 +146,8 @@ def axial_harmonics(meshed: MeshedShape) -> AxialHarmonics:
     unit, wavenumber = solved_waves()
     answers = [prism(over, Face.wave(k)).influence(at, reach) for k in wavenumber]
     still = answers[-1]
-    own = np.array([one[0][:, 0, 0] - still[0][:, 0, 0] for one in answers])
-    cross = np.array([one[1][:, :, 0, :, 0] - still[1][:, :, 0, :, 0] for one in answers])
+    own = np.array([answer[0][:, 0, 0] - still[0][:, 0, 0] for answer in answers])
+    cross = np.array([answer[1][:, :, 0, :, 0] - still[1][:, :, 0, :, 0] for answer in answers])
     own += _logarithm(wavenumber)[:, None]
     low, high, end = float(rho[0]), float(rho[-1]), profile.flank_rho[1]
     by_wave = np.linalg.inv(chebyshev.chebvander(unit, WAVES - 1))
@@ -214,9 +214,9 @@ class EndCorrectionOfCells:
         """The same on a neighbour; cells of the load first."""
         size = self.cross.shape[1]
         loads, points = (_by_place(rho, self.rho_range, size) for rho in (load, point))
-        both = (loads[..., :, None] * points[..., None, :]).reshape(*loads.shape[:-1], size**2)
+        products = (loads[..., :, None] * points[..., None, :]).reshape(*loads.shape[:-1], size**2)
         series = self.cross[tooth - 1].reshape(size**2, *self.cross.shape[3:])
-        return np.asarray(np.tensordot(both, series, axes=1))
+        return np.asarray(np.tensordot(products, series, axes=1))
 
 
 def end_correction(meshed: MeshedShape, face_width: float) -> EndCorrection:
@@ -225,9 +225,11 @@ def end_correction(meshed: MeshedShape, face_width: float) -> EndCorrection:
     rho, end = sample_places(profile, END_PLACES), profile.flank_rho[1]
     ends = float(rho[0]), float(rho[-1])
     half = half_face(0.5 * face_width, 1.0)
-    found: FreeEnds = free_ends(over, half, flank_points(over.mesh, rho), reach)
+    solved: FreeEnds = free_ends(over, half, flank_points(over.mesh, rho), reach)
     by_root = np.linalg.inv(_by_root(rho, ends, end, END_PLACES))
     by_place = np.linalg.pinv(_by_place(rho, ends, 2 * END_PLACES // 3 + 1))
-    own = [np.einsum("ai,ipq->apq", by_root, one) for one in found.own]
-    cross = [np.einsum("ai,bj,rijpq->rabpq", by_place, by_place, one, optimize=True) for one in found.cross]
+    own = [np.einsum("ai,ipq->apq", by_root, table) for table in solved.own]
+    cross = [
+        np.einsum("ai,bj,rijpq->rabpq", by_place, by_place, table, optimize=True) for table in solved.cross
+    ]
     return EndCorrection(ends, end, half, (own[0], own[1]), (cross[0], cross[1]))

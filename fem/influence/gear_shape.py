@@ -49,9 +49,9 @@ class GearShape:
         """Tooth of module 1."""
         from gears.tooth.profile import generate
 
-        found = generate(self.gear, 1.0, self.rack, 1.0)
-        assert found is not None  # the pair that it comes from has teeth
-        return found
+        tooth = generate(self.gear, 1.0, self.rack, 1.0)
+        assert tooth is not None  # the pair that it comes from has teeth
+        return tooth
 
     @property
     def law(self) -> PlaneElasticity:
@@ -86,7 +86,7 @@ class MeshedShape:
 def plain(part: Any) -> Any:
     """Turn what decides a record, nested records and numbers, into what keys of caches are made of."""
     if is_dataclass(part):
-        return {one.name: plain(getattr(part, one.name)) for one in fields(part)}
+        return {field.name: plain(getattr(part, field.name)) for field in fields(part)}
     if isinstance(part, tuple):
         return [plain(inner) for inner in part]
     return part if part is None or isinstance(part, str) else float(part)

@@ -148,13 +148,13 @@ class GearStore:
         def missing() -> T:
             return compute() if kept is None else kept(f"gear {name}", {"key": plain(key)}, compute)
 
-        found: T = _RECORDS.obtain((name, key), lambda: read_only(missing()))
-        return found
+        solved: T = _RECORDS.obtain((name, key), lambda: read_only(missing()))
+        return solved
 
     def over_face(self, name: str, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
         """Give what gears do between cells of a face: large, and kept for the few that were used last."""
-        found: T = _FACES.obtain((name, key), compute)
-        return found
+        influence: T = _FACES.obtain((name, key), compute)
+        return influence
 
     def _rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:
         from meshes import mesh_sector
@@ -163,7 +163,7 @@ class GearStore:
         mesh = mesh_sector(meshed.shape.profile, meshed.sizes, meshed.refinements)
         assert mesh.coarser is not None
         own = Cost(watch.seconds, parts={"mesh": watch.seconds})
-        coarse, fine = (ring_of(one, meshed.shape.law) for one in (mesh.coarser, mesh))
+        coarse, fine = (ring_of(sector, meshed.shape.law) for sector in (mesh.coarser, mesh))
         self.costs += [own, coarse.cost, fine.cost]
         return coarse, fine
 
@@ -173,7 +173,7 @@ class GearStore:
         places = sample_places(profile, samples)
         loads = flank_loads(coarse, places)
         there, before = sampled(fine, places, reach), samples_of(loads, reach)
-        found = SolvedFlanks(
+        flanks = SolvedFlanks(
             gear_compliance(fine, profile, there),
             gear_compliance(coarse, profile, before),
             places,
@@ -184,25 +184,25 @@ class GearStore:
             fine.unknowns,
         )
         self.costs.append(Cost(watch.seconds, parts={"solve": watch.seconds}))
-        return found
+        return flanks
 
     def _tips(self, meshed: MeshedShape, before: bool) -> TipStrips:
         ring = self.rings(meshed)[0 if before else 1]
         watch = Stopwatch()
-        found = tip_strips(ring, meshed.shape.profile)
+        strips = tip_strips(ring, meshed.shape.profile)
         self.costs.append(Cost(watch.seconds, parts={"tips": watch.seconds}))
-        return found
+        return strips
 
     def _motion(self, meshed: MeshedShape) -> FlankMotion:
         ring = self.rings(meshed)[0]
         watch = Stopwatch()
-        found = flank_motion(ring)
+        motion = flank_motion(ring)
         self.costs.append(Cost(watch.seconds, parts={"motion": watch.seconds}))
-        return found
+        return motion
 
     def _backs(self, meshed: MeshedShape) -> BackCompliance:
         ring = self.rings(meshed)[1]
         watch, shape = Stopwatch(), meshed.shape
-        found = back_compliance(ring, sample_places(shape.profile, BACK_SAMPLES), shape.reach)
+        backs = back_compliance(ring, sample_places(shape.profile, BACK_SAMPLES), shape.reach)
         self.costs.append(Cost(watch.seconds, parts={"back flanks": watch.seconds}))
-        return found
+        return backs

@@ -49,13 +49,13 @@ class Memo(Generic[T]):
             if key in self._kept:
                 self._kept.move_to_end(key)
                 return self._kept[key]
-        found = compute()
+        record = compute()
         with self._lock:
-            found = self._kept.setdefault(key, found)
+            record = self._kept.setdefault(key, record)
             self._kept.move_to_end(key)
             while len(self._kept) > self.most:
                 self._kept.popitem(last=False)
-        return found
+        return record
 
     def clear(self) -> None:
         """Forget all."""
@@ -68,8 +68,8 @@ def read_only(value: T) -> T:
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
     elif is_dataclass(value):
-        for one in fields(value):
-            read_only(getattr(value, one.name))
+        for field in fields(value):
+            read_only(getattr(value, field.name))
     elif isinstance(value, Mapping):
         for inner in value.values():
             read_only(inner)

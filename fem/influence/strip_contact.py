@@ -90,8 +90,8 @@ def from_the_corner(kernel: Array, gaps: Array, first: Array, levers: Array) -> 
     whole[:, -1, :strips] = whole[:, :strips, -2] = small * levers
     whole[:, :strips, -1], whole[:, -1, -2:] = small * gaps, 0.0
     sums, by_lever, by_gap = (np.empty((contacts, strips)) for _ in range(3))
-    for one, matrix in enumerate(whole):
-        sums[one], by_lever[one], by_gap[one] = _bordered(matrix)
+    for contact, matrix in enumerate(whole):
+        sums[contact], by_lever[contact], by_gap[contact] = _bordered(matrix)
     approach = by_gap / by_lever
     force = (approach * np.cumsum(sums * by_lever, axis=1) - np.cumsum(sums * by_gap, axis=1)) / small**2
     force[:, 0], approach[:, 0] = 0.0, first
@@ -109,13 +109,13 @@ def _bordered(matrix: Array) -> tuple[Array, Array, Array]:
         from scipy.linalg.lapack import dgetrf
 
     strips = len(matrix) - 1
-    found, order, _ = dgetrf(matrix.T)
+    factors, order, _ = dgetrf(matrix.T)
     if not np.array_equal(order, np.arange(strips + 1)):
-        found = matrix.T.copy()
+        factors = matrix.T.copy()
         for k in range(strips):
-            found[k + 1 :, k] /= found[k, k]
-            found[k + 1 :, k + 1 :] -= found[k + 1 :, k, None] * found[k, k + 1 :]
-    return found[:strips, -1], found[-2, :strips], found[-1, :strips]
+            factors[k + 1 :, k] /= factors[k, k]
+            factors[k + 1 :, k + 1 :] -= factors[k + 1 :, k, None] * factors[k, k + 1 :]
+    return factors[:strips, -1], factors[-2, :strips], factors[-1, :strips]
 
 
 def smoothed(force: Array, approach: Array) -> Array:
@@ -188,9 +188,9 @@ def by_the_far_end(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Ar
     point = np.zeros(strip.shape, dtype=bool)
     point[:, 0], point[:, 1:] = True, strip[:, 1:] == before + 1
     row, column = np.nonzero(point)
-    found = np.full((2, *gaps.shape), np.nan)
-    found[:, row, strip[row, column]] = force[row, column], approach[row, column]
-    return found[0], found[1]
+    at_closing = np.full((2, *gaps.shape), np.nan)
+    at_closing[:, row, strip[row, column]] = force[row, column], approach[row, column]
+    return at_closing[0], at_closing[1]
 
 
 def closings(kernel: Array, gaps: Array, levers: Array) -> tuple[Array, Array, Integers]:

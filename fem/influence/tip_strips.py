@@ -228,16 +228,16 @@ def _regular(ring: Ring, normal: FlankPoints, tangent: FlankPoints, solved: int)
     The first letter is the direction of the displacement, the second that of the load.
     """
     loaded = slice(solved, None)
-    where, law, m = normal.points, ring.law, ring.mesh.module
-    gap = np.linalg.norm(where[:, None] - where[None, loaded], axis=2)
-    place = np.arange(len(where))
+    positions, law, m = normal.points, ring.law, ring.mesh.module
+    gap = np.linalg.norm(positions[:, None] - positions[None, loaded], axis=2)
+    place = np.arange(len(positions))
     on_load = place[:, None] == place[loaded]
     log = -2 / (np.pi * law.plane_modulus) * np.log(np.where(on_load, m, gap) / m)
     step = (1 - law.plane_poisson) / (2 * law.plane_modulus) * np.sign(place[loaded] - place[:, None])
     constant = (1 + law.plane_poisson) / (np.pi * law.plane_modulus)
     loads = line_loads(ring, joined(normal.part(loaded), tangent.part(loaded)))
-    both = joined(normal, tangent)
-    moved = loads.on_tooth(0, both) + loads.singular(both)
+    points = joined(normal, tangent)
+    moved = loads.on_tooth(0, points) + loads.singular(points)
     (nn, nt), (tn, tt) = (np.hsplit(rows, 2) for rows in np.vsplit(moved, 2))
     by_normal, by_tangent = np.split(loads.regular_at_load(), 2)
     # at the load itself the displacement along the load is an energy, which converges faster

@@ -12,24 +12,24 @@ from gears import GearPair
 __all__ = ["check_pair", "numbers_of"]
 
 
-def check_pair(found: Faults, pair: object) -> bool:
+def check_pair(faults: Faults, pair: object) -> bool:
     """Whether a pair is one; where it is not, note that."""
-    return found.instance("pair", pair, GearPair, "such as GearPair(Gear(24), Gear(31), 2e-3, 20e-3)")
+    return faults.instance("pair", pair, GearPair, "such as GearPair(Gear(24), Gear(31), 2e-3, 20e-3)")
 
 
-def numbers_of(found: Faults, where: str, value: object, remedy: str) -> Array:
+def numbers_of(faults: Faults, name: str, value: object, remedy: str) -> Array:
     """One number or several as an array of their shape; where they are none, note that and return nan.
 
     Text that numpy would read as numbers is none.
     """
     try:
-        given = np.asarray(value)
+        numbers = np.asarray(value)
     except ValueError:  # sequences of different lengths
-        given = np.array(None)
-    real = given.dtype.kind in "iuf" or (
-        given.dtype == object and all(isinstance(one, Real) for one in given.ravel().tolist())
+        numbers = np.array(None)
+    real = numbers.dtype.kind in "iuf" or (
+        numbers.dtype == object and all(isinstance(number, Real) for number in numbers.ravel().tolist())
     )
     if not real:
-        found.add(where, shorten(value), "must be a number, or a sequence of numbers", remedy)
+        faults.add(name, shorten(value), "must be a number, or a sequence of numbers", remedy)
         return np.full(1, np.nan)
-    return np.asarray(given, dtype=float)
+    return np.asarray(numbers, dtype=float)

@@ -117,24 +117,24 @@ def compliance(
     """
     from meshes import Sizes
 
-    found = Faults()
-    check_pair(found, pair)
-    found.number("tolerance", tolerance, TOLERANCE)
-    check_plane(found, plane)
+    faults = Faults()
+    check_pair(faults, pair)
+    faults.number("tolerance", tolerance, TOLERANCE)
+    check_plane(faults, plane)
     if refinements is not None:
-        found.number("refinements", refinements, REFINEMENTS)
-    found.raise_if_any()
+        faults.number("refinements", refinements, REFINEMENTS)
+    faults.raise_if_any()
     watch = Stopwatch()
     held = on_both(supports)
     profiles = held_profiles(pair, held)
-    both = shapes(pair, profiles, plane)
+    gear_shapes = shapes(pair, profiles, plane)
     laws = [PlaneElasticity.of(material, plane) for material in pair.materials]
     sizes, level = sizes or Sizes(), refinements or 1
     gears = GearStore(kept)
     while True:
         first, second = (
             _fitted(gears, MeshedShape(shape, sizes, level), tolerance).scaled(pair.module, law)
-            for shape, law in zip(both, laws, strict=True)
+            for shape, law in zip(gear_shapes, laws, strict=True)
         )
         mesh_error, fit_error = _errors(pair, (first, second), sizes.corner * 0.5**level)
         error = mesh_error + fit_error
@@ -158,7 +158,7 @@ def compliance(
         level,
         sizes,
         # every tooth that may touch together with another one, tip edges outside the path at both ends included
-        min(ceil(pair.contact_ratio) + 1, *(len(one.flexible.cross_series) for one in (first, second))),
+        min(ceil(pair.contact_ratio) + 1, *(len(solved.flexible.cross_series) for solved in (first, second))),
         error,
         Cost(0.0),
         settled,
@@ -181,11 +181,11 @@ def _fitted(gears: GearStore, meshed: MeshedShape, tolerance: float) -> SolvedFl
     """Solve one gear in modules and E*, with as many loads as the fit needs."""
     local = float(hertz_indentation(0.1, meshed.shape.law, 1.0))
     for count in SAMPLES:
-        found = gears.flanks(meshed, count)
-        least = local + float(np.min(found.flexible.own(found.rho)))
-        if found.flexible.fit_error <= FIT * tolerance * least:
+        flanks = gears.flanks(meshed, count)
+        least = local + float(np.min(flanks.flexible.own(flanks.rho)))
+        if flanks.flexible.fit_error <= FIT * tolerance * least:
             break
-    return found
+    return flanks
 
 
 def _errors(pair: GearPair, gears: tuple[SolvedFlanks, SolvedFlanks], edge: float) -> tuple[float, float]:

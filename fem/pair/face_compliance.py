@@ -65,10 +65,10 @@ def pair_waves(
     long = width / bodies.pair.module
     wavenumber: Array = np.arange(1, cells, dtype=float) * (np.pi / long)
     n = rho.shape[-1]
-    found: Array = np.zeros((*rho.shape[1:], n, cells - 1))
+    compliance: Array = np.zeros((*rho.shape[1:], n, cells - 1))
     for gear in gears:
-        found += gear_waves(bodies, gear, rho[gear], wavenumber, strip * long / cells) / width
-    return found
+        compliance += gear_waves(bodies, gear, rho[gear], wavenumber, strip * long / cells) / width
+    return compliance
 
 
 def gear_waves(
@@ -91,20 +91,20 @@ def gear_waves(
     meshed, flexible = bodies.meshed[gear], (bodies.pinion, bodies.wheel)[gear]
     waves = waves_of(meshed, GearStore())
     n = rho.shape[-1]
-    found: Array = np.zeros((*rho.shape, n, len(wavenumber)))
+    compliance: Array = np.zeros((*rho.shape, n, len(wavenumber)))
     diagonal = np.arange(n)
     module = bodies.pair.module
     last = waves.rho_end**2 - 2.0 * SPREAD * flexible.base_radius / module
     unit, at = 1.0 / flexible.law.plane_modulus, np.minimum(rho / module, np.sqrt(last))
     wide = beyond_logarithm(wavenumber * half_width) if half_width else 0.0
-    found[..., diagonal, diagonal, :] = unit * (waves.own_at(at, wavenumber) + 2 / np.pi * wide)
+    compliance[..., diagonal, diagonal, :] = unit * (waves.own_at(at, wavenumber) + 2 / np.pi * wide)
     for apart in range(1, min(n, bodies.reach + 1)):
         behind, ahead = diagonal[:-apart], diagonal[apart:]
         # the pair ahead has the smaller rho2
         load, point = (behind, ahead) if gear == 0 else (ahead, behind)
         cross = unit * waves.cross_at(apart, at[..., load], at[..., point], wavenumber)
-        found[..., behind, ahead, :] = found[..., ahead, behind, :] = cross
-    return found
+        compliance[..., behind, ahead, :] = compliance[..., ahead, behind, :] = cross
+    return compliance
 
 
 def even_loads(bodies: PairCompliance, gear: int, rho: Array) -> Array:
@@ -116,15 +116,15 @@ def even_loads(bodies: PairCompliance, gear: int, rho: Array) -> Array:
         As of ``gear_waves``.
     """
     flexible, n = (bodies.pinion, bodies.wheel)[gear], rho.shape[-1]
-    found: Array = np.zeros((*rho.shape, n))
+    compliance: Array = np.zeros((*rho.shape, n))
     diagonal = np.arange(n)
-    found[..., diagonal, diagonal] = flexible.own(rho)
+    compliance[..., diagonal, diagonal] = flexible.own(rho)
     for apart in range(1, min(n, bodies.reach + 1)):
         behind, ahead = diagonal[:-apart], diagonal[apart:]
         load, point = (behind, ahead) if gear == 0 else (ahead, behind)
         cross = flexible.cross(apart, rho[..., load], rho[..., point])
-        found[..., behind, ahead] = found[..., ahead, behind] = cross
-    return found
+        compliance[..., behind, ahead] = compliance[..., ahead, behind] = cross
+    return compliance
 
 
 def pair_ends(
@@ -149,22 +149,22 @@ def pair_ends(
         As of ``pair_waves``.
     """
     n, cells = rho.shape[-1], len(edges[0]) - 1
-    found: Array = np.zeros((*rho.shape[1:], cells, n, cells))
+    compliance: Array = np.zeros((*rho.shape[1:], cells, n, cells))
     module = bodies.pair.module
     for gear in gears:
         flexible = (bodies.pinion, bodies.wheel)[gear]
         ends = _ends(bodies.meshed[gear], widths[gear] / module, edges[gear] / module)
         unit, at = 1.0 / (flexible.law.plane_modulus * module), rho[gear] / module
-        for one in range(n):
-            found[..., one, :, one, :] += unit * ends.own_at(at[..., one])
+        for contact in range(n):
+            compliance[..., contact, :, contact, :] += unit * ends.own_at(at[..., contact])
         for apart in range(1, min(n, bodies.reach + 1)):
             for behind in range(n - apart):
                 ahead = behind + apart
                 load, point = (behind, ahead) if gear == 0 else (ahead, behind)
                 cross = unit * ends.cross_at(apart, at[..., load], at[..., point])
-                found[..., load, :, point, :] += cross
-                found[..., point, :, load, :] += np.swapaxes(cross, -1, -2)
-    return found
+                compliance[..., load, :, point, :] += cross
+                compliance[..., point, :, load, :] += np.swapaxes(cross, -1, -2)
+    return compliance
 
 
 def _ends(meshed: MeshedShape, width: float, edges: Array) -> EndCorrectionOfCells:

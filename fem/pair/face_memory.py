@@ -44,12 +44,12 @@ def memory_of_cells(pair: GearPair, cells: int, positions: int, free_ends: bool 
     return 8.0 * cells**2 * (between + (SERIES if free_ends else 0.0)) + WORK
 
 
-def check_memory(found: Faults, pair: GearPair, cells: int, positions: int, model: str) -> None:
+def check_memory(faults: Faults, pair: GearPair, cells: int, positions: int, model: str) -> None:
     """Note a face that takes more memory than is free.
 
     Parameters
     ----------
-    found : Faults
+    faults : Faults
     pair : GearPair
     cells, positions : int
     model : {"free-ends", "walls", "slices"}
@@ -63,7 +63,9 @@ def check_memory(found: Faults, pair: GearPair, cells: int, positions: int, mode
                 f"must not take more memory than is free, {_size(free)}: free ends of a face of {width:.3g} modules "
                 f"take about {_size(needed)}"
             )
-            found.add("face_model", repr(model), allowed, 'take "walls", which takes a tenth, or free memory')
+            faults.add(
+                "face_model", repr(model), allowed, 'take "walls", which takes a tenth, or free memory'
+            )
     needed = memory_of_cells(pair, cells, positions, ends)
     if needed > free:
         most = LEAST_CELLS
@@ -73,7 +75,7 @@ def check_memory(found: Faults, pair: GearPair, cells: int, positions: int, mode
             f"must not take more memory than is free, {_size(free)}: at {positions} positions they take about "
             f"{_size(needed)}"
         )
-        found.add("cells", cells, allowed, f"take {most} cells or free memory")
+        faults.add("cells", cells, allowed, f"take {most} cells or free memory")
 
 
 def _size(count: float) -> str:

@@ -72,33 +72,33 @@ class FaceSetting:
         """Middles of the cells (cells,) [m], 0 at mid-face."""
         return np.asarray(((np.arange(self.cells) + 0.5) / self.cells - 0.5) * face_width)
 
-    def check(self, found: Faults, pair: GearPair, positions: int) -> None:
+    def check(self, faults: Faults, pair: GearPair, positions: int) -> None:
         """Note everything that is wrong, and what takes more memory at a number of positions than there is."""
         from fem.pair.face_memory import check_memory
 
-        found.number("cells", self.cells, CELLS)
-        found.choice("face_model", self.model, (FREE_ENDS, WALLS, SLICES), "slices alone bear too evenly")
+        faults.number("cells", self.cells, CELLS)
+        faults.choice("face_model", self.model, (FREE_ENDS, WALLS, SLICES), "slices alone bear too evenly")
         if isinstance(self.cells, int) and self.cells % 2:
-            found.add("cells", self.cells, "must be even", "mid-face lies between two cells")
-        if found.instance("alignment", self.alignment, Alignment, optional=True):
-            found.extend(self.alignment.faults("alignment"))
+            faults.add("cells", self.cells, "must be even", "mid-face lies between two cells")
+        if faults.instance("alignment", self.alignment, Alignment, optional=True):
+            faults.extend(self.alignment.faults("alignment"))
         if not isinstance(self.shafts, Sequence) or len(self.shafts) != 2:
-            found.add(
+            faults.add(
                 "shafts", shorten(self.shafts), "must be of pinion and wheel", "give None for a stiff one"
             )
             return
         for name, lead, width in zip(("pinion", "wheel"), self.leads, pair.face_widths, strict=True):
             if lead.end_relief and lead.end_relief_length > 0.5 * width:
                 allowed = f"must be at most {0.5 * width:g} m, half the face"
-                found.add(
+                faults.add(
                     f"{name}.lead.end_relief_length", lead.end_relief_length, allowed, "relieve less of it"
                 )
 
-        if not found.found:
-            check_memory(found, pair, self.cells, positions, self.model)
+        if not faults.found:
+            check_memory(faults, pair, self.cells, positions, self.model)
         for k, shaft in enumerate(self.shafts):
-            if found.instance(f"shafts[{k}]", shaft, Shaft, optional=True) and shaft is not None:
-                _check_shaft(found, f"shafts[{k}]", shaft, pair.face_width, pair.face_offsets[k])
+            if faults.instance(f"shafts[{k}]", shaft, Shaft, optional=True) and shaft is not None:
+                _check_shaft(faults, f"shafts[{k}]", shaft, pair.face_width, pair.face_offsets[k])
 
     def least_gap(self, pair: GearPair) -> float:
         """Smallest of the gaps along the face by straight leads and what lies in the plane of action [m], 0 or less."""
@@ -111,8 +111,8 @@ class FaceSetting:
 
     def gaps(self, pair: GearPair, radius: Array) -> Array:
         """Mean gaps of the cells (..., cells) [m], less those at mid-face of straight aligned gears."""
-        both = self.gaps_within(pair, radius, 2)
-        return np.asarray((both[..., :-1:2] + 4.0 * both[..., 1::2] + both[..., 2::2]) / 6.0)
+        sampled = self.gaps_within(pair, radius, 2)
+        return np.asarray((sampled[..., :-1:2] + 4.0 * sampled[..., 1::2] + sampled[..., 2::2]) / 6.0)
 
     def gaps_within(self, pair: GearPair, radius: Array, parts: int) -> Array:
         """Gaps at the ends of equal parts of every cell (..., parts cells + 1) [m]."""
@@ -136,14 +136,14 @@ def face_setting(
     shafts: tuple[Shaft | None, Shaft | None] | None = None,
 ) -> FaceSetting | None:
     """How the face of a pair is looked at; None where nothing differs along it and no cells are asked for."""
-    leads, both = (pair.pinion.lead, pair.wheel.lead), shafts or (None, None)
+    leads, pair_shafts = (pair.pinion.lead, pair.wheel.lead), shafts or (None, None)
     alike = leads == (STRAIGHT, STRAIGHT) and pair.face_widths == (pair.face_width, pair.face_width)
-    if alike and alignment is None and cells is None and both == (None, None):
+    if alike and alignment is None and cells is None and pair_shafts == (None, None):
         return None
-    return FaceSetting(USUAL if cells is None else cells, alignment or ALIGNED, leads, model, both)
+    return FaceSetting(USUAL if cells is None else cells, alignment or ALIGNED, leads, model, pair_shafts)
 
 
-def _check_shaft(found: Faults, where: str, shaft: Shaft, face_width: float, offset: float) -> None:
+def _check_shaft(faults: Faults, name: str, shaft: Shaft, face_width: float, offset: float) -> None:
     """Note a face in contact that is not all on its shaft."""
     half = 0.5 * face_width
     within = Limit(
@@ -153,7 +153,7 @@ def _check_shaft(found: Faults, where: str, shaft: Shaft, face_width: float, off
         "the whole face must be on the shaft: make its end longer",
     )
     if within.low <= within.high:
-        found.number(f"{where}.gear_position", shaft.gear_position, within)
+        faults.number(f"{name}.gear_position", shaft.gear_position, within)
     else:
         allowed = f"must be at least the face width, {face_width:g} m"
-        found.add(f"{where}.segments", f"{shaft.length:g} m long", allowed, "give the steps of the shaft")
+        faults.add(f"{name}.segments", f"{shaft.length:g} m long", allowed, "give the steps of the shaft")

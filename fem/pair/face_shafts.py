@@ -101,7 +101,7 @@ class ShaftsUnderFace:
     module: float
 
     @property
-    def both(self) -> Array:
+    def compliance(self) -> Array:
         """S of both shafts (cells, cells) [m/N]."""
         return np.asarray(self.between.sum(axis=0))
 
@@ -142,7 +142,7 @@ class ShaftsUnderFace:
         mesh = [[np.sum(row * slope, axis=-1) for slope in slopes] for row in rows]
         bent = self.bent(share.forces.reshape(*share.forces.shape[:-1], -1, len(self.middles)), kappa)
         touch = self._touch(bent.sum(axis=-2), kappa, gaps)
-        found = HeldShafts(
+        held_shafts = HeldShafts(
             bent.mean(axis=-1),
             bent @ self.middles / (self.middles @ self.middles),
             touch,
@@ -156,7 +156,7 @@ class ShaftsUnderFace:
                 stiffness=mesh[0][0],
                 pair_stiffness=slopes[0],
             ),
-            found,
+            held_shafts,
         )
 
     def _touch(self, bent: Array, kappa: Array, gaps: Array) -> Array:
@@ -190,8 +190,8 @@ def shafts_under_face(face: FaceSetting, pair: GearPair) -> ShaftsUnderFace | No
 
 def joined(parts: Sequence[HeldShafts], order: Integers) -> HeldShafts:
     """Shafts of some torques each, as those of all in an order."""
-    names = [one.name for one in fields(HeldShafts)]
-    return HeldShafts(*(np.concatenate([getattr(one, name) for one in parts])[order] for name in names))
+    names = [field.name for field in fields(HeldShafts)]
+    return HeldShafts(*(np.concatenate([getattr(part, name) for part in parts])[order] for name in names))
 
 
 @lru_cache(maxsize=32)
@@ -215,6 +215,6 @@ def _between_middles(cells: int) -> Array:
     """Straight lines through values in the middles of cells, at PLACES along the face (cells, PLACES)."""
     at = np.linspace(-0.5, cells - 0.5, PLACES)
     first = np.clip(np.floor(at).astype(int), 0, cells - 2)
-    found, place = np.zeros((cells, PLACES)), np.arange(PLACES)
-    found[first, place], found[first + 1, place] = 1.0 - (at - first), at - first
-    return found
+    weights, place = np.zeros((cells, PLACES)), np.arange(PLACES)
+    weights[first, place], weights[first + 1, place] = 1.0 - (at - first), at - first
+    return weights

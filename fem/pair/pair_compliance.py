@@ -47,10 +47,10 @@ class PairCompliance(SolvedPair):
         base.InputError
             A name that is no part.
         """
-        found = Faults()
+        faults = Faults()
         for name in parts:
-            found.choice("parts", name, PARTS, "name a part")
-        found.raise_if_any()
+            faults.choice("parts", name, PARTS, "name a part")
+        faults.raise_if_any()
         return replace(self, left_out=self.left_out | set(parts))
 
     @described("m/N", "gear")
@@ -132,8 +132,8 @@ class PairCompliance(SolvedPair):
         """
         rho1 = np.asarray(rho1, dtype=float)
         width, ahead = self.pair.face_width, rho1 + self.pair.base_pitch
-        every = replace(self, left_out=frozenset())
-        coupling = every.bulk(np.stack([rho1, ahead], axis=-1))[..., 0, 1]
+        whole = replace(self, left_out=frozenset())
+        coupling = whole.bulk(np.stack([rho1, ahead], axis=-1))[..., 0, 1]
         windup, support = sum(self.hub_windup), sum(self.support)
         return MappingProxyType(
             {

@@ -100,10 +100,10 @@ class LoadedShape:
     def solved(self, gears: GearStore, edge: float = COARSEST) -> SolvedFillets:
         """Influence on a mesh with edges on the fillets, and on its refinement, solved where it is kept nowhere."""
         key = (self.shape, edge, self.low)
-        found: SolvedFillets = gears.record(
+        influence: SolvedFillets = gears.record(
             "fillets", key, partial(_two_meshes, gears, self.shape, edge, self.low)
         )
-        return found
+        return influence
 
     def mesh(self, edge: float = COARSEST) -> SectorMesh:
         """Finer one of the two meshes."""
@@ -158,12 +158,12 @@ def fillets(
     >>> bodies.error < 0.1
     True
     """
-    found = Faults()
-    found.number("tolerance", tolerance, TOLERANCE)
-    check_plane(found, plane)
+    faults = Faults()
+    faults.number("tolerance", tolerance, TOLERANCE)
+    check_plane(faults, plane)
     if fillet_edge is not None:
-        found.number("fillet_edge", fillet_edge, FILLET_EDGE)
-    found.raise_if_any()
+        faults.number("fillet_edge", fillet_edge, FILLET_EDGE)
+    faults.raise_if_any()
     _warn_of_held_rims(pair)
     watch = Stopwatch()
     edge = COARSEST if fillet_edge is None else fillet_edge
@@ -229,7 +229,7 @@ def _two_meshes(gears: GearStore, shape: GearShape, edge: float, low: float) -> 
     ring = ring_of(refined(coarse_mesh), law)
     fine = fillet_influence(ring, profile, shape.reach + 1, low)
     rho = np.linspace(*fine.rho_range, 15)
-    greatest, other = (np.max(np.abs(found.stress(0, rho)), axis=2) for found in (fine, coarse))
+    greatest, other = (np.max(np.abs(influence.stress(0, rho)), axis=2) for influence in (fine, coarse))
     error = 0.5 * float(np.max(np.abs(other / greatest - 1))) + fine.noise / float(np.max(greatest))
     gears.costs.append(ring.cost)
     return SolvedFillets(fine, error, ring.cost.unknowns, ring.unknowns)

@@ -62,7 +62,7 @@ def turns(
     bore_inertia : (float, float)
         What turns with the bores of pinion and wheel, for "body" [kg m2].
     """
-    found = []
+    gear_turns = []
     for gear, profile in enumerate(held_profiles(pair, supports)):
         base, material, width = profile.base_radius, pair.materials[gear], pair.face_widths[gear]
         body = profile.zones, base, PlaneElasticity.of(material, "strain").shear_modulus
@@ -75,8 +75,8 @@ def turns(
             filled = profile.bore_radius**4 - pair.bore_radii[gear] ** 4
             inside = bore_inertia[gear] / (0.5 * pi * material.density * width) + filled
             turn = (inertial_wind_up(*body, inside) + step_wind_up(profile, width, body[2], inside)) / width
-        found.append(turn)
-    return np.array(found)
+        gear_turns.append(turn)
+    return np.array(gear_turns)
 
 
 def held_turns(bodies: PairCompliance) -> tuple[str, tuple[Support, Support]]:
@@ -87,13 +87,13 @@ def held_turns(bodies: PairCompliance) -> tuple[str, tuple[Support, Support]]:
     """
     supports = bodies.supports
     if "support" in bodies.left_out:
-        first, second = (Support(hub_radius=one.hub_radius) for one in supports)
+        first, second = (Support(hub_radius=support.hub_radius) for support in supports)
         supports = first, second
     if "coupling" in bodies.left_out:
         return "", supports
     if "hub_windup" not in bodies.left_out:
         return "bore", supports
-    sprung = any(one.torsional_stiffness != inf for one in supports)
+    sprung = any(support.torsional_stiffness != inf for support in supports)
     return ("" if sprung else "teeth"), supports
 
 
@@ -106,12 +106,12 @@ def default_reference(bodies: PairCompliance) -> str:
 
 
 def check_reference(
-    found: Faults, measured: str, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)
+    faults: Faults, measured: str, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)
 ) -> None:
     """Note what cannot be measured: `measured` is what a deflection is measured against, empty for nothing common."""
-    found.choice("reference", reference, REFERENCES)
+    faults.choice("reference", reference, REFERENCES)
     for name, inertia in zip(("pinion", "wheel"), bore_inertia, strict=True):
-        found.number(f"bore_inertia.{name}", inertia, INERTIA)
+        faults.number(f"bore_inertia.{name}", inertia, INERTIA)
     if not measured:
         allowed = "requires a compliance whose coupling and supports' turn are not left out"
-        found.add("reference", repr(reference), allowed, "take the whole compliance")
+        faults.add("reference", repr(reference), allowed, "take the whole compliance")

@@ -68,25 +68,25 @@ def single_pair_stiffness(
     >>> float(at_C[0] / 40e-3 / 1e9).__round__(1)  # N/(mm um)
     14.8
     """
-    found = Faults()
-    check_pair(found, pair)
-    rho1 = np.atleast_1d(numbers_of(found, "rho1", rho1, "give metres"))
-    found.instance("compliance", compliance, PairCompliance, "as of fem.compliance", optional=True)
-    found.raise_if_any()
+    faults = Faults()
+    check_pair(faults, pair)
+    rho1 = np.atleast_1d(numbers_of(faults, "rho1", rho1, "give metres"))
+    faults.instance("compliance", compliance, PairCompliance, "as of fem.compliance", optional=True)
+    faults.raise_if_any()
     bodies = compliance or _compliance(pair, tolerance, plane)
     points = pair.points
-    found.number("force", force, FORCE)
+    faults.number("force", force, FORCE)
     slack = 1e-9 * points.E
     if not np.all((rho1 >= points.A - slack) & (rho1 <= points.E + slack)):
         allowed = f"must be {points.A:g} to {points.E:g} m, the path of contact"
-        found.add("rho1", f"{np.min(rho1):g} .. {np.max(rho1):g}", allowed, "stay between A and E")
-    found.choice("reference", reference, REFERENCES)
-    found.raise_if_any()
+        faults.add("rho1", f"{np.min(rho1):g} .. {np.max(rho1):g}", allowed, "stay between A and E")
+    faults.choice("reference", reference, REFERENCES)
+    faults.raise_if_any()
     approach = bodies.own(rho1) * force + bodies.hertz(rho1).approach(np.full(len(rho1), float(force)))
     if reference != "bore":
         held, supports = held_turns(replace(bodies, left_out=bodies.left_out - {"coupling"}))
-        check_reference(found, held, reference, bore_inertia)
-        found.raise_if_any()
+        check_reference(faults, held, reference, bore_inertia)
+        faults.raise_if_any()
         less = turns(pair, supports, held) - turns(pair, supports, reference, bore_inertia)
         approach = approach - force * less.sum()
     stiffness: Array = force / approach

@@ -72,7 +72,7 @@ class SolvedPair:
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave the factorised gears behind: they are large, and a factorisation cannot travel."""
-        return {one.name: getattr(self, one.name) for one in fields(self)}
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @property
     def meshed(self) -> tuple[MeshedShape, MeshedShape]:
@@ -173,8 +173,8 @@ class SolvedPair:
             return None
         pinion, wheel = self._flanks_before
         tips, motions, backs = (
-            self.__dict__.get(found, given)  # whatever has been solved until now
-            for found, given in (
+            self.__dict__.get(name, known)  # whatever has been solved until now
+            for name, known in (
                 ("tips", self.tip_strips),
                 ("motions", self.flank_motions),
                 ("back_flanks", self.back_series),

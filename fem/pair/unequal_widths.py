@@ -55,11 +55,13 @@ def overhang(bodies: PairCompliance, gear: int, rho: Array, face: FaceSetting) -
     last = answer[..., -1:]
     z = face.middles(pair.face_width) - pair.face_offsets[gear] + 0.5 * width
     shapes = np.cos(wave[:, None] * z) * np.sqrt(np.where(wave > 0.0, 2.0, 1.0) / width)[:, None]
-    found = _by_waves(shapes, answer[..., :-1] - last)
-    found[..., np.arange(cells), :, np.arange(cells)] += np.moveaxis(last, -1, 0) * cells / pair.face_width
+    compliance = _by_waves(shapes, answer[..., :-1] - last)
+    compliance[..., np.arange(cells), :, np.arange(cells)] += (
+        np.moveaxis(last, -1, 0) * cells / pair.face_width
+    )
     equal: Array = np.arange(cells, dtype=float) * np.pi / pair.face_width
     same = even + gear_waves(bodies, gear, rho, equal * module)
-    return found - _by_waves(cosines(cells) * np.sqrt(cells / pair.face_width), same)
+    return compliance - _by_waves(cosines(cells) * np.sqrt(cells / pair.face_width), same)
 
 
 def _by_waves(shapes: Array, answer: Array) -> Array:
@@ -70,6 +72,6 @@ def _by_waves(shapes: Array, answer: Array) -> Array:
 def cosines(cells: int) -> Array:
     """Orthonormal cosines over equal cells (modes, cells)."""
     m, c = np.arange(cells)[:, None], np.arange(cells) + 0.5
-    found = np.cos(np.pi * m * c / cells) * np.sqrt(2.0 / cells)
-    found[0] = np.sqrt(1.0 / cells)
-    return np.asarray(found)
+    modes = np.cos(np.pi * m * c / cells) * np.sqrt(2.0 / cells)
+    modes[0] = np.sqrt(1.0 / cells)
+    return np.asarray(modes)

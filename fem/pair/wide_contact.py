@@ -85,7 +85,7 @@ def shared_by_width(
     from gears.tooth.errors import LoadSharingError
 
     level = np.zeros(len(start), dtype=int)
-    found: dict[int, LoadShare] = {}
+    shares: dict[int, LoadShare] = {}
 
     def strip(of: int) -> float:
         return 2.0**of / NARROW if of else 0.0
@@ -95,30 +95,30 @@ def shared_by_width(
 
     while np.any(short := (start > reaches(level)) & (level < WIDEST)):
         level[short] += 1
-    todo = [np.flatnonzero(level == one) for one in np.unique(level)]
+    todo = [np.flatnonzero(level == step) for step in np.unique(level)]
     while todo:
-        some = todo.pop()
-        at = int(level[some[0]])
+        numbers = todo.pop()
+        at = int(level[numbers[0]])
         try:
-            one = share(strip(at), some)
+            shared = share(strip(at), numbers)
         except LoadSharingError:
-            if len(some) > 1:
-                todo += [some[k : k + 1] for k in range(len(some))]
+            if len(numbers) > 1:
+                todo += [numbers[k : k + 1] for k in range(len(numbers))]
                 continue
             if at == WIDEST:
                 raise
-            level[some] += 1
-            todo.append(some)
+            level[numbers] += 1
+            todo.append(numbers)
             continue
-        wide = (width(one) > reaches(level[some])) & (at < WIDEST)
-        for k, number in enumerate(some):
+        wide = (width(shared) > reaches(level[numbers])) & (at < WIDEST)
+        for k, number in enumerate(numbers):
             if not wide[k]:
-                found[int(number)] = _part(one, k)
+                shares[int(number)] = _part(shared, k)
         if wide.any():
-            level[some[wide]] += 1
-            todo.append(some[wide])
-    share_of_all = _joined([found[number] for number in range(len(start))])
-    return share_of_all, np.array([strip(int(one)) for one in level])
+            level[numbers[wide]] += 1
+            todo.append(numbers[wide])
+    share_of_all = _joined([shares[number] for number in range(len(start))])
+    return share_of_all, np.array([strip(int(step)) for step in level])
 
 
 def _part(share: LoadShare, number: int) -> LoadShare:

@@ -88,14 +88,14 @@ def _ends(loaded: LoadedShape, width: float, gears: GearStore) -> FilletEnds:
 
 
 def over_face(
-    fillets: Fillets, found: FaceFillets, pair: GearPair, setting: FaceSetting
+    fillets: Fillets, solved: FaceFillets, pair: GearPair, setting: FaceSetting
 ) -> tuple[FilletFace, FilletFace]:
     """Fillets of pinion and wheel under loads on the cells of a face.
 
     Parameters
     ----------
     fillets : Fillets
-    found : FaceFillets
+    solved : FaceFillets
         Of these.
     pair : gears.GearPair
     setting : FaceSetting
@@ -103,8 +103,8 @@ def over_face(
     pinion, wheel = (
         FilletFace(
             (fillets.pinion, fillets.wheel)[gear],
-            found.waves[gear],
-            None if found.ends is None else found.ends[gear],
+            solved.waves[gear],
+            None if solved.ends is None else solved.ends[gear],
             pair.face_widths[gear],
             setting.edges(pair) - pair.face_offsets[gear],
         )

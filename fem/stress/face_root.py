@@ -133,14 +133,15 @@ def root_over_face(on_arcs: RootOnArcs, face: FaceLoads, rho: Array, loaded_posi
     """
     stress, width = on_arcs.stress, face.pair.face_width
     z = places_on_face(stress.fillets.width, width / len(face.face_position)) + stress.offset
-    nodes, here = on_arcs.loads(on_arcs.found.arcs), CellLoads(face.line_load, rho)
-    both, sampled = stress.greatest(nodes, z), stress.greatest(here, z)
-    over_cycle = [one.max(axis=(0, 1)) for one in both]
+    nodes, here = on_arcs.loads(on_arcs.mesh_arcs.arcs), CellLoads(face.line_load, rho)
+    extremes, sampled = stress.greatest(nodes, z), stress.greatest(here, z)
+    over_cycle = [maxima.max(axis=(0, 1)) for maxima in extremes]
     tension, compression = (
-        on_arcs.peak(side, _place(z, one)) for side, one in zip((LOADED, OTHER), over_cycle, strict=True)
+        on_arcs.peak(side, _place(z, maxima))
+        for side, maxima in zip((LOADED, OTHER), over_cycle, strict=True)
     )
     peak, row = tension.peak, int(np.argmax(stress.teeth == tension.peak.tooth))
-    then = both[LOADED][tension.instant, row]
+    then = extremes[LOADED][tension.instant, row]
     bears = np.abs(z) <= 0.5 * width * (1.0 + 1e-9)
     mean = float(np.trapezoid(then[bears], z[bears]) / np.ptp(z[bears]))
     return RootOverFace(
@@ -193,7 +194,7 @@ class RootOnArcs:
     Attributes
     ----------
     stress : StressOverFace
-    found : MeshArcs
+    mesh_arcs : MeshArcs
         With cells.
     positions : callable
         Positions of the loaded flanks at all nodes of arcs.
@@ -204,29 +205,32 @@ class RootOnArcs:
     """
 
     stress: StressOverFace
-    found: MeshArcs
+    mesh_arcs: MeshArcs
     positions: Callable[[Arcs], Array]
     gear: int
     mesh_error: float
 
     def loads(self, arcs: Arcs) -> CellLoads:
         """Loads at all nodes of arcs, one after the other."""
-        every = np.concatenate([arc.pairs for arc in arcs.arcs if arc.pairs is not None])
-        return CellLoads(every[..., CELLS:], every[..., FORCE + 1 + self.gear])
+        pairs = np.concatenate([arc.pairs for arc in arcs.arcs if arc.pairs is not None])
+        return CellLoads(pairs[..., CELLS:], pairs[..., FORCE + 1 + self.gear])
 
     def peak(self, side: int, z: float) -> _Found:
         """Maximum stress on one side of all teeth and instants at a place of the face."""
-        stress, found, line = self.stress, self.found, self.stress.fillets.influence.line
-        whole = self._whole(found.arcs, z)
-        fine, before = (None if one is None else self._nodes(one, z) for one in (found.arcs, found.before))
+        stress, mesh_arcs, line = self.stress, self.mesh_arcs, self.stress.fillets.influence.line
+        whole = self._whole(mesh_arcs.arcs, z)
+        fine, before = (
+            None if of_mesh is None else self._nodes(of_mesh, z)
+            for of_mesh in (mesh_arcs.arcs, mesh_arcs.before)
+        )
         assert fine is not None
-        peak = peak_of(fine, before, found.gain, stress.teeth, stress.fillets.influence, side)
+        peak = peak_of(fine, before, mesh_arcs.gain, stress.teeth, stress.fillets.influence, side)
         instant = int(np.argmin(np.abs(fine.position + peak.tooth - peak.position)))
         peak = replace(peak, face_position=z)
-        beside = stress.beside(peak, self.loads(found.arcs).part(instant), side)
+        beside = stress.beside(peak, self.loads(mesh_arcs.arcs).part(instant), side)
         error = (self.mesh_error * abs(beside.waves) + ENDS_ERROR * beside.ends) / abs(beside.stress)
-        fewer = () if found.fewer is None else ((found.fewer.arcs, self._left(found.fewer.arcs)),)
-        for arcs, share in (*fewer, *found.varied):  # half as many cells, other films
+        fewer = () if mesh_arcs.fewer is None else ((mesh_arcs.fewer.arcs, self._left(mesh_arcs.fewer.arcs)),)
+        for arcs, share in (*fewer, *mesh_arcs.varied):  # half as many cells, other films
             error += share * abs(self._nodes(arcs, z).greatest(line, side).value / abs(peak.stress_Pa) - 1.0)
         passage = np.stack([whole.min(axis=(0, 1)), whole.max(axis=(0, 1))])
         peak = replace(peak, von_mises_Pa=abs(peak.stress_Pa / beside.stress) * beside.von_mises)
@@ -234,7 +238,7 @@ class RootOnArcs:
 
     def _left(self, fewer: Arcs) -> float:
         """Part of what fewer cells change that is error."""
-        many, few = (self.loads(arcs).load.shape[-1] for arcs in (self.found.arcs, fewer))
+        many, few = (self.loads(arcs).load.shape[-1] for arcs in (self.mesh_arcs.arcs, fewer))
         return float(LEFT_OF_ROOT / max(many / few - 1.0, 1.0))
 
     def _nodes(self, arcs: Arcs, z: float) -> RootNodes:

@@ -64,8 +64,8 @@ class GearRootStress:
         face = self.face
         over = (0.0, 0.0) if face is None else (face.tension_error, face.compression_error)
         return {
-            name: self.fillets_error + one.forces + one.sampling + more
-            for (name, one), more in zip(peaks.items(), over, strict=True)
+            name: self.fillets_error + peak.forces + peak.sampling + more
+            for (name, peak), more in zip(peaks.items(), over, strict=True)
         }
 
     @described("1", "position tooth")

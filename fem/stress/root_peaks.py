@@ -78,20 +78,22 @@ class RootNodes:
 
         Between nodes only arcs and teeth are looked at on which it may be: by as much as the stress changes there.
         """
-        ends, found = np.cumsum([len(one.position) for one in self.arcs.arcs])[:-1], []
+        ends, candidates = np.cumsum([len(piece.position) for piece in self.arcs.arcs])[:-1], []
         positions, stress = (
             np.split(self.position, ends),
             np.split(_SIGNS[side] * self.stress[:, :, side], ends),
         )
-        nodes = [extreme(line.arc, one)[0] for one in stress]
-        most = max(float(one.max()) for one in nodes)
+        nodes = [extreme(line.arc, of_arc)[0] for of_arc in stress]
+        most = max(float(of_arc.max()) for of_arc in nodes)
         for arc, position, here, values in zip(self.arcs.arcs, positions, stress, nodes, strict=True):
             for tooth in np.flatnonzero(2.0 * values.max(axis=0) - values.min(axis=0) >= most).tolist():
                 value, off, unit, along = _on_arc(here[:, tooth], line.arc, arc.crowded)
                 at = float(np.interp(arc.place(np.array(unit)), arc.position, position))
-                found.append(Greatest(value, off, tooth, at, along))
-        best = max(found, key=lambda one: one.value)
-        above, below = (max(one.value + sign * one.off for one in found) for sign in (1.0, -1.0))
+                candidates.append(Greatest(value, off, tooth, at, along))
+        best = max(candidates, key=lambda candidate: candidate.value)
+        above, below = (
+            max(candidate.value + sign * candidate.off for candidate in candidates) for sign in (1.0, -1.0)
+        )
         return replace(best, off=max(above - best.value, best.value - below))
 
 

@@ -116,12 +116,12 @@ class StressOverFace:
 
     def _loaded(self, loads: CellLoads, tooth: int) -> list[tuple[Integers, int, Array, Array]]:
         """Instants, tooth counted from the loaded one, places and loads of every pair that bears."""
-        found = []
+        loaded = []
         for column, offset in enumerate(self.offsets):
             rows = np.flatnonzero(loads.load[:, column].max(axis=-1) > 0.0)
             away = self.turn * int(tooth - offset)
-            found.append((rows, away, loads.rho[rows, column], loads.load[rows, column]))
-        return found
+            loaded.append((rows, away, loads.rho[rows, column], loads.load[rows, column]))
+        return loaded
 
     def greatest(self, loads: CellLoads, z: Array) -> tuple[Array, Array]:
         """Maximum tension, and maximum compression as a positive number (n, teeth, places) [Pa]."""
@@ -130,11 +130,11 @@ class StressOverFace:
         step = max(1, MOST // (2 * len(arc) * len(z)))
         for first in range(0, count, step):
             rows = slice(first, first + step)
-            some = CellLoads(loads.load[rows], loads.rho[rows])
+            batch = CellLoads(loads.load[rows], loads.rho[rows])
             for i, tooth in enumerate(self.teeth):
-                found = self._clear(self.along(some, int(tooth), z), some, int(tooth))
-                tension[rows, i] = extreme(arc, found[:, :, LOADED])[0]
-                compression[rows, i] = extreme(arc, -found[:, :, OTHER])[0]
+                stress = self._clear(self.along(batch, int(tooth), z), batch, int(tooth))
+                tension[rows, i] = extreme(arc, stress[:, :, LOADED])[0]
+                compression[rows, i] = extreme(arc, -stress[:, :, OTHER])[0]
         return tension, compression
 
     def at_place(self, loads: CellLoads, z: float) -> Array:
@@ -159,9 +159,9 @@ class StressOverFace:
         samples = np.where(
             bears[:, None], np.minimum(np.arange(away.shape[1]), last[:, None]), np.arange(away.shape[1])
         )
-        found = stress.copy()
-        found[:, :, LOADED] = np.take_along_axis(stress[:, :, LOADED], samples[:, None], axis=-1)
-        return found
+        clear = stress.copy()
+        clear[:, :, LOADED] = np.take_along_axis(stress[:, :, LOADED], samples[:, None], axis=-1)
+        return clear
 
     def beside(self, peak: RootPeak, loads: CellLoads, side: int) -> Beside:
         """Stress of a peak's fillet sample, at its place and near it, by loads at one instant."""

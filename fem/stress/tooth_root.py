@@ -57,8 +57,8 @@ class RootStress:
     @property
     def errors(self) -> Mapping[str, float]:
         """Estimated relative errors of the maximum tensions by their names."""
-        both = {"pinion_tension_Pa": self.pinion, "wheel_tension_Pa": self.wheel}
-        return {name: one.errors["greatest_tension_Pa"] for name, one in both.items()}
+        gears = {"pinion_tension_Pa": self.pinion, "wheel_tension_Pa": self.wheel}
+        return {name: gear.errors["greatest_tension_Pa"] for name, gear in gears.items()}
 
     @described("Pa", shown="MPa", error="errors")
     def pinion_tension_Pa(self) -> float:
@@ -111,17 +111,17 @@ def root_stress(
     >>> round(found.pinion_tension_Pa / 1e6, -1)
     470.0
     """
-    found = Faults()
+    faults = Faults()
     if fillets is not None and fillets.pair != pair:
-        found.add("fillets", "of another pair", "must be of this pair", "compute them anew")
+        faults.add("fillets", "of another pair", "must be of this pair", "compute them anew")
     if fillets is not None and fillets.plane != cycle.plane:
-        found.add("fillets", f"plane {fillets.plane}", f"must be of plane {cycle.plane}", "use one plane")
+        faults.add("fillets", f"plane {fillets.plane}", f"must be of plane {cycle.plane}", "use one plane")
     if not np.all(np.isfinite(cycle.forces)):
-        found.add("cycle", "not converged", "must have finite forces", cycle.message)
+        faults.add("cycle", "not converged", "must have finite forces", cycle.message)
     elif cycle.opposite is not None:
         allowed = "must have flanks that bear on one side of the teeth"
-        found.add("cycle", "flanks that bear on both sides", allowed, "give more backlash")
-    found.raise_if_any()
+        faults.add("cycle", "flanks that bear on both sides", allowed, "give more backlash")
+    faults.raise_if_any()
     arcs = cycle.arcs
     if arcs is None:
         raise InputError.at(
@@ -139,7 +139,7 @@ def root_stress(
     return RootStress(
         pinion,
         wheel,
-        max(max(one.errors.values()) for one in (pinion, wheel)),
+        max(max(stress.errors.values()) for stress in (pinion, wheel)),
         cost,
         roots.converged and cycle.converged,
         roots.message,
@@ -147,7 +147,7 @@ def root_stress(
 
 
 def _gear_stress(
-    pair: GearPair, cycle: MeshCycle, found: MeshArcs, roots: Fillets, gear: int
+    pair: GearPair, cycle: MeshCycle, mesh_arcs: MeshArcs, roots: Fillets, gear: int
 ) -> GearRootStress:
     """Stress at the cycle's positions, and the largest on its arcs."""
     influence, fillets_error = (roots.pinion, roots.wheel)[gear], float(roots.errors[gear])
@@ -157,12 +157,12 @@ def _gear_stress(
     total = forces.stress(influence, cycle.forces, cycle.flank_rho[gear])
     nodes, before = (
         None if arcs is None else RootNodes(arcs, _positions(cycle, arcs), forces.at_nodes(influence, arcs))
-        for arcs in (found.arcs, found.before)
+        for arcs in (mesh_arcs.arcs, mesh_arcs.before)
     )
     assert nodes is not None
     low, high = nodes.stress.min(axis=(0, 1)), nodes.stress.max(axis=(0, 1))
     tension, compression = (
-        peak_of(nodes, before, found.gain, teeth, influence, side) for side in (LOADED, OTHER)
+        peak_of(nodes, before, mesh_arcs.gain, teeth, influence, side) for side in (LOADED, OTHER)
     )
     return GearRootStress(
         influence.line,
@@ -179,7 +179,7 @@ def _gear_stress(
 
 
 def _over_face(
-    pair: GearPair, cycle: MeshCycle, face: FaceLoads, found: MeshArcs, roots: Fillets
+    pair: GearPair, cycle: MeshCycle, face: FaceLoads, mesh_arcs: MeshArcs, roots: Fillets
 ) -> tuple[GearRootStress, GearRootStress]:
     """Stress of both gears under loads on cells of the face."""
     solved = face_fillets(roots, pair, face.setting.model)
@@ -188,7 +188,7 @@ def _over_face(
 
     def of(gear: int, fillets: FilletFace) -> GearRootStress:
         stress = StressOverFace(fillets, offsets, teeth, 1 if gear == 0 else -1, pair.face_offsets[gear])
-        on_arcs = RootOnArcs(stress, found, partial(_positions, cycle), gear, solved.mesh_errors[gear])
+        on_arcs = RootOnArcs(stress, mesh_arcs, partial(_positions, cycle), gear, solved.mesh_errors[gear])
         over = root_over_face(on_arcs, face, cycle.flank_rho[gear], cycle.loaded_position)
         return GearRootStress(
             fillets.influence.line,
@@ -233,16 +233,16 @@ class _Forces:
         """Stress at all nodes of arcs, one after the other."""
         nodes = [arc.pairs for arc in arcs.arcs if arc.pairs is not None]
         assert len(nodes) == len(arcs.arcs)  # of finite elements
-        every = np.concatenate(nodes)
-        return self.stress(influence, every[..., FORCE], every[..., FORCE + 1 + self.gear])
+        pairs = np.concatenate(nodes)
+        return self.stress(influence, pairs[..., FORCE], pairs[..., FORCE + 1 + self.gear])
 
 
 def _positions(cycle: MeshCycle, arcs: Arcs) -> Array:
     """Positions of the loaded flanks at all nodes of the arcs, as `MeshCycle.loaded_position`."""
     if cycle.flank == "front":
         return np.concatenate([arc.position for arc in arcs.arcs])
-    found = []
+    positions = []
     for arc in arcs.arcs:
         middle = arc.low + 0.5 * arc.width  # ends of arcs may be where the path starts anew
-        found.append((MeshSetup(cycle.pair).mirror - middle) % 1.0 + middle - arc.position)
-    return np.concatenate(found)
+        positions.append((MeshSetup(cycle.pair).mirror - middle) % 1.0 + middle - arc.position)
+    return np.concatenate(positions)
