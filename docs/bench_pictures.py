@@ -18,11 +18,11 @@ CASES = ("compliance", "contact_free", "root_stress", "film_tolerance", "motion_
 
 def main(folder: Path) -> None:
     """Write docs/images/bench_*.png."""
-    found = read_bench(folder / "bench.json")
-    drawn = {"overview": bench.overview(found.cases), "estimates": bench.estimates(found.cases)}
-    for case in found.cases:
+    measured = read_bench(folder / "bench.json")
+    drawn = {"overview": bench.overview(measured.cases), "estimates": bench.estimates(measured.cases)}
+    for case in measured.cases:
         if case.key in CASES:
-            peers = [peer for peer in found.peers if peer.case == case.key]
+            peers = [peer for peer in measured.peers if peer.case == case.key]
             drawn[case.key] = bench.error_against_cost(case, peers)
     save({f"bench_{name}": figure for name, figure in drawn.items()}, dpi=100)
 

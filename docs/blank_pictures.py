@@ -46,17 +46,17 @@ def held(rim: float) -> GearPair:
     return pair(Gear(70, bore_radius=root - rim * DEPTH * MODULE))
 
 
-def stiffness(some: GearPair) -> float:
+def stiffness(gear_pair: GearPair) -> float:
     """Of one pair at C, against the teeth [N/m]."""
-    bodies = fem.compliance(some, 0.002).without("hub_windup")
+    bodies = fem.compliance(gear_pair, 0.002).without("hub_windup")
     force = LINE_LOAD * WIDTH
-    return float(fem.single_pair_stiffness(some, force, np.array([some.points.C]), bodies)[0])
+    return float(fem.single_pair_stiffness(gear_pair, force, np.array([gear_pair.points.C]), bodies)[0])
 
 
-def root_stress(some: GearPair) -> float:
+def root_stress(gear_pair: GearPair) -> float:
     """Greatest tension of the wheel's root per line load [1/m]."""
-    rho = some.line_of_action - some.points.B
-    return float(fem.fillets(some, 0.005).wheel.stress(0, np.array([rho]))[0, 0].max())
+    rho = gear_pair.line_of_action - gear_pair.points.B
+    return float(fem.fillets(gear_pair, 0.005).wheel.stress(0, np.array([rho]))[0, 0].max())
 
 
 def drawn(stiffer: dict[float, Array], stressed: dict[float, Array], at_bore: tuple[Array, Array]) -> Figure:
@@ -86,15 +86,15 @@ def main() -> None:
     stiffer, stressed = {}, {}
     for web in WEBS:
         wheels = [on_web(float(rim), web) for rim in RIMS]
-        stiffer[web] = np.array([stiffness(some) for some in wheels]) / stiff
-        stressed[web] = np.array([root_stress(some) for some in wheels]) / stress
-        iso = [blank_factor(some.teeth_profiles[1]) for some in wheels]
+        stiffer[web] = np.array([stiffness(gear_pair) for gear_pair in wheels]) / stiff
+        stressed[web] = np.array([root_stress(gear_pair) for gear_pair in wheels]) / stress
+        iso = [blank_factor(gear_pair.teeth_profiles[1]) for gear_pair in wheels]
         for name, values in (("C_R", stiffer[web]), ("C_R of ISO", iso), ("Y_B", stressed[web])):
             print(f"b_s/b {web:3.1f} {name:10}", " ".join(f"{value:6.3f}" for value in values))
     discs = [held(float(rim)) for rim in RIMS]
     at_bore = (
-        np.array([stiffness(some) for some in discs]) / stiff,
-        np.array([root_stress(some) for some in discs]) / stress,
+        np.array([stiffness(gear_pair) for gear_pair in discs]) / stiff,
+        np.array([root_stress(gear_pair) for gear_pair in discs]) / stress,
     )
     for name, row in (
         ("C_R", at_bore[0]),

@@ -120,8 +120,8 @@ class Outputs(_Parsed):
 
     def lines(self) -> list[str]:
         """Lines of the table."""
-        found = import_module("flankfilm.studies.outputs").OUTPUTS
-        body = [(f"`{name}`", o.unit, o.meaning, ", ".join(o.wants)) for name, o in found.items()]
+        outputs = import_module("flankfilm.studies.outputs").OUTPUTS
+        body = [(f"`{name}`", o.unit, o.meaning, ", ".join(o.wants)) for name, o in outputs.items()]
         return _table(("output", "unit", "meaning", "wants"), body)
 
 

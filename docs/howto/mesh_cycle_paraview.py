@@ -104,11 +104,11 @@ class Scene:
         self.contacts.UpdatePipeline(time)
         points = pv.servermanager.Fetch(pv.MergeBlocks(Input=self.contacts), idx=0)
         forces = points.GetPointData().GetArray("force_N")
-        found = (0.0, 1.0)
+        greatest = (0.0, 1.0)
         for number in range(points.GetNumberOfPoints()):
             (x, y, _), (fx, fy, _) = points.GetPoint(number), forces.GetTuple3(number)
-            found = max(found, (math.hypot(fx, fy), abs(x * fy - y * fx)))
-        return found[1] / found[0]
+            greatest = max(greatest, (math.hypot(fx, fy), abs(x * fy - y * fx)))
+        return greatest[1] / greatest[0]
 
 
 def approaches(folder):

@@ -22,17 +22,26 @@ def draw() -> Figure:
         frequency=0.64,
         half_backlash=0.2,
     )
-    found = basins(pair, x=(*BOX[0], 240), v=(*BOX[1], 240))
+    basin_map = basins(pair, x=(*BOX[0], 240), v=(*BOX[1], 240))
     saddles = [orbit for orbit in find_orbits(pair, (1,)).orbits if not orbit.stable]
-    for one in found.attractors:
-        print(f"{one.label}: {100 * one.share:.1f} % ± {100 * one.share_error:.1g} % of the starts")
+    for attractor in basin_map.attractors:
+        print(
+            f"{attractor.label}: {100 * attractor.share:.1f} % ± {100 * attractor.share_error:.1g} % of the starts"
+        )
     for saddle in saddles:
         print(f"saddle {saddle.label}: X = {saddle.state[0]:.5f}, V = {saddle.state[1]:.5f}")
     with sheet(width=6.0, height=4.6, legend=2) as (drawn, (axes,)):
-        colours = ListedColormap(SHADES[: len(found.attractors)])
-        axes.pcolormesh(found.x, found.v, found.labels.T, cmap=colours, rasterized=True)
-        for one, shade in zip(found.attractors, SHADES, strict=False):
-            axes.plot(*one.states.T, "o", color=shade, markeredgecolor="k", markersize=7, label=one.label)
+        colours = ListedColormap(SHADES[: len(basin_map.attractors)])
+        axes.pcolormesh(basin_map.x, basin_map.v, basin_map.labels.T, cmap=colours, rasterized=True)
+        for attractor, shade in zip(basin_map.attractors, SHADES, strict=False):
+            axes.plot(
+                *attractor.states.T,
+                "o",
+                color=shade,
+                markeredgecolor="k",
+                markersize=7,
+                label=attractor.label,
+            )
         for saddle in saddles:
             border = manifold(saddle, "stable", BOX, length=60.0, max_points=6000)
             for k, curve in enumerate(border.curves):

@@ -16,25 +16,28 @@ PER_MM_UM = 1e-9 / WIDTH  # N/m to N/(mm um)
 def draw() -> Figure:
     """Mesh stiffness over a base pitch, and how far the mean of each closed form is off."""
     pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=WIDTH, material=STEEL)
-    found = ff.compare_closed_forms(pair, TORQUE, tolerance=0.002)
-    whole, like = found.references[0], found.like_for_like  # all of it, and the parts that closed forms have
-    for name, one in {"with all parts": whole, like.label: like}.items():
-        mean = one.figures["mesh, mean"]
+    comparison = ff.compare_closed_forms(pair, TORQUE, tolerance=0.002)
+    # all of it, and the parts that closed forms have
+    whole, like = comparison.references[0], comparison.like_for_like
+    for name, reference in {"with all parts": whole, like.label: like}.items():
+        mean = reference.figures["mesh, mean"]
         print(f"finite elements {name}: {mean.value:.2f} N/(mm um) ± {100 * mean.relative:.1g} %")
     off = {
-        model.label: [100 * found.difference(model.label, one.label) for one in (whole, like)]
-        for model in found.models
+        model.label: [
+            100 * comparison.difference(model.label, reference.label) for reference in (whole, like)
+        ]
+        for model in comparison.models
     }
     for label, (all_in, alike) in off.items():
         print(f"{label}: {all_in:+.1f} %, against the same parts {alike:+.1f} %")
 
     with sheet(columns=2, height=3.8, legend=2, width_ratios=(1.5, 1)) as (drawn, (mesh, bars)):
-        at = found.position
+        at = comparison.position
         mesh.plot(at, PER_MM_UM * whole.secant_stiffness, "k-", label="finite elements")
         mesh.plot(
             at, PER_MM_UM * like.secant_stiffness, "k--", linewidth=1.0, label=f"finite elements {like.label}"
         )
-        models = [model for model in found.models if model.single_stiffness.size]  # ISO has a mean alone
+        models = [model for model in comparison.models if model.single_stiffness.size]  # ISO has a mean alone
         for model, look in zip(models, looks(len(models)), strict=True):
             mesh.plot(at, PER_MM_UM * model.secant_stiffness, label=model.label, **look)
         mesh.set(xlabel="position after A [base pitches]", ylabel="mesh stiffness [N/(mm µm)]")

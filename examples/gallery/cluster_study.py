@@ -33,18 +33,20 @@ def draw() -> Figure:
     ):
         os.environ["DASK_SCHEDULER_ADDRESS"] = here.scheduler_address  # of a real cluster: all that differs
         done = ff.study(STUDY, folder, Execution("dask"))
-        with xr.open_dataset(Path(folder) / "study.nc", engine="h5netcdf") as found:
-            found.load()
+        with xr.open_dataset(Path(folder) / "study.nc", engine="h5netcdf") as dataset:
+            dataset.load()
     print(f"{len(done.rows)} rows, {len(done.failures)} failed")
     stiffness, tension = (
-        found[name].values for name in ("mean_secant_stiffness_N_per_mm_um", "root_tension_wheel_MPa")
+        dataset[name].values for name in ("mean_secant_stiffness_N_per_mm_um", "root_tension_wheel_MPa")
     )
-    error, root_error = (100 * float(found[name].max()) for name in ("stiffness_error", "root_stress_error"))
+    error, root_error = (
+        100 * float(dataset[name].max()) for name in ("stiffness_error", "root_stress_error")
+    )
     print(f"stiffness {stiffness.min():.2f} to {stiffness.max():.2f} N/(mm um), each ± {error:.1g} %")
     print(
         f"root tension of the wheel {tension.min():.0f} to {tension.max():.0f} MPa, each ± {root_error:.1g} %"
     )
-    return ff.figures.study(found, outputs=["mean_secant_stiffness_N_per_mm_um", "root_tension_wheel_MPa"])
+    return ff.figures.study(dataset, outputs=["mean_secant_stiffness_N_per_mm_um", "root_tension_wheel_MPa"])
 
 
 if __name__ == "__main__":

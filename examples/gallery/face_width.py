@@ -35,18 +35,18 @@ def draw() -> Figure:
         styles = iter(looks(3))
         for k, crowning in enumerate(CROWNINGS.tolist()):
             teeth = crowned(bodies, crowning)
-            found = face_load_tolerance(teeth, TOLERANCE, positions=24)
-            factors.append(found.face_load_factor)
+            tolerance = face_load_tolerance(teeth, TOLERANCE, positions=24)
+            factors.append(tolerance.face_load_factor)
             if k in SHOWN:
                 setting = {**teeth.setting, "alignment": Alignment(TOLERANCE)}
-                one = fem.mesh_cycle(teeth.pair, TORQUE, 1, **setting)
-                line = one.line_load[0].max(axis=0)
+                cycle = fem.mesh_cycle(teeth.pair, TORQUE, 1, **setting)
+                line = cycle.line_load[0].max(axis=0)
                 label = f"crowning {1e6 * crowning:.0f} µm"
-                load.plot(1e3 * one.face_position, 1e-3 * line, label=label, **next(styles))
-                factor_in_line, worst = found.face_load_factor[1], found.robust_face_load_factor
+                load.plot(1e3 * cycle.face_position, 1e-3 * line, label=label, **next(styles))
+                factor_in_line, worst = tolerance.face_load_factor[1], tolerance.robust_face_load_factor
                 print(
                     f"crowning {1e6 * crowning:.0f} um: {factor_in_line:.3f} in line, {worst:.3f} "
-                    f"with {1e6 * TOLERANCE:.0f} um ± {100 * found.error:.1g} %"
+                    f"with {1e6 * TOLERANCE:.0f} um ± {100 * tolerance.error:.1g} %"
                 )
         meant, robust = np.array(factors)[:, 1], np.max(factors, axis=1)
         for name, values, look in zip(

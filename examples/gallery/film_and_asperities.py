@@ -46,12 +46,12 @@ def draw() -> Figure:
         name = f"sigma/beta = {slender:g}"
         ground = Roughness.from_drawing(mean=RA, tip_radius=sigma / slender)
         mixed[name] = [solve_mixed(contact, ground) for contact in contacts]
-        error = 100 * max(one.error for one in mixed[name])
+        error = 100 * max(film.error for film in mixed[name])
         for k in (0, 8, 24):
-            one, speed = mixed[name][k], float(f"{SPEEDS[k]:.3g}")
+            film, speed = mixed[name][k], float(f"{SPEEDS[k]:.3g}")
             print(
-                f"{name}, {speed:g} rpm: film ratio {one.film_ratio:.2f} ± {error:.1g} %, asperities carry "
-                f"{100 * one.asperity_share:.1f} % of the load"
+                f"{name}, {speed:g} rpm: film ratio {film.film_ratio:.2f} ± {error:.1g} %, asperities carry "
+                f"{100 * film.asperity_share:.1f} % of the load"
             )
 
     with sheet(columns=2, height=3.4, legend=0) as (drawn, (path, stribeck)):
@@ -63,11 +63,11 @@ def draw() -> Figure:
         from_zero(path)
         legend_over(path, 2)
         right = stribeck.twinx()
-        for (name, found), look in zip(mixed.items(), looks(2), strict=True):
+        for (name, films), look in zip(mixed.items(), looks(2), strict=True):
             stribeck.semilogx(
-                SPEEDS, [100 * one.asperity_share for one in found], label=f"asperities, {name}", **look
+                SPEEDS, [100 * film.asperity_share for film in films], label=f"asperities, {name}", **look
             )
-        right.semilogx(SPEEDS, [one.film_ratio for one in found], color="k", linewidth=0.9)
+        right.semilogx(SPEEDS, [film.film_ratio for film in films], color="k", linewidth=0.9)
         stribeck.set(xlabel="speed of the pinion [rpm]", ylabel="share of the load on asperities [%]")
         from_zero(stribeck)
         right.set(ylabel="film ratio (thin black line) [-]", ylim=(0.0, None))

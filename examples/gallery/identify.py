@@ -30,7 +30,7 @@ def oscillator(damping_ratio: float, amplitude: float, mean_force: float) -> Gea
 def change(measured: SweepResult, before: str, after: str = "") -> float:
     """Frequency at which one motion becomes another one as the frequency grows, read to three decimals."""
     pairs = list(zip(measured.labels[:-1], measured.labels[1:], strict=True))
-    k = next(k for k, (one, other) in enumerate(pairs) if one == before != other and after in ("", other))
+    k = next(k for k, (label, other) in enumerate(pairs) if label == before != other and after in ("", other))
     return round(float(measured.values[k : k + 2].mean()), 3)
 
 
@@ -48,9 +48,11 @@ def draw() -> Figure:
         Event("saddle-node", "1-1-1", change(rising, "1-1-1"), digits=3),
         Event("saddle-node", "1-1-1", change(falling, "1-0-0", "1-1-1"), digits=3),
     ]
-    found = identify(oscillator(0.03, 0.1, 0.06), "frequency", events, UNKNOWN, BOUNDS)
-    best = found.best
-    print(f"{len(best.matched)} of {len(events)} events matched, {found.by_chance:.1g} such trials by chance")
+    identification = identify(oscillator(0.03, 0.1, 0.06), "frequency", events, UNKNOWN, BOUNDS)
+    best = identification.best
+    print(
+        f"{len(best.matched)} of {len(events)} events matched, {identification.by_chance:.1g} such trials by chance"
+    )
     for name, value in best.values.items():
         print(f"{name}: {value:.4f} ± {best.spread[name]:.1g}, of the rig {rig.get(name):.4f}")
 

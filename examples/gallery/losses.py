@@ -31,20 +31,20 @@ def losses(bodies: fem.PairCompliance, rpm: float, stress: float) -> ff.coupling
 def draw() -> Figure:
     """Coefficient of friction and power lost along the path; loss over the speed."""
     bodies = fem.compliance(PAIR)
-    found = [[losses(bodies, rpm, stress) for rpm in SPEEDS] for stress in STRESSES]
+    by_stress = [[losses(bodies, rpm, stress) for rpm in SPEEDS] for stress in STRESSES]
     with sheet(rows=3, height=6.0, legend=0, sharex=False) as (drawn, (friction, power, over)):
-        for stress, row, look in zip(STRESSES, found, looks(2), strict=True):
-            name, one = f"Eyring stress {1e-6 * stress:.0f} MPa", row[1]
-            at = 1e3 * (one.path.rho1 - PAIR.points.C)
-            friction.plot(at, one.path.friction_coefficient, label=name, **look)
-            power.plot(at, one.path.sliding_loss + one.path.rolling_loss, **look)
+        for stress, row, look in zip(STRESSES, by_stress, looks(2), strict=True):
+            name, case = f"Eyring stress {1e-6 * stress:.0f} MPa", row[1]
+            at = 1e3 * (case.path.rho1 - PAIR.points.C)
+            friction.plot(at, case.path.friction_coefficient, label=name, **look)
+            power.plot(at, case.path.sliding_loss + case.path.rolling_loss, **look)
             lost = [100 * each.mesh_loss / each.input_power for each in row]
             over.plot(SPEEDS, lost, marker="o", markersize=3, **look)
             print(", ".join(f"{part:.3f} % at {rpm:.0f} rpm" for part, rpm in zip(lost, SPEEDS, strict=True)))
             print(
-                f"{name}, {SPEEDS[1]:.0f} rpm: friction {one.mean_friction:.4f}, lost {one.mesh_loss:.0f} W "
-                f"of {1e-3 * one.input_power:.1f} kW ± {100 * one.error:.1g} %, "
-                f"contacts to {one.greatest_contact_temperature - 273.15:.0f} degC"
+                f"{name}, {SPEEDS[1]:.0f} rpm: friction {case.mean_friction:.4f}, lost {case.mesh_loss:.0f} W "
+                f"of {1e-3 * case.input_power:.1f} kW ± {100 * case.error:.1g} %, "
+                f"contacts to {case.greatest_contact_temperature - 273.15:.0f} degC"
             )
         for axes in (friction, power):
             axes.set(xlabel="radius of the pinion's flank from the pitch point [mm]")

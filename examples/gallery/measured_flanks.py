@@ -17,10 +17,10 @@ TRACES = EXAMPLES / "measured" / "pinion_traces.csv"
 def draw() -> Figure:
     """Profile traces of the pinion's teeth, transmission error of its revolution, and the orders in it."""
     traces = np.loadtxt(TRACES, delimiter=",", skiprows=2)
-    found = ff.run(EXAMPLES / "worn_flanks.toml").dataset
-    position = found.revolution_position.values  # base pitches: teeth of the pinion
+    results = ff.run(EXAMPLES / "worn_flanks.toml").dataset
+    position = results.revolution_position.values  # base pitches: teeth of the pinion
     loaded, free = (
-        1e6 * found[f"revolution_{name}"].values
+        1e6 * results[f"revolution_{name}"].values
         for name in ("transmission_error", "unloaded_transmission_error")
     )
     teeth = traces.shape[1] - 1
@@ -29,7 +29,7 @@ def draw() -> Figure:
         "without load": 2 * np.abs(np.fft.rfft(free)) / free.size,
     }
     print(f"{teeth} traces, {traces[:, 1:].min():.1f} to {traces[:, 1:].max():.1f} um")
-    error = 100 * float(found.revolution_error)
+    error = 100 * float(results.revolution_error)
     for name, curve in {"300 N m": loaded, "without load": free}.items():
         print(
             f"{name}: transmission error {np.ptp(curve):.2f} um peak to peak; order 1 {orders[name][1]:.2f} um, "

@@ -26,17 +26,17 @@ def draw() -> Figure:
     )
     scale = 1e-9 / pair.face_width  # N/m to N/(mm um)
     with sheet(rows=2, height=4.6) as (drawn, (stiffness, change)):
-        for torque, one, other, look in zip(TORQUES, moving, staying, looks(3), strict=True):
-            off = 100 * (one.secant_stiffness / other.secant_stiffness - 1)
-            stiffness.plot(one.position, scale * one.secant_stiffness, label=f"{torque:.0f} N m", **look)
-            change.plot(one.position, off, **look)
-            mean = scale * one.mean_secant_stiffness
-            error = 100 * one.errors["mean_secant_stiffness"]
+        for torque, cycle, other, look in zip(TORQUES, moving, staying, looks(3), strict=True):
+            off = 100 * (cycle.secant_stiffness / other.secant_stiffness - 1)
+            stiffness.plot(cycle.position, scale * cycle.secant_stiffness, label=f"{torque:.0f} N m", **look)
+            change.plot(cycle.position, off, **look)
+            mean = scale * cycle.mean_secant_stiffness
+            error = 100 * cycle.errors["mean_secant_stiffness"]
             print(
-                f"{torque:.0f} N m, deflection {1e6 * one.transmission_error.max():.0f} um: mean {mean:.4f} N/(mm um) "
-                f"± {error:.1g} %, model of the contacts ± {100 * one.model_error:.1g} %\n"
+                f"{torque:.0f} N m, deflection {1e6 * cycle.transmission_error.max():.0f} um: "
+                f"mean {mean:.4f} N/(mm um) ± {error:.1g} %, model of the contacts ± {100 * cycle.model_error:.1g} %\n"
                 "  against contacts that stay: "
-                f"{100 * (one.mean_secant_stiffness / other.mean_secant_stiffness - 1):+.2f} % in the mean, "
+                f"{100 * (cycle.mean_secant_stiffness / other.mean_secant_stiffness - 1):+.2f} % in the mean, "
                 f"{off.min():+.1f} to {off.max():+.1f} % over the pitch"
             )
         left_open = 100 * moving[-1].model_error

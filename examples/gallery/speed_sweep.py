@@ -22,13 +22,13 @@ def draw() -> Figure:
     swept_over = SPEEDS[0] * RPM, SPEEDS[-1] * RPM
     motion = ff.pair_oscillator(pair, cycle, TORQUE, swept_over[0], error_amplitude=10e-6, speeds=swept_over)
     swept = ff.speed_sweep(motion, SPEEDS * RPM)
-    found = ff.jump_speeds(motion, swept_over, max_period=2)
+    diagram = ff.jump_speeds(motion, swept_over, max_period=2)
 
-    lost = swept.least_grazing * found.speed_of_one / RPM
+    lost = swept.least_grazing * diagram.speed_of_one / RPM
     print(f"contact first lost at {lost:.0f} rpm ± {100 * swept.least_grazing_error:.1g} %")
-    for jump in found.jumps:
+    for jump in diagram.jumps:
         way = "rises" if jump.rising else "falls"
-        speed = jump.frequency * found.speed_of_one / RPM
+        speed = jump.frequency * diagram.speed_of_one / RPM
         print(f"{jump.label} ends at {speed:.0f} rpm ± {100 * jump.error:.1g} % as the speed {way}")
     with sheet(height=3.8, legend=4) as (drawn, (axes,)):
         for (way, force), mark, look in zip(swept.force_factor.items(), (9, 5), looks(2), strict=True):
@@ -40,7 +40,7 @@ def draw() -> Figure:
                 color=look["color"],
                 label={"up": "speed rises", "down": "speed falls"}[way],
             )
-        for k, speed in enumerate(found.jump_speed / RPM):
+        for k, speed in enumerate(diagram.jump_speed / RPM):
             label = None if k else "jumps"
             axes.axvline(speed, color=MARK, linewidth=0.9, label=label)
         axes.axvline(lost, color=MARK, linewidth=0.9, linestyle=":", label="contact first lost")

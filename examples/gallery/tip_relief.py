@@ -27,15 +27,15 @@ def draw() -> Figure:
     """Peak-to-peak transmission error over relief and torque, with the best relief of each torque."""
     cycles = [fem.mesh_cycle(relieved(amount), TORQUES, positions=60) for amount in RELIEFS.tolist()]
     swing = np.array(
-        [[np.ptp(one.transmission_error) for one in row] for row in cycles]
+        [[np.ptp(cycle.transmission_error) for cycle in row] for row in cycles]
     )  # (reliefs, torques)
     best = np.argmin(swing, axis=0)
     for k in (5, 11):
         for name, row in (("no relief", 0), (f"{1e6 * RELIEFS[best[k]]:.0f} um, the best", best[k])):
-            one = cycles[row][k]
-            error = 100 * one.errors["transmission_error_range"]
+            cycle = cycles[row][k]
+            error = 100 * cycle.errors["transmission_error_range"]
             print(
-                f"{TORQUES[k]:.0f} N m, {name}: {1e6 * one.transmission_error_range:.2f} um ± {error:.1g} %"
+                f"{TORQUES[k]:.0f} N m, {name}: {1e6 * cycle.transmission_error_range:.2f} um ± {error:.1g} %"
             )
     with sheet(height=3.8, legend=1) as (drawn, (axes,)):
         shades = axes.contourf(TORQUES, 1e6 * RELIEFS, 1e6 * swing, 18, cmap="viridis")

@@ -33,7 +33,7 @@ def draw() -> Figure:
             for k, point in enumerate(branch.special(kind)):
                 locus = continue_locus(pair, point, ("frequency", "mean_force"), BOUNDS)
                 axes.plot(*locus.values.T, label=None if k else name, **style[kind])
-                cusps |= {tuple(one.values.round(9)) for one in locus.special("cusp")}
+                cusps |= {tuple(cusp_point.values.round(9)) for cusp_point in locus.special("cusp")}
                 print(
                     f"{kind} of {point.label}, at mean force {pair.mean_force:g}: frequency {point.parameter:.6f}"
                 )

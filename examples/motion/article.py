@@ -48,10 +48,10 @@ def main(arguments: Sequence[str] | None = None) -> list[Path]:
     parser.add_argument("--out", type=Path, default=Path("out/motion"))
     parser.add_argument("--format", choices=("svg", "pdf", "png"), default="svg", help="of the figures")
     parser.add_argument("--small", action="store_true", help="seconds instead of minutes")
-    given = parser.parse_args(arguments)
-    folder = given.out / given.scan
+    options = parser.parse_args(arguments)
+    folder = options.out / options.scan
     folder.mkdir(parents=True, exist_ok=True)
-    files, lines = draw(SCANS[given.scan], folder, SMALL if given.small else FULL, given.format)
+    files, lines = draw(SCANS[options.scan], folder, SMALL if options.small else FULL, options.format)
     (folder / "summary.txt").write_text("\n".join(shown(lines)) + "\n", encoding="utf-8")
     return [*files, folder / "summary.txt"]
 
@@ -99,8 +99,8 @@ def exponent_spectra(
             if not np.all(np.abs(states) < 1e6):
                 continue  # motion without bound
             here = scan.at(float(value))
-            found = dynamics.lyapunov_exponents(here, periods, state=states[-1], transient=0)
-            rows.append((value, *found.exponents, found.standard_error))
+            spectrum = dynamics.lyapunov_exponents(here, periods, state=states[-1], transient=0)
+            rows.append((value, *spectrum.exponents, spectrum.standard_error))
         spectra.append((sweep.direction, np.array(rows)))
     return spectra
 
@@ -111,11 +111,11 @@ def named_motions(
     """One motion for each label that the article names, from its widest stable stretch; labels without one."""
     motions, missing = [], []
     for label in scan.named:
-        found = [s for s in diagram.stretches(stable=True) if s.label == label]
-        if not found:
+        stretches = [s for s in diagram.stretches(stable=True) if s.label == label]
+        if not stretches:
             missing.append(label)
             continue
-        widest = max(found, key=lambda s: s.high - s.low)
+        widest = max(stretches, key=lambda s: s.high - s.low)
         here = scan.at(widest.value)
         title = f"{label} at {widest.value:.5g} ({widest.low:.5g} to {widest.high:.5g})"
         motions.append((title, dynamics.trajectory(here, widest.state, widest.periods)))

@@ -90,12 +90,12 @@ def main(arguments: Sequence[str] | None = None) -> list[str]:
     """Print the crises, or all of one scan; return the lines."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--all", choices=("6.1", "6.2", "6.3"), help="every saddle of a scan's diagram")
-    given = parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
     lines = table_head("scan", "parameter", "saddle", "chaos before it", "motion after it")
-    if given.all:
-        whole = SCANS[given.all].diagram(max_period=4)
+    if options.all:
+        whole = SCANS[options.all].diagram(max_period=4)
         lines += [
-            row(given.all, c) for c in dynamics.boundary_crises(whole, values=100, points=200, periods=60)
+            row(options.all, c) for c in dynamics.boundary_crises(whole, values=100, points=200, periods=60)
         ]
     else:
         lines += [row(place.section, located(place)) for place in CRISES]
@@ -128,11 +128,11 @@ def row(section: str, crisis: dynamics.Crisis) -> str:
 def ended(end: End) -> str:
     """Where motions begin to leave the chaos of a cascade, and the saddle that it meets there."""
     scan, (inside, _) = SCANS[end.section], end.bounds
-    found = dynamics.chaos_end(scan.oscillator, scan.parameter, chaos(end), end.bounds, periods=PERIODS)
-    rates = np.where(found.escapes > 0, found.rates, np.inf)
-    past = float(found.values[int(np.argmin(np.abs(np.log(rates / LIFE))))])
-    row = f"| {end.section} | {end.label} | {found.last:.9g} and {found.first:.9g} |"
-    for saddle in dynamics.edge_saddles(scan.at(past), found.attractor)[:2]:
+    chaos_end = dynamics.chaos_end(scan.oscillator, scan.parameter, chaos(end), end.bounds, periods=PERIODS)
+    rates = np.where(chaos_end.escapes > 0, chaos_end.rates, np.inf)
+    past = float(chaos_end.values[int(np.argmin(np.abs(np.log(rates / LIFE))))])
+    row = f"| {end.section} | {end.label} | {chaos_end.last:.9g} and {chaos_end.first:.9g} |"
+    for saddle in dynamics.edge_saddles(scan.at(past), chaos_end.attractor)[:2]:
         low, high = sorted((inside, past))
         crisis = dynamics.boundary_crisis(
             saddle, scan.parameter, (low, high), points=end.points, periods=6 * saddle.periods

@@ -34,13 +34,13 @@ UNKNOWNS = {
 
 def main(arguments: Sequence[str] | None = None) -> PairScan:
     """Print what was found, the round ones by name."""
-    given = list(sys.argv[1:] if arguments is None else arguments) or ["6.4"]
-    section = given[0]
-    found = by_two_events(OSCILLATOR, EVENTS[section], FREQUENCIES[section], UNKNOWNS[section])
-    print(found.message)
-    for row in found.values[found.rounded]:
-        print(", ".join(f"{name} {value:.7g}" for name, value in zip(found.names, row, strict=True)))
-    return found
+    sections = list(sys.argv[1:] if arguments is None else arguments) or ["6.4"]
+    section = sections[0]
+    scan = by_two_events(OSCILLATOR, EVENTS[section], FREQUENCIES[section], UNKNOWNS[section])
+    print(scan.message)
+    for row in scan.values[scan.rounded]:
+        print(", ".join(f"{name} {value:.7g}" for name, value in zip(scan.names, row, strict=True)))
+    return scan
 
 
 if __name__ == "__main__":

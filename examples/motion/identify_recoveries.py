@@ -64,11 +64,11 @@ def misprinted(events: list[Event], number: int, rng: np.random.Generator) -> li
     return events
 
 
-def off(found: Identification, here: GearOscillator) -> float:
+def off(identification: Identification, here: GearOscillator) -> float:
     """Largest relative error of a parameter."""
-    if found.best is None:
+    if identification.best is None:
         return float("nan")
-    return max(abs(found.best.values[name] / here.get(name) - 1.0) for name in RANGES)
+    return max(abs(identification.best.values[name] / here.get(name) - 1.0) for name in RANGES)
 
 
 def _printed(kind: str, label: str, value: float) -> Event:
@@ -87,14 +87,15 @@ def main() -> None:
         for number in good:
             here, events, rng = drawn(seed)
             began = time.process_time()
-            found = identify(here, "frequency", misprinted(events, number, rng), RANGES, BOUNDS)
-            error = off(found, here)
+            identification = identify(here, "frequency", misprinted(events, number, rng), RANGES, BOUNDS)
+            error = off(identification, here)
             good[number] += error < 1e-3
-            claimed[number] += found.converged and not error < 1e-3
+            claimed[number] += identification.converged and not error < 1e-3
             values = "".join(f"{here.get(name):<10.6f}" for name in RANGES)
             print(
-                f"{seed:4d} {number:9d}   {values}{error:<10.1e}{found.by_chance:<11.1e}{found.converged!s:8s}"
-                f"{found.trials:7d} {time.process_time() - began:8.1f}",
+                f"{seed:4d} {number:9d}   {values}{error:<10.1e}"
+                f"{identification.by_chance:<11.1e}{identification.converged!s:8s}"
+                f"{identification.trials:7d} {time.process_time() - began:8.1f}",
                 flush=True,
             )
     for number in good:

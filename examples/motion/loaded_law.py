@@ -140,57 +140,59 @@ def setting(held: bool) -> MeshSetup:
     )
 
 
-def law(given: MeshSetup, order: int) -> TabulatedContact:
+def law(setup: MeshSetup, order: int) -> TabulatedContact:
     """The loaded law, dimensionless."""
-    scales = given.scales
+    scales = setup.scales
     return TabulatedContact.from_deflections(
-        given.force / (scales.mean_stiffness * scales.length),
-        given.deflection / scales.length,
-        half_backlash=scales.scaled(given.play),
+        setup.force / (scales.mean_stiffness * scales.length),
+        setup.deflection / scales.length,
+        half_backlash=scales.scaled(setup.play),
         order=order,
         first_angle=math.pi / POSITIONS,
     )
 
 
-def oscillators(given: MeshSetup, order: int) -> dict[str, GearOscillator | SmoothOscillator]:
+def oscillators(setup: MeshSetup, order: int) -> dict[str, GearOscillator | SmoothOscillator]:
     """The three laws at the lowest speed."""
-    scales = given.scales
+    scales = setup.scales
     linear = {
         name: scales.oscillator(
             stiffness=fit_fourier(samples, order=order).stiffness,
             damping_ratio=DAMPING,
-            force=given.load,
+            force=setup.load,
             error_amplitude=ERROR,
-            half_backlash=given.play,
+            half_backlash=setup.play,
             speed=SPEEDS[0] * math.pi / 30.0,
         )
-        for name, samples in (("secant", given.secant), ("tangent", given.tangent))
+        for name, samples in (("secant", setup.secant), ("tangent", setup.tangent))
     }
-    one = linear["secant"]
-    loaded = SmoothOscillator(law(given, order), DAMPING, one.mean_force, one.error_amplitude, one.frequency)
+    secant = linear["secant"]
+    loaded = SmoothOscillator(
+        law(setup, order), DAMPING, secant.mean_force, secant.error_amplitude, secant.frequency
+    )
     return {**linear, "loaded law": loaded}
 
 
-def curve(name: str, osc: GearOscillator | SmoothOscillator, given: MeshSetup) -> Curve:
+def curve(name: str, osc: GearOscillator | SmoothOscillator, setup: MeshSetup) -> Curve:
     """Follow the motion of period 1 from the lowest speed."""
-    low, high = (given.scales.frequency_from_rpm(rpm) for rpm in SPEEDS)
+    low, high = (setup.scales.frequency_from_rpm(rpm) for rpm in SPEEDS)
     smooth = isinstance(osc, SmoothOscillator)
     start = (osc.floor if smooth else osc.floor + osc.mean_force, 0.0)
     orbit = dynamics.find_orbit(osc, start, transient=300, tolerance=1e-10 if smooth else None)
     branch = dynamics.continue_branch(orbit, "frequency", (low, high))
     ends = np.array([extent(osc, w, x) for w, x in zip(branch.values, branch.states, strict=True)])
-    um = 1e6 * given.scales.length * ends
+    um = 1e6 * setup.scales.length * ends
     folds = branch.special("saddle-node")
 
     def swing(point: SpecialPoint) -> float:
         ends = extent(osc, point.parameter, point.state)
-        return 1e6 * given.scales.length * (ends[1] - ends[0])
+        return 1e6 * setup.scales.length * (ends[1] - ends[0])
 
     rest = [p for p in branch.points if p.kind != "saddle-node"]
     return Curve(
-        name, np.array([given.scales.rpm(w) for w in branch.values]), um[:, 1] - um[:, 0], um[:, 1], branch.stable,
-        tuple((given.scales.rpm(p.parameter), swing(p)) for p in folds),
-        tuple(f"{p.kind} {given.scales.rpm(p.parameter):.0f}" for p in rest), branch,
+        name, np.array([setup.scales.rpm(w) for w in branch.values]), um[:, 1] - um[:, 0], um[:, 1], branch.stable,
+        tuple((setup.scales.rpm(p.parameter), swing(p)) for p in folds),
+        tuple(f"{p.kind} {setup.scales.rpm(p.parameter):.0f}" for p in rest), branch,
     )  # fmt: skip
 
 
@@ -205,63 +207,65 @@ def extent(osc: GearOscillator | SmoothOscillator, frequency: float, state: Arra
     return float(x.min()), float(x.max())
 
 
-def figure(given: MeshSetup, curves: Sequence[Curve], order: int) -> Figure:
+def figure(setup: MeshSetup, curves: Sequence[Curve], order: int) -> Figure:
     """Laws at the stiffest and the softest position, and the swing over the speed."""
     page = Figure(figsize=(10, 4.2), layout="constrained")
     left, right = page.subplots(1, 2, width_ratios=(1, 1.7))
-    for row, style in ((int(np.argmax(given.secant)), "-"), (int(np.argmin(given.secant)), "--")):
-        x = 1e6 * given.deflection[row]
-        at = given.load / given.secant[row]
+    for row, style in ((int(np.argmax(setup.secant)), "-"), (int(np.argmin(setup.secant)), "--")):
+        x = 1e6 * setup.deflection[row]
+        at = setup.load / setup.secant[row]
         line = np.array([0.0, 2.0 * at])
-        left.plot(x, 1e-3 * given.force, "k.", markersize=4)
-        left.plot(1e6 * line, 1e-3 * given.secant[row] * line, style, color=COLOURS["secant"])
-        touching = given.load + given.tangent[row] * (line - at)
+        left.plot(x, 1e-3 * setup.force, "k.", markersize=4)
+        left.plot(1e6 * line, 1e-3 * setup.secant[row] * line, style, color=COLOURS["secant"])
+        touching = setup.load + setup.tangent[row] * (line - at)
         left.plot(1e6 * line, 1e-3 * touching, style, color=COLOURS["tangent"])
-    left.axhline(1e-3 * given.load, color="grey", linewidth=0.7)
+    left.axhline(1e-3 * setup.load, color="grey", linewidth=0.7)
     left.set(xlabel="deflection [µm]", ylabel="normal force [kN]", xlim=(0, 60), ylim=(0, 50))
     left.set_title("finite elements (dots), stiffest (solid), softest (dashed)", fontsize=8)
-    for one in curves:
+    for response in curves:
         for wanted, style in ((True, "-"), (False, ":")):
-            swing = where_stable(one.stable, one.swing, wanted)
-            label = one.name if wanted else None
-            right.plot(one.rpm, swing, style, color=COLOURS[one.name], linewidth=1.2, label=label)
-        for speed, swing in one.jumps:
-            right.plot(speed, swing, "o", color=COLOURS[one.name], markersize=4)
+            swing = where_stable(response.stable, response.swing, wanted)
+            label = response.name if wanted else None
+            right.plot(response.rpm, swing, style, color=COLOURS[response.name], linewidth=1.2, label=label)
+        for speed, swing in response.jumps:
+            right.plot(speed, swing, "o", color=COLOURS[response.name], markersize=4)
     right.set(xlabel="pinion speed [rpm]", ylabel="peak to peak [µm]", xlim=SPEEDS, ylim=(0, None))
     right.set_title(f"motions of period 1, {order} harmonic(s); stable solid, folds as dots", fontsize=8)
     right.legend(fontsize=8, loc="upper left")
     return page
 
 
-def summary(given: MeshSetup, curves: Sequence[Curve], order: int) -> str:
+def summary(setup: MeshSetup, curves: Sequence[Curve], order: int) -> str:
     """Jump speeds, maximum swings, and what differs."""
     lines = [f"{order} harmonic(s)"]
-    for one in curves:
-        jumps = ", ".join(f"{speed:.0f}" for speed, _ in one.jumps) or "none"
-        steady = np.where(one.stable, one.swing, -np.inf)
+    for response in curves:
+        jumps = ", ".join(f"{speed:.0f}" for speed, _ in response.jumps) or "none"
+        steady = np.where(response.stable, response.swing, -np.inf)
         peak = int(np.argmax(steady))
         lines.append(
-            f"  {one.name:10s} jumps at {jumps} rpm; maximum stable swing {one.swing[peak]:.1f} um at "
-            f"{one.rpm[peak]:.0f} rpm, contact {one.highest[peak] - 1e6 * given.play:.0f} um deep; "
-            f"{one.branch.message}"
+            f"  {response.name:10s} jumps at {jumps} rpm; maximum stable swing {response.swing[peak]:.1f} um at "
+            f"{response.rpm[peak]:.0f} rpm, contact {response.highest[peak] - 1e6 * setup.play:.0f} um deep; "
+            f"{response.branch.message}"
         )
-        lines.append(f"             {'; '.join(one.others) or 'no other special points'}")
+        lines.append(f"             {'; '.join(response.others) or 'no other special points'}")
     for rpm in (6500.0, 7500.0, 8500.0, 11000.0, 12500.0):
-        swings = [float(np.interp(rpm, *lowest_branch(one, rpm))) for one in curves]
-        row = ", ".join(f"{one.name} {swing:.2f}" for one, swing in zip(curves, swings, strict=True))
+        swings = [float(np.interp(rpm, *lowest_branch(response, rpm))) for response in curves]
+        row = ", ".join(
+            f"{response.name} {swing:.2f}" for response, swing in zip(curves, swings, strict=True)
+        )
         lines.append(f"  swing at {rpm:.0f} rpm [um]: {row}")
     return "\n".join(lines)
 
 
-def lowest_branch(one: Curve, rpm: float) -> tuple[Array, Array]:
+def lowest_branch(response: Curve, rpm: float) -> tuple[Array, Array]:
     """The two neighbours of a speed between which the stable swing is smallest."""
-    between = (one.rpm[:-1] - rpm) * (one.rpm[1:] - rpm) <= 0.0
-    good = np.flatnonzero(between & one.stable[:-1] & one.stable[1:])
+    between = (response.rpm[:-1] - rpm) * (response.rpm[1:] - rpm) <= 0.0
+    good = np.flatnonzero(between & response.stable[:-1] & response.stable[1:])
     if not good.size:
         return np.array([rpm]), np.array([np.nan])
-    at = good[np.argmin(one.swing[good])]
-    pair = np.argsort(one.rpm[at : at + 2]) + at
-    return one.rpm[pair], one.swing[pair]
+    at = good[np.argmin(response.swing[good])]
+    pair = np.argsort(response.rpm[at : at + 2]) + at
+    return response.rpm[pair], response.swing[pair]
 
 
 def main(arguments: Sequence[str] | None = None) -> list[Path]:
@@ -269,16 +273,16 @@ def main(arguments: Sequence[str] | None = None) -> list[Path]:
     parser.add_argument("--out", type=Path, required=True, help="folder of the figures")
     parser.add_argument("--order", type=int, nargs="+", default=[1, 2, 4], help="harmonics kept")
     parser.add_argument("--held", action="store_true", help="hold the contact to the path")
-    given = parser.parse_args(arguments)
-    given.out.mkdir(parents=True, exist_ok=True)
-    here = setting(given.held)
+    options = parser.parse_args(arguments)
+    options.out.mkdir(parents=True, exist_ok=True)
+    here = setting(options.held)
     mean = here.scales
     text = [
         f"mean load {here.load:.0f} N, mean secant {here.secant.mean():.4g} N/m, mean tangent "
         f"{here.tangent.mean():.4g} N/m, natural frequency {mean.natural_frequency:.0f} Hz"
     ]
     files = []
-    for order in given.order:
+    for order in options.order:
         loaded = law(here, order)
         curves = [curve(name, osc, here) for name, osc in oscillators(here, order).items()]
         text.append(summary(here, curves, order))
@@ -286,9 +290,9 @@ def main(arguments: Sequence[str] | None = None) -> list[Path]:
             f"  the loaded law leaves out {100 * loaded.remainder:.2g} % of the mean force at most, and reaches to "
             f"{1e6 * mean.length * loaded.reach:.0f} um"
         )
-        files.append(given.out / f"loaded_law_{order}.png")
+        files.append(options.out / f"loaded_law_{order}.png")
         figure(here, curves, order).savefig(files[-1], dpi=130)
-    files.append(given.out / "loaded_law.txt")
+    files.append(options.out / "loaded_law.txt")
     files[-1].write_text("\n".join(text) + "\n", encoding="utf-8")
     sys.stdout.write("\n".join(text) + "\n")
     return files

@@ -26,10 +26,10 @@ def main(arguments: Sequence[str] | None = None) -> list[str]:
             lines.append(row(event, diagrams.get(event.section)))
     lines += ["", *table_head("scan", "stable motion named", "where", "ours")]
     for name, diagram in diagrams.items():
-        for label, where in WINDOWS[name]:
-            found = [s for s in diagram.stretches(stable=True) if s.label == label]
-            ranges = "; ".join(f"{s.low:.6g} to {s.high:.6g}" for s in found) or "not stable anywhere"
-            lines.append(f"| {name} | {label} | {where} | {ranges} |")
+        for label, place in WINDOWS[name]:
+            stretches = [s for s in diagram.stretches(stable=True) if s.label == label]
+            ranges = "; ".join(f"{s.low:.6g} to {s.high:.6g}" for s in stretches) or "not stable anywhere"
+            lines.append(f"| {name} | {label} | {place} | {ranges} |")
     return shown(lines)
 
 

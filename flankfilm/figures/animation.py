@@ -247,7 +247,7 @@ def _scale_of_colours(results: xr.Dataset, folder: Path, field: str, *, over_fac
         if (
             over_face and field in grids[0].cell_data
         ):  # pressures of tip edges are over widths that are assumed
-            values = [one[grid["tip_edge"] == 0] for one, grid in zip(values, grids, strict=True)]
+            values = [pressure[grid["tip_edge"] == 0] for pressure, grid in zip(values, grids, strict=True)]
         sizes = np.abs(np.concatenate([v if v.ndim == 1 else np.linalg.norm(v, axis=1) for v in values]))
         top = float(np.nanquantile(sizes, 1.0 if over_face else 0.997)) or 1.0
     step = _round(top / 3)

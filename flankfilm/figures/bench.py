@@ -40,9 +40,9 @@ def error_against_cost(case: CaseResult, peers: Sequence[PeerRow] = ()) -> Figur
         for over_time, over_size, quantities in zip(panels[::2], panels[1::2], groups, strict=True):
             rows = [r for r in case.rows if r.quantity in quantities and not r.failure]
             for place, name in enumerate(dict.fromkeys(r.series for r in case.rows if r.quantity)):
-                one = [r for r in rows if r.series == name]
-                _series(over_time, [r.cpu for r in one], one, place, name)
-                _series(over_size, [r.size for r in one], one, place)
+                series = [r for r in rows if r.series == name]
+                _series(over_time, [r.cpu for r in series], series, place, name)
+                _series(over_size, [r.size for r in series], series, place)
             _peers(over_time, [p for p in peers if p.quantity in quantities and not p.failure])
             _slope(over_size, rows, case.orders)
             known = [e for q, e in case.finest_estimates.items() if q in quantities and e > 0]
@@ -87,21 +87,21 @@ def _drawn(rows: Sequence[Row | PeerRow], name: str) -> list[float]:
 
 def _peers(axes: Axes, peers: Sequence[PeerRow]) -> None:
     for place, name in enumerate(dict.fromkeys(p.peer for p in peers)):
-        one = [p for p in peers if p.peer == name]
-        mark, label = PEER_MARKS[place % len(PEER_MARKS)], f"{name} {one[0].version}"
+        rows = [p for p in peers if p.peer == name]
+        mark, label = PEER_MARKS[place % len(PEER_MARKS)], f"{name} {rows[0].version}"
         look: dict[str, Any] = {"marker": mark, "color": "black", "linewidth": 1.0, "markersize": 6}
-        axes.plot([p.cpu for p in one], _drawn(one, "error"), "-.", **look, label=label)
+        axes.plot([p.cpu for p in rows], _drawn(rows, "error"), "-.", **look, label=label)
 
 
 def _slope(axes: Axes, rows: Sequence[Row], orders: dict[str, float]) -> None:
     """Draw theory's order below the true errors, over the sizes of the first series that has one."""
     rated = [r for r in rows if r.quantity in orders and math.isfinite(r.size) and r.error > 0]
-    one = [r for r in rated if r.series == rated[0].series]
-    if len(one) < 2:
+    series = [r for r in rated if r.series == rated[0].series]
+    if len(series) < 2:
         return
-    order = orders[one[0].quantity]
-    size = np.array([min(r.size for r in one), max(r.size for r in one)])
-    coarsest = min(one, key=lambda r: r.size)
+    order = orders[series[0].quantity]
+    size = np.array([min(r.size for r in series), max(r.size for r in series)])
+    coarsest = min(series, key=lambda r: r.size)
     line = 0.4 * coarsest.error * (size / coarsest.size) ** -order
     axes.plot(size, line, **GREY)
 

@@ -63,7 +63,7 @@ def drive_run_up(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     )
     x = {way: read(results, f"run_up_speed_{way}") for way in WAYS}
     label = Reading(x["up"].values, "pinion speed", x["up"].unit).label
-    at = {way: one.values for way, one in x.items()}
+    at = {way: reading.values for way, reading in x.items()}
     return carried(at, label, _rows(results, "run_up"), resonances(results), style)
 
 
@@ -114,10 +114,10 @@ def _rows(results: xr.Dataset, prefix: str) -> list[Row]:
     rows = [Row(FORCE, ("mesh",), ways)]
     for part, (figure, label) in PARTS.items():
         if f"{prefix}_{part}s" in results.variables:
-            found = {way: read(results, f"{prefix}_{figure}_{way}") for way in WAYS}
+            readings = {way: read(results, f"{prefix}_{figure}_{way}") for way in WAYS}
             names = tuple(str(name) for name in results[f"{prefix}_{part}s"].values)
-            ways = {way: reading.values for way, reading in found.items()}
-            rows.append(Row(found["up"].named(label), names, ways))
+            ways = {way: reading.values for way, reading in readings.items()}
+            rows.append(Row(readings["up"].named(label), names, ways))
     return rows
 
 
@@ -202,8 +202,8 @@ def modes(
             )
         axes.set_xticks(range(len(names)), names, rotation=30, ha="right")
         rows = [
-            f"{one:.0f} Hz, {100 * share:.0f} % in the mesh"
-            for one, share in zip(frequencies, shares, strict=True)
+            f"{frequency:.0f} Hz, {100 * share:.0f} % in the mesh"
+            for frequency, share in zip(frequencies, shares, strict=True)
         ]
         axes.set_yticks(range(len(rows)), rows)
         axes.grid(visible=False)

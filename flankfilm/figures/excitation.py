@@ -54,13 +54,13 @@ def excitation(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     order = np.arange(1, len(amplitude) + 1)
     turn = np.linspace(0.0, meshes, 801)
     series = curve.mean() + np.cos(2 * np.pi * turn[:, None] * order / meshes + phase) @ amplitude
-    every = read(results, "excitation_all_amplitudes")
+    all_amplitudes = read(results, "excitation_all_amplitudes")
     with sheet(style, 2, height=4.6, legend=2, sharex=False) as (drawn, (over, lines)):
         first, second = colours(2)
         over.plot(at, 1e6 * curve, color=MARK, linewidth=2.4, label="unloaded transmission error")
         over.plot(turn, 1e6 * series, color=first, linewidth=1.0, label=f"series of order {len(amplitude)}")
         over.set(xlabel="position, base pitches from A [-]", ylabel="error [µm]")
-        shown = every.values[:SHOWN]
+        shown = all_amplitudes.values[:SHOWN]
         kept = np.arange(1, len(shown) + 1) <= len(amplitude)
         places = np.arange(1, len(shown) + 1) / meshes
         wide = 0.6 / meshes
@@ -101,8 +101,8 @@ def spectrum(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     ]
     for figure, label in CARRIED.items():
         if f"spectrum_{figure}" in results.variables:
-            found = read(results, f"spectrum_{figure}")
-            shown.append((found.values.max(axis=1), found.named(label)))
+            reading = read(results, f"spectrum_{figure}")
+            shown.append((reading.values.max(axis=1), reading.named(label)))
     with sheet(style, len(shown), height=1.0 + 1.9 * len(shown), legend=2) as (drawn, panels):
         for axes, (values, label) in zip(panels, shown, strict=True):
             _lines(axes, order, values, results["spectrum_mode_order"].values)

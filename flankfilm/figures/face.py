@@ -182,36 +182,36 @@ def line_load_models(results: xr.Dataset, *, style: Style | None = None) -> Figu
     return _by_models(read(results, face), read(results, load), tuple(map(str, results[model].values)), style)
 
 
-def face_loads(found: fem.FaceLoads) -> Figure:
+def face_loads(loads: fem.FaceLoads) -> Figure:
     """Draw line load and Hertz pressure over path and face."""
     with sheet(None, len(MAPS), height=2.3 * len(MAPS), legend=0) as (drawn, panels):
-        _painted(panels, found, MAPS)
+        _painted(panels, loads, MAPS)
     return drawn
 
 
-def face_films(found: coupling.FaceFilms) -> Figure:
+def face_films(films: coupling.FaceFilms) -> Figure:
     """Draw line load and minimum film over path and face."""
-    span = _thin(read_figure(found, "minimum_thickness"))
+    span = _thin(read_figure(films, "minimum_thickness"))
     with sheet(None, len(FILMS), height=2.3 * len(FILMS), legend=0) as (drawn, panels):
-        _painted(panels, found, FILMS, {"minimum_thickness": span})
+        _painted(panels, films, FILMS, {"minimum_thickness": span})
     return drawn
 
 
-def loaded_contact(found: fem.MeshCycle) -> Figure:
+def loaded_contact(cycle: fem.MeshCycle) -> Figure:
     """Draw stiffness and transmission error, or what the face bears where it has cells."""
-    if found.face is None:
-        return curves(found)
+    if cycle.face is None:
+        return curves(cycle)
     with sheet(None, 3, height=6.4, legend=0, sharex=False) as (drawn, panels):
-        _painted(panels[:1], found.face, MAPS[:1])
-        at = read_figure(found, "position")
-        factor, error = read_figure(found.face, "face_load_factor"), read_figure(found, "transmission_error")
-        for axes, one, label in zip(
+        _painted(panels[:1], cycle.face, MAPS[:1])
+        at = read_figure(cycle, "position")
+        factor, error = read_figure(cycle.face, "face_load_factor"), read_figure(cycle, "transmission_error")
+        for axes, reading, label in zip(
             panels[1:],
             (factor, error),
             ("face-load factor [-]", "transmission\nerror [µm]"),
             strict=True,
         ):
-            axes.plot(at.values, one.values, color=colours(1)[0])
+            axes.plot(at.values, reading.values, color=colours(1)[0])
             axes.set(ylabel=label, xlabel=at.label)
         panels[1].sharex(panels[2])
         panels[1].tick_params(labelbottom=False)
@@ -219,9 +219,11 @@ def loaded_contact(found: fem.MeshCycle) -> Figure:
     return drawn
 
 
-def face_models(found: coupling.FaceLoadModels) -> Figure:
+def face_models(models: coupling.FaceLoadModels) -> Figure:
     """Draw the line load over the face of a comparison of models."""
-    return _by_models(read_figure(found, "face_position"), read_figure(found, "line_load"), found.model, None)
+    return _by_models(
+        read_figure(models, "face_position"), read_figure(models, "line_load"), models.model, None
+    )
 
 
 def _by_models(face: Reading, load: Reading, labels: tuple[str, ...], style: Style | None) -> Figure:
@@ -246,13 +248,13 @@ def _thin(film: Reading) -> tuple[float, float]:
 
 def _painted(
     panels: Sequence[Axes],
-    found: fem.FaceLoads | coupling.FaceFilms,
+    record: fem.FaceLoads | coupling.FaceFilms,
     names: Sequence[str],
     spans: Mapping[str, tuple[float, float]] | None = None,
 ) -> None:
     """Paint figures of the cells of a record, over given spans, with the points of its pair's path."""
-    travel, face = read_figure(found, "travel"), read_figure(found, "face_position")
+    travel, face = read_figure(record, "travel"), read_figure(record, "face_position")
     for axes, name in zip(panels, names, strict=True):
-        FlankMap.of(travel, face, read_figure(found, name)).paint(axes, (spans or {}).get(name))
-    points = found.pair.points
+        FlankMap.of(travel, face, read_figure(record, name)).paint(axes, (spans or {}).get(name))
+    points = record.pair.points
     mark_path({name: 1e3 * (getattr(points, name) - points.A) for name in "ABCDE"}, *panels)

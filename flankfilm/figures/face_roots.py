@@ -36,7 +36,7 @@ def root_face_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         rcParams that overrule the house's; ``image.cmap`` is the scale of colours.
     """
     names = {gear: [f"root_face_{gear}_{name}" for name in SHOWN] for gear in GEARS}
-    need(results, NEEDED, *(name for some in names.values() for name in some))
+    need(results, NEEDED, *(name for of_gear in names.values() for name in of_gear))
     with sheet(style, 3, height=6.8, legend=0, sharex=False) as (drawn, panels):
         for axes, gear, colour in zip(panels, GEARS, colours(2), strict=False):
             travel, face, tension, most = (read(results, name) for name in names[gear])
@@ -48,9 +48,9 @@ def root_face_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     return drawn
 
 
-def face_root_stress(found: FaceRootStress) -> Figure:
+def face_root_stress(stress: FaceRootStress) -> Figure:
     """Draw one gear's maximum tension over the way of a tooth and the face, and that of a cycle over the face."""
-    travel, face, tension, most = (read_figure(found, name) for name in SHOWN)
+    travel, face, tension, most = (read_figure(stress, name) for name in SHOWN)
     with sheet(None, 2, height=4.6, legend=0, sharex=False) as (drawn, panels):
         _paint(panels[0], "root", travel, face, tension)
         panels[1].plot(face.values, most.values, color=colours(1)[0])

@@ -34,13 +34,13 @@ def flanks(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     if not drawn:
         need(results, "run a scene that has deviations or wear of a gear", f"flank_{GEARS[0]}_diameter")
     rows, columns = (len(drawn) + 1) // 2, min(len(drawn), 2)
-    with sheet(style, rows, columns, height=3.0 * rows, legend=0, sharex=False) as (found, panels):
+    with sheet(style, rows, columns, height=3.0 * rows, legend=0, sharex=False) as (figure, panels):
         for (draw, gear), axes in zip(drawn, panels, strict=False):
             draw(axes, results, gear)
             legend_over(axes, 2)
         for axes in panels[len(drawn) :]:
             axes.remove()
-    return found
+    return figure
 
 
 def _lead(axes: Axes, results: xr.Dataset, gear: str) -> None:

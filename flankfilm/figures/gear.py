@@ -145,8 +145,8 @@ def kinematics(results: xr.Dataset, *, style: Style | None = None) -> Figure:
             legend_over(panels[1], 4)
         sliding = read(results, "path_specific_sliding")
         flank = {
-            name: replace(sliding, values=one)
-            for name, one in zip(
+            name: replace(sliding, values=of_flank)
+            for name, of_flank in zip(
                 ("pinion, (u1 - u2)/u1", "wheel, (u2 - u1)/u2"), sliding.values.T, strict=True
             )
         }

@@ -102,10 +102,10 @@ def portraits(results: xr.Dataset, *, style: Style | None = None) -> Figure:
             motion, direction, frequency = (
                 results[f"portrait_{name}"].values[i] for name in ("motion", "direction", "frequency")
             )
-            where = f"ω = {frequency:.4g}"
+            speed_text = f"ω = {frequency:.4g}"
             if length.unit != "-":
-                where = f"{rpm_of_one(results) * frequency:.0f} rpm, {where}"
-            axes.set_title(f"{motion}, {direction}\nat {where}", fontsize=8.5)
+                speed_text = f"{rpm_of_one(results) * frequency:.0f} rpm, {speed_text}"
+            axes.set_title(f"{motion}, {direction}\nat {speed_text}", fontsize=8.5)
             axes.set(
                 xlabel=length.named("displacement X"),
                 ylabel=speed.named("velocity dX/dτ" if speed.unit == "-" else "velocity"),
@@ -228,8 +228,8 @@ def _curves_of_branches(results: xr.Dataset) -> Iterator[tuple[Array, Array, Arr
         values, x = over_speed(results, prefix).values, read(results, f"{prefix}_displacement").values
         stable = results[f"{prefix}_stable"].values.astype(bool)
         which = np.array([results[f"{prefix}_{name}"].values for name in ("branch", *further)])
-        for one in np.unique(which, axis=1).T:
-            mine = np.all(which == one[:, None], axis=0)
+        for curve in np.unique(which, axis=1).T:
+            mine = np.all(which == curve[:, None], axis=0)
             yield values[mine], x[mine], stable[mine]
 
 

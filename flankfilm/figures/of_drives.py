@@ -15,18 +15,18 @@ if TYPE_CHECKING:
     from flankfilm.coupling import DriveSweep, PairDrive
 
 
-def pair_drive(found: PairDrive) -> Figure:
+def pair_drive(drive: PairDrive) -> Figure:
     """Draw the modes of a drive train."""
-    return modes(found.natural_frequencies, found.mode_shapes, found.mesh_share, found.freedoms)
+    return modes(drive.natural_frequencies, drive.mode_shapes, drive.mesh_share, drive.freedoms)
 
 
-def drive_sweep(found: DriveSweep) -> Figure:
+def drive_sweep(sweep: DriveSweep) -> Figure:
     """Draw what mesh, bearings, shafts and couplings carry at most over the speed."""
-    rows = [Row(FORCE, ("mesh",), {way: one[:, None] for way, one in found.force_factor.items()})]
+    rows = [Row(FORCE, ("mesh",), {way: factor[:, None] for way, factor in sweep.force_factor.items()})]
     for part, (figure, label) in PARTS.items():
-        names = getattr(found, f"{part}s")
+        names = getattr(sweep, f"{part}s")
         unit = "N" if part == "bearing" else "N m"
         if names:
-            rows.append(Row(f"{label} [{unit}]", names, getattr(found, figure)))
-    speed = read_figure(found, "speed")
-    return carried(dict.fromkeys(found.force_factor, speed.values), speed.label, rows, np.zeros(0))
+            rows.append(Row(f"{label} [{unit}]", names, getattr(sweep, figure)))
+    speed = read_figure(sweep, "speed")
+    return carried(dict.fromkeys(sweep.force_factor, speed.values), speed.label, rows, np.zeros(0))

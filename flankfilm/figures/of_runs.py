@@ -26,28 +26,28 @@ MAIN = (
 """A variable of ``results.nc``, and the picture of a run that has it; the first one that is there counts."""
 
 
-def results(found: Results) -> Figure:
+def results(run: Results) -> Figure:
     """Draw what a run went furthest for: motion, films, stiffness, teeth."""
     for name, draw in MAIN:
-        if name in found.dataset:
-            return draw(found.dataset)
+        if name in run.dataset:
+            return draw(run.dataset)
     raise InputError.at(
-        "Results.plot", found.title, "has nothing to draw", "The scene's wants decide what is computed"
+        "Results.plot", run.title, "has nothing to draw", "The scene's wants decide what is computed"
     )
 
 
-def study(found: StudyResults) -> Figure:
+def study(studied: StudyResults) -> Figure:
     """Draw every output against the keys that vary."""
     from flankfilm.studies.files import dataset
 
-    keys = found.plan.keys[: found.plan.varied]
-    return figures.study(dataset(found), keys, found.plan.outputs)
+    keys = studied.plan.keys[: studied.plan.varied]
+    return figures.study(dataset(studied), keys, studied.plan.outputs)
 
 
-def optimum(found: Optimum) -> Figure:
+def optimum(optimised: Optimum) -> Figure:
     """Draw the map where two keys vary, else the points."""
     from flankfilm.figures.optima import can_be_mapped
     from flankfilm.optimisation.files import dataset
 
-    held = dataset(found)
+    held = dataset(optimised)
     return figures.optimum_map(held) if can_be_mapped(held) else figures.optimum(held)

@@ -59,8 +59,8 @@ def optimum(found: xr.Dataset, *, style: Style | None = None) -> Figure:
     return drawn
 
 
-def _points(axes: Axes, found: xr.Dataset, x: Array, y: Array) -> None:
-    fine = found["fine"].values.astype(bool)
+def _points(axes: Axes, evaluations: xr.Dataset, x: Array, y: Array) -> None:
+    fine = evaluations["fine"].values.astype(bool)
     for mask, colour, label in (
         (~fine, "#aaaaaa", "coarse tolerance"),
         (fine, colours(1)[0], "the scene's tolerance"),
@@ -69,9 +69,9 @@ def _points(axes: Axes, found: xr.Dataset, x: Array, y: Array) -> None:
             axes.plot(x[mask], y[mask], ".", color=colour, markersize=3, label=label)
 
 
-def can_be_mapped(found: xr.Dataset) -> bool:
+def can_be_mapped(evaluations: xr.Dataset) -> bool:
     """Whether two keys vary, and the points lie spread over them."""
-    return len(json.loads(found.attrs["vary_json"])) == 2 and _grid(found).size > 0
+    return len(json.loads(evaluations.attrs["vary_json"])) == 2 and _grid(evaluations).size > 0
 
 
 def optimum_map(found: xr.Dataset, *, style: Style | None = None) -> Figure:
@@ -103,22 +103,24 @@ def optimum_map(found: xr.Dataset, *, style: Style | None = None) -> Figure:
     return drawn
 
 
-def _places(found: xr.Dataset) -> tuple[dict[str, list[float]], Array]:
+def _places(evaluations: xr.Dataset) -> tuple[dict[str, list[float]], Array]:
     """Ranges of both keys, and the points in parts of them."""
-    ranges = json.loads(found.attrs["vary_json"])
-    places = [(found[key].values.astype(float) - low) / (high - low) for key, (low, high) in ranges.items()]
+    ranges = json.loads(evaluations.attrs["vary_json"])
+    places = [
+        (evaluations[key].values.astype(float) - low) / (high - low) for key, (low, high) in ranges.items()
+    ]
     return ranges, np.stack(places, axis=-1)
 
 
-def _grid(found: xr.Dataset) -> NDArray[np.intp]:
+def _grid(evaluations: xr.Dataset) -> NDArray[np.intp]:
     """Triangles between the points that could be computed, by their numbers; none where they lie on a line."""
     from scipy.spatial import Delaunay, QhullError
 
-    objectives = json.loads(found.attrs["objectives_json"])
-    _, places = _places(found)
-    known = np.flatnonzero(np.all([np.isfinite(found[name].values) for name in objectives], axis=0))
+    objectives = json.loads(evaluations.attrs["objectives_json"])
+    _, places = _places(evaluations)
+    known = np.flatnonzero(np.all([np.isfinite(evaluations[name].values) for name in objectives], axis=0))
     # of a point at both tolerances the finer one counts
-    known = known[np.argsort(-found["fine"].values[known], kind="stable")]
+    known = known[np.argsort(-evaluations["fine"].values[known], kind="stable")]
     _, first = np.unique(np.round(places[known], 6), axis=0, return_index=True)
     kept = known[first]
     try:
@@ -127,15 +129,15 @@ def _grid(found: xr.Dataset) -> NDArray[np.intp]:
         return np.zeros((0, 3), dtype=np.intp)
 
 
-def _map(axes: Axes, found: xr.Dataset, name: str, sign: float) -> None:
+def _map(axes: Axes, evaluations: xr.Dataset, name: str, sign: float) -> None:
     """Colours of an objective, the part that the limits forbid, and the points."""
     from matplotlib.ticker import MaxNLocator
     from matplotlib.tri import Triangulation
 
-    ranges, _ = _places(found)
+    ranges, _ = _places(evaluations)
     (first, across), (second, up) = ranges.items()
-    x, y, z = (found[one].values.astype(float) for one in (first, second, name))
-    triangles = _grid(found)
+    x, y, z = (evaluations[column].values.astype(float) for column in (first, second, name))
+    triangles = _grid(evaluations)
     used = np.unique(triangles)
     low, high = np.min(z[used]), np.max(z[used])
     if sign > 0:
@@ -155,17 +157,17 @@ def _map(axes: Axes, found: xr.Dataset, name: str, sign: float) -> None:
         extend=extend,
     )
     assert axes.figure is not None
-    axes.figure.colorbar(filled, ax=axes, label=titled(found, name))
-    _forbid(axes, found, mesh)
-    _mark(axes, found, x, y, (first, second))
+    axes.figure.colorbar(filled, ax=axes, label=titled(evaluations, name))
+    _forbid(axes, evaluations, mesh)
+    _mark(axes, evaluations, x, y, (first, second))
     axes.set(xlabel=key_title(first), ylabel=key_title(second), xlim=across, ylim=up)
     axes.grid(visible=False)
 
 
-def _forbid(axes: Axes, found: xr.Dataset, mesh: Triangulation) -> None:
+def _forbid(axes: Axes, evaluations: xr.Dataset, mesh: Triangulation) -> None:
     """Hatch the part that the limits forbid."""
-    limits = json.loads(found.attrs["limits_json"])
-    beyond = [sign * (found[name].values - bound) / (abs(bound) or 1.0) for name, sign, bound in limits]
+    limits = json.loads(evaluations.attrs["limits_json"])
+    beyond = [sign * (evaluations[name].values - bound) / (abs(bound) or 1.0) for name, sign, bound in limits]
     if not beyond:
         return
     worst = np.max(beyond, axis=0)
@@ -186,12 +188,12 @@ def _forbid(axes: Axes, found: xr.Dataset, mesh: Triangulation) -> None:
     )
 
 
-def _mark(axes: Axes, found: xr.Dataset, x: Array, y: Array, keys: tuple[str, str]) -> None:
+def _mark(axes: Axes, evaluations: xr.Dataset, x: Array, y: Array, keys: tuple[str, str]) -> None:
     """Points that were computed, those that tie, the best, and the scene as it stands."""
-    fine, best, tied = (found[one].values.astype(bool) for one in ("fine", "best", "tied"))
-    failed = ~np.isfinite(found[str(json.loads(found.attrs["objectives_json"])[0])].values)
+    fine, best, tied = (evaluations[flag].values.astype(bool) for flag in ("fine", "best", "tied"))
+    failed = ~np.isfinite(evaluations[str(json.loads(evaluations.attrs["objectives_json"])[0])].values)
     tied &= ~best
-    whole = json.loads(found.attrs["objectives_json"])
+    whole = json.loads(evaluations.attrs["objectives_json"])
     style: dict[str, Any] = {
         "linestyle": "none",
         "markeredgecolor": "#000000",
@@ -207,6 +209,6 @@ def _mark(axes: Axes, found: xr.Dataset, x: Array, y: Array, keys: tuple[str, st
     ):
         if mask.any():
             axes.plot(x[mask], y[mask], marker=marker, markersize=size, color=colour, label=label, **style)
-    start = [float(found.get(f"start_{key}", np.nan)) for key in keys]
+    start = [float(evaluations.get(f"start_{key}", np.nan)) for key in keys]
     if np.all(np.isfinite(start)):
         axes.plot(*start, marker="D", markersize=6, color=colours(3)[2], label="scene as it stands", **style)

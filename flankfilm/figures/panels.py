@@ -67,24 +67,24 @@ def over_two_pitches(
     axes.set(xlabel=position.label)
 
 
-def beside(axes: Axes, one: float, label: str, way: str = "right") -> None:
-    """Show a panel's values on its other side as multiples of `one`, such as dimensionless ones.
+def beside(axes: Axes, scale: float, label: str, way: str = "right") -> None:
+    """Show a panel's values on its other side as multiples of `scale`, such as dimensionless ones.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes
-    one : float
+    scale : float
         Value in the panel of 1 on the other side.
     label : str
         Of the other side.
     way : {"right", "top"}
     """
-    both = (lambda value: value / one), (lambda value: value * one)
+    conversions = (lambda value: value / scale), (lambda value: value * scale)
     if way == "top":
-        axes.secondary_xaxis("top", functions=both).set_xlabel(label)
+        axes.secondary_xaxis("top", functions=conversions).set_xlabel(label)
         axes.spines["top"].set_visible(True)
     else:
-        axes.secondary_yaxis("right", functions=both).set_ylabel(label)
+        axes.secondary_yaxis("right", functions=conversions).set_ylabel(label)
         axes.spines["right"].set_visible(True)
 
 

@@ -172,9 +172,11 @@ def beside(results: xr.Dataset, name: str, *, per_face: bool = False) -> dict[st
     """Curves that stand beside each other in a variable, by the labels of its first axis; none without the variable."""
     if name not in results:
         return {}
-    every = read(results, name, per_face=per_face)
+    reading = read(results, name, per_face=per_face)
     labels = results[results[name].dims[0]].values.tolist()
-    return {label: replace(every, values=one) for label, one in zip(labels, every.values, strict=True)}
+    return {
+        label: replace(reading, values=curve) for label, curve in zip(labels, reading.values, strict=True)
+    }
 
 
 def key_words(key: str) -> tuple[str, str]:
@@ -188,8 +190,8 @@ def key_words(key: str) -> tuple[str, str]:
     *path, last = key.split(".")
     unit = unit_in(last)
     name = last.removesuffix(f"_{suffix(unit)}").replace("_", " ")
-    part = " ".join(one.replace("_", " ") for one in path[1:] if one not in GEARS)
-    gear = next((f" of the {one}" for one in path if one in GEARS), "")
+    part = " ".join(table.replace("_", " ") for table in path[1:] if table not in GEARS)
+    gear = next((f" of the {table}" for table in path if table in GEARS), "")
     return f"{part} {name}".strip() + gear, unit_text(unit)
 
 

@@ -137,7 +137,7 @@ def dynamic_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
 def _place(results: xr.Dataset, way: str) -> Reading:
     """Speeds of the blocks where there are some, else frequencies."""
     name = f"run_up_speed_{way}"
-    found = read(results, name if name in results else f"run_up_frequency_{way}")
+    speed = read(results, name if name in results else f"run_up_frequency_{way}")
     return Reading(
-        found.values, "pinion speed" if name in results else "mesh over natural frequency", found.unit
+        speed.values, "pinion speed" if name in results else "mesh over natural frequency", speed.unit
     )

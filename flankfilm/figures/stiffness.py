@@ -225,20 +225,20 @@ def verification(found: xr.Dataset, *, style: Style | None = None) -> Figure:
     differences = {
         name: Reading(100 * (curve.values / base - 1), "", "%") for name, curve in single["model"].items()
     }
-    with sheet(style, 3, height=7.4, legend=2, sharex=False) as (drawn, (one, mesh, off)):
+    with sheet(style, 3, height=7.4, legend=2, sharex=False) as (drawn, (pair, mesh, off)):
         for name, label, dash in ((whole, whole, "-"), (lacking, f"finite elements {lacking}", "--")):
-            curves(one, at, {label: single["reference"][name]}, color="#000000", linestyle=dash)
+            curves(pair, at, {label: single["reference"][name]}, color="#000000", linestyle=dash)
             over_two_pitches(
                 mesh, position, {label: secant["reference"][name]}, color="#000000", linestyle=dash
             )
-        curves(one, at, single["model"])
+        curves(pair, at, single["model"])
         over_two_pitches(mesh, position, secant["model"])
         curves(off, at, differences)
         off.axhspan(-error, error, color="#bbbbbb", linewidth=0)
         off.axhline(0.0, color="#000000", linewidth=0.8, linestyle="--")
         off.set(ylabel="one pair, difference\nfrom dashed black line [%]")
-        from_zero(one, mesh)
-        for axes in (one, off):
+        from_zero(pair, mesh)
+        for axes in (pair, off):
             over_path(found, axes)
     return drawn
 

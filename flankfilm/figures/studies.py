@@ -71,14 +71,14 @@ def study(
     return drawn
 
 
-def varied_numbers(found: xr.Dataset, keys: Sequence[str]) -> list[str]:
+def varied_numbers(results: xr.Dataset, keys: Sequence[str]) -> list[str]:
     """Keys among `keys` that are numbers and vary."""
-    return [k for k in keys if np.issubdtype(found[k].dtype, np.number) and np.ptp(found[k].values) > 0]
+    return [k for k in keys if np.issubdtype(results[k].dtype, np.number) and np.ptp(results[k].values) > 0]
 
 
-def _follows(found: xr.Dataset, key: str, number: str) -> bool:
+def _follows(results: xr.Dataset, key: str, number: str) -> bool:
     """Whether a key changes with a number along a straight line, as one that follows it does: no family then."""
-    x, y = found[number].values, found[key].values
+    x, y = results[number].values, results[key].values
     if not np.issubdtype(y.dtype, np.number):
         return False
     about = x - x.mean(), y - y.mean()
@@ -86,12 +86,12 @@ def _follows(found: xr.Dataset, key: str, number: str) -> bool:
     return bool(np.max(np.abs(about[1] - slope * about[0])) <= 1e-9 * np.max(np.abs(y)))
 
 
-def _panel(axes: Any, found: xr.Dataset, across: str, others: Sequence[str], name: str) -> None:
-    x, y = found[across].values, found[name].values
-    rows = list(zip(*(found[key].values.tolist() for key in others), strict=True)) or [()] * x.size
+def _panel(axes: Any, results: xr.Dataset, across: str, others: Sequence[str], name: str) -> None:
+    x, y = results[across].values, results[name].values
+    rows = list(zip(*(results[key].values.tolist() for key in others), strict=True)) or [()] * x.size
     family = sorted(set(rows), key=lambda row: [(isinstance(v, str), v) for v in row])
     if len(family) > FAMILY:
-        shade = found[others[0]].values
+        shade = results[others[0]].values
         if np.issubdtype(shade.dtype, np.number):
             points = axes.scatter(x, y, c=shade, s=8, cmap="viridis")
             axes.figure.colorbar(points, ax=axes, label=key_title(others[0]))
@@ -111,4 +111,4 @@ def _panel(axes: Any, found: xr.Dataset, across: str, others: Sequence[str], nam
                 marker=".",
                 label=", ".join(v if isinstance(v, str) else f"{v:.5g}" for v in member) or None,
             )
-    axes.set(xlabel=key_title(across), ylabel=titled(found, name))
+    axes.set(xlabel=key_title(across), ylabel=titled(results, name))

@@ -154,8 +154,8 @@ def sheet(
         legend = min(legend, 1)
         if columns > 1:
             height *= max(1.0, 0.75 * columns)
-            given = {name: value for name, value in options.items() if name != "width_ratios"}
-            rows, columns, options = rows * columns, 1, {"sharex": False, **given}
+            kept = {name: value for name, value in options.items() if name != "width_ratios"}
+            rows, columns, options = rows * columns, 1, {"sharex": False, **kept}
         width = PHONE
     with styled(style):
         own, on = tuple(mpl.rcParams["figure.figsize"]), surface()
@@ -182,8 +182,8 @@ def _given(axes: tuple[Any, ...], panels: int) -> list[Axes]:
     """Axes that somebody gave for the panels of a picture."""
     from matplotlib.axes import Axes
 
-    if len(axes) != panels or not all(isinstance(one, Axes) for one in axes):
-        kinds = ", ".join(dict.fromkeys(type(one).__name__ for one in axes))
+    if len(axes) != panels or not all(isinstance(panel, Axes) for panel in axes):
+        kinds = ", ".join(dict.fromkeys(type(panel).__name__ for panel in axes))
         remedy = f"Give those of matplotlib's figure.subplots({panels}), or leave ax out"
         raise InputError.at(
             "ax", f"{len(axes)} of {kinds}", f"must be {panels} axes, one for each panel", remedy
@@ -280,7 +280,7 @@ def to_svg(drawn: Figure, prefix: str) -> str:
     svg = text.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r'(\bid="|url\(#|href="#)', rf"\g<1>{prefix}-", svg)
-    return re.sub(r"(?<=[:\s])#[0-9a-f]{6}\b", lambda found: _themed(found.group()), svg)
+    return re.sub(r"(?<=[:\s])#[0-9a-f]{6}\b", lambda colour: _themed(colour.group()), svg)
 
 
 def _themed(colour: str) -> str:

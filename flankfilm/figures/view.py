@@ -72,11 +72,11 @@ class View:
 
 def steps(folder: Path) -> dict[float, dict[str, Path]]:
     """Files of each position in ``mesh_cycle.pvd``, by the position [base pitches] and the start of their name."""
-    found: dict[float, dict[str, Path]] = {}
+    files: dict[float, dict[str, Path]] = {}
     for entry in ElementTree.parse(folder / "mesh_cycle.pvd").iter("DataSet"):
         file = folder / str(entry.get("file"))
-        found.setdefault(float(str(entry.get("timestep"))), {})[file.stem.rpartition("_")[0]] = file
-    return dict(sorted(found.items()))
+        files.setdefault(float(str(entry.get("timestep"))), {})[file.stem.rpartition("_")[0]] = file
+    return dict(sorted(files.items()))
 
 
 def nearest(places: Iterable[float], at: float) -> float:

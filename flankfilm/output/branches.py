@@ -59,7 +59,7 @@ REASONS: Mapping[str, str] = {
 """Why columns have no separate error, where their table's reason is another one."""
 
 
-def branch_tables(found: SpeedDiagram) -> list[xr.Dataset]:
+def branch_tables(diagram: SpeedDiagram) -> list[xr.Dataset]:
     """Variables of a diagram, table by table, the pinion's speed beside every frequency where it has one."""
 
     def table(
@@ -78,18 +78,21 @@ def branch_tables(found: SpeedDiagram) -> list[xr.Dataset]:
             )
             for name, (kind, meaning) in columns.items()
         ]
-        if found.speed_of_one is not None and "frequency" in columns:
-            speed = found.speed_of_one * held["frequency"]
+        if diagram.speed_of_one is not None and "frequency" in columns:
+            speed = diagram.speed_of_one * held["frequency"]
             speeds = figure_of("speed", "rad/s", "pinion speed", axis, speed, shown="rpm", no_error=no_error)
             figures.insert(0, speeds)
         return of_quantities(
             prefix, figures, dict.fromkeys(("frequency", "speed"), "error") if prefix == "jump" else None
         )
 
-    points, special = map(tuple, found.diagram.columns().tolist()), (row[:5] for row in found.diagram.table())
-    further = map(tuple, returns(found.diagram).tolist())
-    stable = ((stretch.label, stretch.low, stretch.high) for stretch in found.stable)
-    forces = zip(found.force_frequency, found.force_factor, found.force_factor_iso6336, strict=True)
+    points, special = (
+        map(tuple, diagram.diagram.columns().tolist()),
+        (row[:5] for row in diagram.diagram.table()),
+    )
+    further = map(tuple, returns(diagram.diagram).tolist())
+    stable = ((stretch.label, stretch.low, stretch.high) for stretch in diagram.stable)
+    forces = zip(diagram.force_frequency, diagram.force_factor, diagram.force_factor_iso6336, strict=True)
     errors = " ".join(f"error_by_{source}" for source in SOURCES)
     return [
         table("diagram", "point", "branch frequency displacement velocity stable", points),
@@ -99,30 +102,30 @@ def branch_tables(found: SpeedDiagram) -> list[xr.Dataset]:
             "jump",
             "jump",
             f"frequency direction motion longer_frequency error {errors}",
-            map(_jump, found.jumps),
+            map(_jump, diagram.jumps),
         ),
-        table("missed", "jump", "frequency direction motion width", map(_missed, found.missed), LONGER),
+        table("missed", "jump", "frequency direction motion width", map(_missed, diagram.missed), LONGER),
         table("stable", "range", "motion from_frequency to_frequency", stable),
         table("force", "force", "frequency factor factor_iso6336", forces),
-        *_truncated(found),
+        *_truncated(diagram),
     ]
 
 
-def _truncated(found: SpeedDiagram) -> list[xr.Dataset]:
+def _truncated(diagram: SpeedDiagram) -> list[xr.Dataset]:
     """What the longer series changes of whole figures; nothing for a given series."""
-    if found.longer_order is None:
+    if diagram.longer_order is None:
         return []
     meant = "largest relative change of the ranges of stable motions that {} by the longer series"
     changes = [
         figure_of(
-            "longer_order", "1", "harmonics of the longer series", "", found.longer_order, no_error=EXACT
+            "longer_order", "1", "harmonics of the longer series", "", diagram.longer_order, no_error=EXACT
         ),
         figure_of(
             "separated_error",
             "1",
             meant.format("lose contact"),
             "",
-            found.truncation["separated"],
+            diagram.truncation["separated"],
             no_error=ITSELF,
         ),
         figure_of(
@@ -130,7 +133,7 @@ def _truncated(found: SpeedDiagram) -> list[xr.Dataset]:
             "1",
             meant.format("touch the back flank"),
             "",
-            found.truncation["back_contact"],
+            diagram.truncation["back_contact"],
             no_error=ITSELF,
         ),
         figure_of(
@@ -138,14 +141,14 @@ def _truncated(found: SpeedDiagram) -> list[xr.Dataset]:
             "1",
             "maximum force of a stable motion over the mean force",
             "",
-            found.greatest_force,
+            diagram.greatest_force,
         ),
         figure_of(
             "greatest_force_error",
             "1",
             "relative change of the maximum force by the longer series; infinite where it is unknown",
             "",
-            found.truncation["greatest_force"],
+            diagram.truncation["greatest_force"],
             no_error=ITSELF,
         ),
     ]

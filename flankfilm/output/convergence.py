@@ -48,10 +48,10 @@ def with_convergence(data: xr.Dataset, values: Mapping[str, Any]) -> xr.Dataset:
 
 def _converged(name: str, values: Mapping[str, Any]) -> dict[str, int | str]:
     """Whether the solver believes a variable, and what it says where not."""
-    prefix = next((one for one in STAGES if f"{name}_".startswith(f"{one}_")), None)
-    found = None if prefix is None else values.get(STAGES[prefix])
-    every = found if isinstance(found, tuple) else (found,)
-    if any(getattr(one, "converged", None) is None for one in every):
+    prefix = next((start for start in STAGES if f"{name}_".startswith(f"{start}_")), None)
+    solved = None if prefix is None else values.get(STAGES[prefix])
+    solutions = solved if isinstance(solved, tuple) else (solved,)
+    if any(getattr(solution, "converged", None) is None for solution in solutions):
         return {}
-    message = "; ".join(one.message for one in every if not one.converged)
+    message = "; ".join(solution.message for solution in solutions if not solution.converged)
     return {"converged": int(not message), **({"message": message} if message else {})}

@@ -23,8 +23,8 @@ def train(drive: PairDrive | None, swept: DriveSweep | None) -> Iterator[xr.Data
         yield carrying("drive_sweep", swept)
 
 
-def carrying(prefix: str, found: DriveSweep | SpeedRunUp | DynamicMap | MotionSpectrum) -> xr.Dataset:
+def carrying(prefix: str, record: DriveSweep | SpeedRunUp | DynamicMap | MotionSpectrum) -> xr.Dataset:
     """Variables of a record without those of bearings or of shafts where it has none."""
-    without = [part for part in PARTS if not getattr(found, f"{part}s")]
-    kept = [name for name in figures(type(found)) if not any(part in name for part in without)]
-    return of_record(prefix, found, kept)
+    without = [part for part in PARTS if not getattr(record, f"{part}s")]
+    kept = [name for name in figures(type(record)) if not any(part in name for part in without)]
+    return of_record(prefix, record, kept)

@@ -24,16 +24,16 @@ PLACES = 121
 """Places over the active profile, both ends included."""
 
 
-def measured_flanks(pair: GearPair, both: Both | None) -> Iterator[xr.Dataset]:
+def measured_flanks(pair: GearPair, deviations: Both | None) -> Iterator[xr.Dataset]:
     """Variables ``flank_pinion_...`` and ``flank_wheel_...`` of gears with measured or worn flanks."""
     ends = np.array([pair.points.A, pair.points.E])
     active = (ends, pair.line_of_action - ends[::-1])
-    for name, radius, span, found in zip(
-        ("pinion", "wheel"), pair.base_radii, active, both or (None, None), strict=True
+    for name, radius, span, gear_deviations in zip(
+        ("pinion", "wheel"), pair.base_radii, active, deviations or (None, None), strict=True
     ):
-        if found is not None and found.curved:
+        if gear_deviations is not None and gear_deviations.curved:
             yield of_quantities(
-                f"flank_{name}", _curves(found, radius, np.linspace(span[0], span[1], PLACES))
+                f"flank_{name}", _curves(gear_deviations, radius, np.linspace(span[0], span[1], PLACES))
             )
     for name, gear, width in zip(
         ("pinion", "wheel"), (pair.pinion, pair.wheel), pair.face_widths, strict=True
@@ -53,14 +53,14 @@ def _lead(trace: LeadTrace, z: Array) -> Iterator[Quantity]:
     )
 
 
-def _curves(found: GearDeviations, base_radius: float, rho: Array) -> Iterator[Quantity]:
+def _curves(deviations: GearDeviations, base_radius: float, rho: Array) -> Iterator[Quantity]:
     yield figure_of(
         "diameter", "m", "diameter", "place", 2 * np.hypot(base_radius, rho), shown="mm", no_error=EXACT
     )
-    mean = found.mean
+    mean = deviations.mean
     for name, meaning, curve, each in (
-        ("material", "deviation from the involute", mean.profile, found.profile),
-        ("wear", "depth of wear", mean.wear, found.wear),
+        ("material", "deviation from the involute", mean.profile, deviations.profile),
+        ("wear", "depth of wear", mean.wear, deviations.wear),
     ):
         if not isinstance(curve, FlankCurve):
             continue
@@ -74,7 +74,7 @@ def _curves(found: GearDeviations, base_radius: float, rho: Array) -> Iterator[Q
             no_error=EXACT,
         )
         if isinstance(each, tuple):
-            values = np.stack([one.at(rho) for one in each])
+            values = np.stack([tooth.at(rho) for tooth in each])
             yield figure_of(
                 name, "m", f"{meaning}, of each tooth", "tooth place", values, shown="um", no_error=EXACT
             )

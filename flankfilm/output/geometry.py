@@ -41,8 +41,8 @@ class Row:
 
 def geometry_rows(data: xr.Dataset) -> Iterator[Row]:
     """Figures of a run's pair: of the pair itself, then of both gears; none without a pair."""
-    every = [str(name) for name in data.data_vars]
-    names = [name for start in ("dimensions_", "pair_") for name in every if name.startswith(start)]
+    variables = [str(name) for name in data.data_vars]
+    names = [name for start in ("dimensions_", "pair_") for name in variables if name.startswith(start)]
     for dims in ((), ("gear",)):
         for name in names:
             about = data[name]

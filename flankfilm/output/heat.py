@@ -19,13 +19,13 @@ THROUGH = ("x", "pressure", "thickness", "temperature", "shear_stress", "oil_tem
 """Figures of the film of the hottest contact."""
 
 
-def losses(found: MeshLosses) -> Iterator[xr.Dataset]:
+def losses(mesh_losses: MeshLosses) -> Iterator[xr.Dataset]:
     """Means over the base pitch, their band by Eyring's stress, and what stands at each contact."""
-    yield of_record("losses", found)
-    yield of_record("losses_band", found.band)
-    yield of_record("losses_path", found.path)
-    if found.over_face is not None:
-        yield of_record("losses_face", found.over_face)
+    yield of_record("losses", mesh_losses)
+    yield of_record("losses_band", mesh_losses.band)
+    yield of_record("losses_path", mesh_losses.path)
+    if mesh_losses.over_face is not None:
+        yield of_record("losses_face", mesh_losses.over_face)
 
 
 def hot_contact(film: ehl.ThermalFilm, bulk: tuple[float, float]) -> Iterator[xr.Dataset]:

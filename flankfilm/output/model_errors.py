@@ -63,7 +63,7 @@ def _plane(contact: Any) -> float:
         return WEB
     if contact.plane == "strain" and pair.face_width >= NARROW[0][-1] * pair.module:
         return DISC
-    poisson = max(one.poisson_ratio for one in pair.materials)
+    poisson = max(material.poisson_ratio for material in pair.materials)
     way = 1.0  # narrower than any that was measured, or the other end
     if contact.plane == "strain" and pair.face_width >= NARROW[0][0] * pair.module:
         way = float(np.interp(np.log(pair.face_width / pair.module), np.log(NARROW[0]), NARROW[1]))
@@ -75,7 +75,7 @@ def _teeth(contact: Any) -> float:
     if contact.reference != "body":
         return 0.0
     pair = contact.pair
-    numbers, parts = (np.log(one) for one in TEETH)
+    numbers, parts = (np.log(column) for column in TEETH)
     slope = (parts[1] - parts[0]) / (numbers[1] - numbers[0])
 
     def of(teeth: int) -> float:
@@ -88,8 +88,8 @@ def _teeth(contact: Any) -> float:
 
 def _contact(cycle: Any) -> Any:
     """Loaded contact of a mesh cycle by finite elements of coupled pairs; None of other models."""
-    found = getattr(cycle, "contact", cycle)
-    return found if found is not None and hasattr(found, "beyond_path") else None
+    contact = getattr(cycle, "contact", cycle)
+    return contact if contact is not None and hasattr(contact, "beyond_path") else None
 
 
 def _stiffness(law: float) -> Callable[[Any], float | None]:
@@ -140,8 +140,8 @@ def _of_series(series: Any) -> float | None:
 
 
 def _half(motion: Any) -> float | None:
-    found = _of_series(motion.series)
-    return None if found is None else 0.5 * found
+    error = _of_series(motion.series)
+    return None if error is None else 0.5 * error
 
 
 def _face(face: Any) -> float | None:
@@ -191,10 +191,10 @@ MODEL_ERRORS: Mapping[tuple[str, str], ModelError] = {
         for name, page in (("greatest_tension_Pa", _FACE), ("greatest_compression_Pa", _FACE))
     },
     ("RootStress", "pinion_tension_Pa"): ModelError(
-        lambda both: ROOT_WEB if both.pinion.webbed else ROOT, _FACE
+        lambda stress: ROOT_WEB if stress.pinion.webbed else ROOT, _FACE
     ),
     ("RootStress", "wheel_tension_Pa"): ModelError(
-        lambda both: ROOT_WEB if both.wheel.webbed else ROOT, _FACE
+        lambda stress: ROOT_WEB if stress.wheel.webbed else ROOT, _FACE
     ),
     **{
         ("MeshLosses", name): ModelError(_held(name), _LOSSES)
@@ -210,5 +210,5 @@ MODEL_ERRORS: Mapping[tuple[str, str], ModelError] = {
 
 def entry(record: object, name: str) -> ModelError | None:
     """Entry of a figure of a record; None where the table has none."""
-    found = (MODEL_ERRORS.get((kind.__name__, name)) for kind in type(record).__mro__)
-    return next((one for one in found if one is not None), None)
+    entries = (MODEL_ERRORS.get((kind.__name__, name)) for kind in type(record).__mro__)
+    return next((candidate for candidate in entries if candidate is not None), None)

@@ -228,15 +228,15 @@ def results_dataset(scene: Scene, values: Mapping[str, Any], failures: Sequence[
 
 def results_tables(data: xr.Dataset) -> dict[str, dict[str, Any]]:
     """Columns of the CSV files by name: one table for each curve."""
-    found = {
+    tables = {
         file: columns(data, table.prefix, table.names, table.axis)
         for file, table in TABLES.items()
         if joined(table.prefix, table.about) in data.variables
     }
     errors: dict[str, Any] = uncertainties(data)
     if errors["variable"].size:
-        found["uncertainties"] = errors
-    return {"geometry": geometry_columns(data), **found} if "dimensions_span" in data else found
+        tables["uncertainties"] = errors
+    return {"geometry": geometry_columns(data), **tables} if "dimensions_span" in data else tables
 
 
 def write_data(folder: Path, data: xr.Dataset) -> list[Path]:
@@ -252,8 +252,8 @@ def write_data(folder: Path, data: xr.Dataset) -> list[Path]:
 def _records(values: Mapping[str, Any], speed: float | None) -> Iterator[xr.Dataset]:
     """Variables of all records that a run gave, in the order of the stages."""
     for prefix, name in RECORDS.items():
-        if (found := values.get(name)) is not None:
-            yield of_record(prefix, found)
+        if (record := values.get(name)) is not None:
+            yield of_record(prefix, record)
     if (closed := values.get("closed forms")) is not None:
         yield of_record("iso6336_2", closed.contact)
     if (pair := values.get("pair")) is not None:
@@ -372,20 +372,20 @@ def _whole_pressure(film: ehl.Film, modulus: float, rough: bool) -> Iterator[Qua
 
 def _fourier(series: MeshSeries) -> xr.Dataset:
     """Series of the stiffness; a given one may be over its mean."""
-    found = of_record("fourier", series)
+    variables = of_record("fourier", series)
     if series.kind == "given" and series.mean == 1.0:
         for name in ("fourier_mean", "fourier_amplitude"):
-            found[name].attrs["units"] = "1"
-    return found
+            variables[name].attrs["units"] = "1"
+    return variables
 
 
-def _roots(found: RootStresses) -> Iterator[xr.Dataset]:
+def _roots(roots: RootStresses) -> Iterator[xr.Dataset]:
     """Root stress of a passing tooth and along the fillets of both gears, and nominal stress."""
     for name in GEARS:
-        gear = getattr(found.stress, name)
-        for prefix, found_there in ((f"root_{name}", passage(gear)), (f"fillet_{name}", fillet_stress(gear))):
-            stresses = [one.name for one in found_there if one.figure.unit == "Pa"]
-            data = of_quantities(prefix, found_there, dict.fromkeys(stresses, found.stress.error))
+        gear = getattr(roots.stress, name)
+        for prefix, quantities in ((f"root_{name}", passage(gear)), (f"fillet_{name}", fillet_stress(gear))):
+            stresses = [quantity.name for quantity in quantities if quantity.figure.unit == "Pa"]
+            data = of_quantities(prefix, quantities, dict.fromkeys(stresses, roots.stress.error))
             known = entry(gear, "greatest_tension_Pa")
             if known is not None:
                 for name_of in stresses:
@@ -394,21 +394,21 @@ def _roots(found: RootStresses) -> Iterator[xr.Dataset]:
             yield data
         if gear.face is not None:
             yield of_record(f"root_face_{name}", gear.face)
-    if found.iso_face is not None:
-        yield of_record("iso6336_face", found.iso_face)
-    if found.iso is not None:
-        yield of_record("iso6336_3", found.iso)
-        yield of_list("iso6336_3", "gear", found.iso.sections)
+    if roots.iso_face is not None:
+        yield of_record("iso6336_face", roots.iso_face)
+    if roots.iso is not None:
+        yield of_record("iso6336_3", roots.iso)
+        yield of_list("iso6336_3", "gear", roots.iso.sections)
 
 
-def _sweep(found: SpeedSweep) -> Iterator[xr.Dataset]:
+def _sweep(sweep: SpeedSweep) -> Iterator[xr.Dataset]:
     """States and labels by direction, and portraits."""
-    names = {f"sweep_states_{up}": f"sweep_{up}" for up in found.states}
-    names |= {f"sweep_labels_{up}": f"sweep_{up}_label" for up in found.labels}
-    yield of_record("sweep", found).rename(names)
-    if found.portraits:
-        motion = dict.fromkeys(("displacement", "velocity", "section"), found.error)
-        yield of_quantities("portrait", drawn.portraits(found.portraits), motion)
+    names = {f"sweep_states_{up}": f"sweep_{up}" for up in sweep.states}
+    names |= {f"sweep_labels_{up}": f"sweep_{up}_label" for up in sweep.labels}
+    yield of_record("sweep", sweep).rename(names)
+    if sweep.portraits:
+        motion = dict.fromkeys(("displacement", "velocity", "section"), sweep.error)
+        yield of_quantities("portrait", drawn.portraits(sweep.portraits), motion)
 
 
 def _speed(scene: Scene) -> float | None:

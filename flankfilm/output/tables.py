@@ -50,7 +50,7 @@ def columns(
         for dim in map(str, data[name].dims)
         if not _aside(dim, prefix)
     }
-    found = {}
+    cells = {}
     for name in wanted:
         variable = data[name].variable
         aside = [str(dim) for dim in variable.dims if _aside(str(dim), prefix)]
@@ -58,8 +58,8 @@ def columns(
         for places in product(*(range(data.sizes[dim]) for dim in aside)):
             picked = dict(zip(aside, places, strict=True))
             label = "".join(f"_{_entry(data, dim, place, prefix)}" for dim, place in picked.items())
-            found[head + label] = _shown(data, name, variable.isel(picked).set_dims(rows).values.ravel())
-    return found
+            cells[head + label] = _shown(data, name, variable.isel(picked).set_dims(rows).values.ravel())
+    return cells
 
 
 def uncertainties(data: xr.Dataset) -> dict[str, NDArray[np.object_]]:
@@ -68,14 +68,16 @@ def uncertainties(data: xr.Dataset) -> dict[str, NDArray[np.object_]]:
     about = [data[name].attrs for name in names]
     columns = {
         "variable": names,
-        "figure": [one["long_name"] for one in about],
+        "figure": [attributes["long_name"] for attributes in about],
         "value": [float(_shown(data, name, data[name].values)) for name in names],
         "unit": [read_in(data, name) for name in names],
-        "numerical_error": [one["error"] for one in about],
-        "model_error": [one.get("model_error", "") for one in about],
-        "model_error_source": [one.get("model_error_source", "") for one in about],
-        "total_uncertainty": [one["error"] + one.get("model_error", 0.0) for one in about],
-        "tolerance_met": [one.get("tolerance_met", "") for one in about],
+        "numerical_error": [attributes["error"] for attributes in about],
+        "model_error": [attributes.get("model_error", "") for attributes in about],
+        "model_error_source": [attributes.get("model_error_source", "") for attributes in about],
+        "total_uncertainty": [
+            attributes["error"] + attributes.get("model_error", 0.0) for attributes in about
+        ],
+        "tolerance_met": [attributes.get("tolerance_met", "") for attributes in about],
     }
     # of objects: cells stay empty where a model error is not estimated
     return {name: np.array(cells, dtype=np.object_) for name, cells in columns.items()}

@@ -84,15 +84,15 @@ def of_record(prefix: str, record: object, names: Container[str] | None = None) 
     """
     known = quantities(record)
     wanted = (
-        replace(one, figure=replace(one.figure, no_error=why_no_error(record, name)))
-        for name, one in known.items()
+        replace(quantity, figure=replace(quantity.figure, no_error=why_no_error(record, name)))
+        for name, quantity in known.items()
         if names is None or name in names
     )
     data = of_quantities(prefix, wanted, _errors(record, known))
-    for name, one in known.items():
-        model = held_model_error(record, name, one.figure)
+    for name, quantity in known.items():
+        model = held_model_error(record, name, quantity.figure)
         source = entry(record, name)
-        for variable in {joined(prefix, one.figure.called or name), joined(prefix, name)}:
+        for variable in {joined(prefix, quantity.figure.called or name), joined(prefix, name)}:
             if _finite(model) and variable in data:
                 data[variable].attrs["model_error"] = float(model)
                 if source is not None:
@@ -116,18 +116,18 @@ def of_quantities(prefix: str, quantities: Iterable[Quantity], errors: Errors | 
     """
     import xarray as xr
 
-    errors, found = errors or {}, {}
+    errors, variables = errors or {}, {}
     for quantity in quantities:
         for name, key, figure, value in _entries(quantity.name, quantity.figure, quantity.value):
             known = errors.get(quantity.name)
             error = _error(prefix, name, figure, known.get(key) if isinstance(known, Mapping) else known)
             attributes = {**_attributes(figure), **error}
             variable = joined(prefix, figure.called or name)
-            found[variable] = (_dims(prefix, figure.dims), _plain(value), attributes)
+            variables[variable] = (_dims(prefix, figure.dims), _plain(value), attributes)
             if figure.called:
                 older = {**attributes, "alias_of": variable}
-                found[joined(prefix, name)] = (*found[variable][:2], older)
-    data = xr.Dataset(found)
+                variables[joined(prefix, name)] = (*variables[variable][:2], older)
+    data = xr.Dataset(variables)
     places = {joined(prefix, place) for place in PLACES}
     return data.set_coords([name for name in map(str, data.data_vars) if name in places])
 
@@ -197,8 +197,12 @@ def of_models(
     whole = xr.concat(each, dim=labels, data_vars="all", coords="minimal", compat="override", join="override")
     held = {joined(prefix, name): joined(prefix, error) for name, error in (errors or {}).items()}
     for name, variable in whole.data_vars.items():  # what the first one says is not what all say
-        known = [one[name].attrs["error"] for one in each if name in one and "error" in one[name].attrs]
-        notes = {one[name].attrs.get("error_note") if name in one else None for one in each}
+        known = [
+            dataset[name].attrs["error"]
+            for dataset in each
+            if name in dataset and "error" in dataset[name].attrs
+        ]
+        notes = {dataset[name].attrs.get("error_note") if name in dataset else None for dataset in each}
         for attribute in ("error", "error_variable", "error_note", "model_error"):
             variable.attrs.pop(attribute, None)
         if held.get(str(name)) in whole:
@@ -277,15 +281,15 @@ def _entries(name: str, figure: Figure, value: Any) -> Iterator[tuple[str, str, 
     if not isinstance(value, Mapping):
         yield name, "", figure, value
         return
-    for key, one in value.items():
-        yield f"{name}_{identifier(key)}", key, replace(figure, meaning=f"{figure.meaning}: {key}"), one
+    for key, part in value.items():
+        yield f"{name}_{identifier(key)}", key, replace(figure, meaning=f"{figure.meaning}: {key}"), part
 
 
 def _errors(record: object, known: Mapping[str, Quantity]) -> dict[str, Any]:
     """Errors of a record's figures, where they are known."""
-    found: dict[str, Any] = {}
-    for name, one in known.items():
-        holds, error = held_error(record, name, one.figure)
+    errors: dict[str, Any] = {}
+    for name, quantity in known.items():
+        holds, error = held_error(record, name, quantity.figure)
         if isinstance(error, Mapping) and any(map(np.ndim, error.values())) and holds in known:
             error = {key: f"{holds}_{identifier(key)}" for key in error}
         if np.ndim(error) and holds in known:
@@ -293,8 +297,8 @@ def _errors(record: object, known: Mapping[str, Quantity]) -> dict[str, Any]:
         if isinstance(error, str) and error in known:
             error = known[error].figure.called or error
         if isinstance(error, str | Mapping | float):
-            found[name] = error
-    return found
+            errors[name] = error
+    return errors
 
 
 def _finite(error: Any) -> bool:

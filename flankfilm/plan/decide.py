@@ -118,16 +118,16 @@ def decide(scene: Scene, pair: gears.GearPair, foreseen: Callable[[], FilmChange
     further = (SERIES,) if _series_to_find(scene) else ()
     weighed = []
     for tooth, film in product(bodies.models, oil.models):
-        left = tolerance - (tooth.effect or 0.0) - (film.effect or 0.0)
-        shares = split(left, (*tooth.laws, *film.laws, *further)) if left > 0 else None
+        remaining = tolerance - (tooth.effect or 0.0) - (film.effect or 0.0)
+        shares = split(remaining, (*tooth.laws, *film.laws, *further)) if remaining > 0 else None
         if shares is not None:
             weighed.append(_Both(tooth, film, shares))
     if not weighed:
         raise SolverError(f"no resolution meets a tolerance of {tolerance:g}; raise it")
-    best = min(weighed, key=lambda both: both.seconds)
+    best = min(weighed, key=lambda choice: choice.seconds)
     why_teeth = _why_teeth(tolerance, best.teeth, bodies)
     why_film = _why_film(tolerance, best.film, oil, weighed)
-    left = tolerance - (best.teeth.effect or 0.0)
+    remaining = tolerance - (best.teeth.effect or 0.0)
     wanted = tolerance if "film" in scene.wants else COARSEST_FILMS
     asks = {
         name: getattr(scene, name).model != "auto" and stands(scene, name, "model")
@@ -136,7 +136,7 @@ def decide(scene: Scene, pair: gears.GearPair, foreseen: Callable[[], FilmChange
     return Plan(
         tolerance,
         _decision("stiffness", asks["stiffness"], best.teeth, bodies, weighed, tolerance, why_teeth),
-        _decision("film", asks["film"], best.film, oil, weighed, left, why_film),
+        _decision("film", asks["film"], best.film, oil, weighed, remaining, why_film),
         best.shares,
         best.costs,
         best.film.change,
@@ -154,7 +154,7 @@ def _decision(
 ) -> Decision:
     """Decision for a model, each with the cost of the cheapest pair of models that it is part of."""
     costs = {
-        option.name: [both.seconds for both in weighed if option in (both.teeth, both.film)]
+        option.name: [choice.seconds for choice in weighed if option in (choice.teeth, choice.film)]
         for option in among.models
     }
     return Decision(
@@ -164,7 +164,7 @@ def _decision(
         among.why or why,
         taken.effect,
         None if among.why else share,
-        min(both.seconds for both in weighed),
+        min(choice.seconds for choice in weighed),
         tuple(Candidate(o.name, o.effect, min(costs[o.name], default=None)) for o in among.models),
     )
 
@@ -195,5 +195,5 @@ def _why_film(tolerance: float, taken: Option, among: Options, weighed: Sequence
     if taken.name == "dowson":
         return f"{change}, by Dowson's formula, which is at most {most} off, below {limit}"
     out = among.models[0]
-    above = "" if any(both.film == out for both in weighed) else f"above what {limit} leaves, "
+    above = "" if any(choice.film == out for choice in weighed) else f"above what {limit} leaves, "
     return f"{change} (up to {per_cent(out.effect or 0.0)}), {above}solved"

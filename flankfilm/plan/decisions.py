@@ -108,7 +108,7 @@ def decisions(values: Mapping[str, Any]) -> tuple[Decision, ...]:
     order = None if series is None else order_decision(series, values.get("diagram"), train)
     later = (values.get("heat in the film"), order)
     models = () if plan is None else (plan.stiffness, _with_change(plan.film, values.get("film")))
-    return (*models, *(one for one in later if one is not None))
+    return (*models, *(decision for decision in later if decision is not None))
 
 
 def _with_change(decision: Decision, film: LubricatedCycle | None) -> Decision:
@@ -128,26 +128,26 @@ def order_decision(
 
     An order that was to be found counts the motion of the pair on rigid shafts, also for a drive `train`: that is said.
     """
-    if (found := series.left_out) is None:
+    if (left_out := series.left_out) is None:
         return None
     order, share = series.order, series.share
-    effect, jumps = float(found.largest[order]), "" if diagram is None else _jumps(series, diagram)
+    effect, jumps = float(left_out.largest[order]), "" if diagram is None else _jumps(series, diagram)
     if share is None:
         why = f"{order}; the scene asks for dynamics.fourier_order = {order}; "
-        why += f"leaves out {_left_out(found, order)}{jumps}"
+        why += f"leaves out {_left_out(left_out, order)}{jumps}"
         return Decision("Fourier order", str(order), True, why, effect)
-    most = min(MOST_HARMONICS, found.curve.size - 1)
-    why = f"{order}, leaves out {_left_out(found, order)}"
+    most = min(MOST_HARMONICS, left_out.curve.size - 1)
+    why = f"{order}, leaves out {_left_out(left_out, order)}"
     if effect > share:
         why += f": above its share of {per_cent(share)}, which no series of up to {most} harmonics meets"
     else:
         why += f", below its share of {per_cent(share)}"
         if order > 1 and not series.tried:
-            why += f"; order {order - 1} would leave {_left_out(found, order - 1)}"
+            why += f"; order {order - 1} would leave {_left_out(left_out, order - 1)}"
     if train:
         why += "; that is of the pair on rigid shafts: the drive train's own jumps did not choose it"
     tried = tuple(
-        Candidate(str(n), float(found.largest[n]), None)
+        Candidate(str(n), float(left_out.largest[n]), None)
         for n in range(max(1, order - 1), min(order + 1, most) + 1)
     )
     return Decision("Fourier order", str(order), False, why + jumps, effect, share, None, tried)
@@ -170,6 +170,10 @@ def _up_to(error: float) -> str:
     return f"up to {per_cent(error)}" if math.isfinite(error) else "an unknown amount"
 
 
-def _left_out(found: LeftOut, order: int) -> str:
-    text = f"{per_cent(found.curve[order])} of the curve"
-    return text if found.motion is None else f"{text} and up to {per_cent(found.motion[order])} of the motion"
+def _left_out(left_out: LeftOut, order: int) -> str:
+    text = f"{per_cent(left_out.curve[order])} of the curve"
+    return (
+        text
+        if left_out.motion is None
+        else f"{text} and up to {per_cent(left_out.motion[order])} of the motion"
+    )

@@ -34,22 +34,22 @@ def heat_choice(scene: Scene, solved: bool, screen: Callable[[float], HeatScreen
     asked = scene.film.asked_heat
     if asked != "auto":
         how = "with heat" if asked == "on" else "isothermal"
-        given = said(scene, "film", "heat" if scene.film.heat else "model")
-        return Decision(SUBJECT, asked, stands(scene, "film", "heat"), f"{how}; {given}")
+        reason = said(scene, "film", "heat" if scene.film.heat else "model")
+        return Decision(SUBJECT, asked, stands(scene, "film", "heat"), f"{how}; {reason}")
     if why := _not_weighed(scene, solved):
         return Decision(SUBJECT, "off", False, f"not weighed; {why}")
     try:
-        found = screen(max(0.5 * scene.tolerance, COARSEST))
+        contact = screen(max(0.5 * scene.tolerance, COARSEST))
     except SolverError as fault:
         return Decision(SUBJECT, "off", False, f"not weighed; the film with heat has no solution: {fault}")
-    change, limit = found.change, scene.tolerance
-    where = (
-        f"{signed(change)} of the minimum film at rho1 = {1e3 * found.rho1:.4g} mm, where most power slides"
+    change, limit = contact.change, scene.tolerance
+    effect = (
+        f"{signed(change)} of the minimum film at rho1 = {1e3 * contact.rho1:.4g} mm, where most power slides"
     )
     if abs(change) > limit:
-        why = f"{where}, above the tolerance of {per_cent(limit)}: with heat"
+        why = f"{effect}, above the tolerance of {per_cent(limit)}: with heat"
         return Decision(SUBJECT, "on", False, why, abs(change), limit)
-    why = f"{where}, below the tolerance of {per_cent(limit)}: left out"
+    why = f"{effect}, below the tolerance of {per_cent(limit)}: left out"
     return Decision(SUBJECT, "off", False, why, abs(change), limit)
 
 

@@ -66,10 +66,10 @@ def _outside(scene: Scene, pair: gears.GearPair) -> str:
     """Where a scene lies outside the comparison; empty where it does not."""
     modulus = min(m.youngs_modulus for m in pair.materials)
     force = abs(pair.normal_force(pinion_torque(scene)))
-    both = (pair.pinion, pair.wheel)
+    members = (pair.pinion, pair.wheel)
     of_gears: dict[str, list[float]] = {
-        "teeth": [gear.teeth for gear in both],
-        "profile shift": [gear.profile_shift for gear in both],
+        "teeth": [gear.teeth for gear in members],
+        "profile shift": [gear.profile_shift for gear in members],
         "bore over root radius": [b / r for b, r in zip(pair.bore_radii, pair.root_radii, strict=True)],
         "force over face width, module and Young's modulus": [
             force / (pair.face_width * pair.module * modulus)
@@ -86,10 +86,10 @@ def _outside(scene: Scene, pair: gears.GearPair) -> str:
     if scene.pair.rack != "ISO 53 A" or scene.pair.tool is not None:
         return 'the rack is not "ISO 53 A"'
     if any(s.tip_relief is not None or s.tip_chamfer_mm for s in sections) or any(
-        gear.tip_alteration for gear in both
+        gear.tip_alteration for gear in members
     ):
         return "tips are relieved, altered or chamfered"
-    if any(gear.generating_shift is not None for gear in both):
+    if any(gear.generating_shift is not None for gear in members):
         return "a gear is cut at a generating shift"
     if any(profile.steps for profile in pair.teeth_profiles):
         return "a gear has a web"

@@ -92,12 +92,12 @@ SHOWN = 5
 
 def headlines(results: Results) -> list[Headline]:
     """Numbers for the page's head and for the terminal, with their errors against the scene's tolerance."""
-    return [one.against(results.scene.tolerance) for one in _headlines(results)]
+    return [headline.against(results.scene.tolerance) for headline in _headlines(results)]
 
 
 def misses(results: Results) -> list[str]:
     """Headlines whose error is above the tolerance of the scene, and messages of solvers."""
-    above = [one.miss(results.scene.tolerance) for one in _headlines(results)]
+    above = [headline.miss(results.scene.tolerance) for headline in _headlines(results)]
     return [*filter(None, above), *run_parts.doubts(results)]
 
 
@@ -105,7 +105,7 @@ def _headlines(results: Results) -> list[Headline]:
     values, cycle = results.values, final_cycle(results)
     shown = [] if cycle is None else mesh_parts.headlines(cycle, values["pair"].face_width)
     if _film_failed(results):  # figures of dry teeth must not pass for lubricated ones
-        shown = [replace(one, name=f"{one.name}, without the film") for one in shown]
+        shown = [replace(headline, name=f"{headline.name}, without the film") for headline in shown]
     shown = _ranked(shown, OF_CYCLE)
     dry: MeshCycle | None = values.get("dry cycle")
     if dry is not None and dry.contact is not None and PRESSED & set(results.scene.wants):
@@ -113,8 +113,8 @@ def _headlines(results: Results) -> list[Headline]:
     if (bears := _over_face(results)) is not None:
         shown += _ranked(face_parts.headlines(bears), (1,))
     for name, numbers in HEADLINES.items():
-        if (found := values.get(name)) is not None:
-            shown += _ranked(numbers(found), RANKS.get(name, ()))
+        if (stage := values.get(name)) is not None:
+            shown += _ranked(numbers(stage), RANKS.get(name, ()))
     operating = results.scene.operating
     if "sweep" in values and operating is not None and operating.pinion_speed_rpm is not None:
         shown += _ranked(motion_parts.operating_headlines(values["sweep"]), (1,))
@@ -124,18 +124,18 @@ def _headlines(results: Results) -> list[Headline]:
     if "losses" in values:
         # teeth run on the film with heat: it goes before the isothermal one
         warm = {film_parts.LEAST: (", isothermal", 3), film_parts.LEAST_WITH_HEAT: ("", 1)}
-        for i, one in enumerate(shown):
-            kind, rank = warm.get(one.name, ("", one.rank))
-            shown[i] = replace(one, name=one.name + kind, rank=rank)
+        for i, headline in enumerate(shown):
+            kind, rank = warm.get(headline.name, ("", headline.rank))
+            shown[i] = replace(headline, name=headline.name + kind, rank=rank)
     pair = values.get("pair")
     return shown if shown or pair is None else pair_parts.headlines(pair)
 
 
 def _ranked(headlines: list[Headline], ranks: tuple[int, ...]) -> list[Headline]:
     """Give the first figures of a stage their ranks on the page."""
-    return [replace(one, rank=rank) for one, rank in zip(headlines, ranks, strict=False)] + headlines[
-        len(ranks) :
-    ]
+    return [
+        replace(headline, rank=rank) for headline, rank in zip(headlines, ranks, strict=False)
+    ] + headlines[len(ranks) :]
 
 
 def summary(results: Results) -> list[str]:
@@ -143,7 +143,7 @@ def summary(results: Results) -> list[str]:
     if set(results.scene.wants) <= GEOMETRY:
         lines = pair_parts.printed(results.dataset)
     else:
-        lines = [_line(one) for one in headlines(results)]
+        lines = [_line(headline) for headline in headlines(results)]
     lines += misses(results)
     lines += [decision.line for decision in results.decisions]
     if results.plan is not None:
@@ -155,16 +155,22 @@ def summary(results: Results) -> list[str]:
     return lines
 
 
-def _line(one: Headline) -> str:
+def _line(headline: Headline) -> str:
     """Headline on the terminal."""
-    note = f" {one.note}" if one.note.startswith("±") else f" ({one.note})" if one.note else ""
-    return f"{one.name}: {one.with_unit}{note}"
+    note = (
+        f" {headline.note}"
+        if headline.note.startswith("±")
+        else f" ({headline.note})"
+        if headline.note
+        else ""
+    )
+    return f"{headline.name}: {headline.with_unit}{note}"
 
 
 def final_cycle(results: Results) -> MeshCycle | None:
     """Return the mesh cycle with the film where there is one, else the dry one."""
-    found: MeshCycle | None = results.values.get("film", results.values.get("dry cycle"))
-    return found
+    cycle: MeshCycle | None = results.values.get("film", results.values.get("dry cycle"))
+    return cycle
 
 
 def _over_face(results: Results) -> fem.FaceLoads | None:

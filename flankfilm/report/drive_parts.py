@@ -148,7 +148,7 @@ def _rows(stage: DriveSweep, part: str, figure: str, unit: str) -> Iterator[tupl
             number(peak),
             percent(error),
             f"{RPM * speed:.0f}",
-            " to ".join(number(float(one)) if np.isfinite(one) else "-" for one in band),
+            " to ".join(number(float(end)) if np.isfinite(end) else "-" for end in band),
             number(float(np.nanmax(swing))),
             unit,
         )
@@ -158,7 +158,7 @@ def carried_table(
     stage: SpeedRunUp | DynamicMap,
     places: tuple[str, ...],
     values: Callable[[str], Array],
-    where: Callable[[Sequence[int]], tuple[str, ...]],
+    cells_at: Callable[[Sequence[int]], tuple[str, ...]],
 ) -> tuple[Table, ...]:
     """Table of the maximum and the variation of every part, and their place; none for a pair on rigid shafts.
 
@@ -169,7 +169,7 @@ def carried_table(
         Heads of the columns that say where.
     values : callable
         Gives all values of a figure, the parts along the last axis.
-    where : callable
+    cells_at : callable
         Gives the cells of these columns for indices of the other axes.
     """
     rows = []
@@ -180,7 +180,7 @@ def carried_table(
                 continue
             at = [int(k) for k in np.unravel_index(int(np.nanargmax(most)), most.shape)]
             rows.append(
-                (name, number(float(np.nanmax(most))), *where(at), number(float(np.nanmax(swing))), unit)
+                (name, number(float(np.nanmax(most))), *cells_at(at), number(float(np.nanmax(swing))), unit)
             )
     heads = ("part", "maximum", *places, "root mean square about the mean, maximum", "unit")
     return (Table(heads, tuple(rows)),) if rows else ()
@@ -210,14 +210,14 @@ def operating_headlines(stage: DriveSweep, rpm: float) -> list[Headline]:
 
 def headlines(stage: DriveSweep) -> list[Headline]:
     """Maximum force of the mesh, of a bearing, and maximum torque of a shaft, each with its speed."""
-    found = []
+    shown = []
     if np.isfinite(stage.force_peak):
         sampled = min(stage.sampling_error, stage.force_peak_error)
         off = Uncertainty(None)
         if np.isfinite(stage.force_peak_error):
             off = Uncertainty(sampled, stage.force_peak_error - sampled)
         note = f"at {RPM * stage.force_peak_speed:.0f} rpm; {_OF_MODEL}"
-        found.append(
+        shown.append(
             Headline("maximum mesh force over the mean force", f"{stage.force_peak:.3g}", note, "", off)
         )
     for what, part, figure, unit in (
@@ -236,8 +236,8 @@ def headlines(stage: DriveSweep) -> list[Headline]:
         known_off = Uncertainty(sampled, off - sampled) if np.isfinite(off) else Uncertainty(None)
         note = f"{names[at]}, at {rpm:.0f} rpm; {_OF_MODEL}"
         if stage.carried_error is not None:
-            left = stage.carried_error - stage.sampling_error
-            known = f"up to {percent(left)}" if np.isfinite(left) else "more, in places unknown,"
+            omitted = stage.carried_error - stage.sampling_error
+            known = f"up to {percent(omitted)}" if np.isfinite(omitted) else "more, in places unknown,"
             note += f"; {known} by harmonics that the series leaves out"
-        found.append(Headline(what, number(float(values[at])), note, unit, known_off))
-    return found
+        shown.append(Headline(what, number(float(values[at])), note, unit, known_off))
+    return shown

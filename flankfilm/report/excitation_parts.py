@@ -26,8 +26,8 @@ def excitation(stage: ErrorSeries, results: xr.Dataset) -> Part:
         for j, (e, phase) in enumerate(zip(stage.amplitude[:LISTED], stage.phase, strict=False), start=1)
     )
     table = Table(("harmonic", "amplitude [µm]", "phase [deg]"), rows)
-    left = stage.motion_left
-    motion = "" if left is None else said("excitation_motion", left=percent(left))
+    omitted = stage.motion_left
+    motion = "" if omitted is None else said("excitation_motion", left=percent(omitted))
     meshes = counted(stage.meshes, "base pitch", "base pitches")
     notes = [
         said("excitation", order=stage.order, meshes=meshes, left=percent(stage.remainder), motion=motion),

@@ -22,15 +22,15 @@ if TYPE_CHECKING:
 GREATEST = "maximum face-load factor"
 
 
-def face(found: fem.FaceLoads, models: FaceLoadModels | None, results: xr.Dataset) -> Part:
+def face(loads: fem.FaceLoads, models: FaceLoadModels | None, results: xr.Dataset) -> Part:
     """Flank maps, the face-load factor along the path, and other models beside it."""
-    drawn = pictures(results, "flank_map", "face_load_factor", model=LABELS[found.setting.model])
-    tables, notes = [_bears(found)], [said("face")]
+    drawn = pictures(results, "flank_map", "face_load_factor", model=LABELS[loads.setting.model])
+    tables, notes = [_bears(loads)], [said("face")]
     if models is not None:
         drawn += pictures(results, "line_load_models")
         tables.append(models_table(models))
         notes += _failing(models)
-    return Part("face", "Load over the face", (_made_of(found),), drawn, tuple(tables), tuple(notes))
+    return Part("face", "Load over the face", (_made_of(loads),), drawn, tuple(tables), tuple(notes))
 
 
 def beside(models: FaceLoadModels, results: xr.Dataset) -> Part:
@@ -40,13 +40,13 @@ def beside(models: FaceLoadModels, results: xr.Dataset) -> Part:
     return Part("face", "Load over the face", figures=drawn, tables=tables, notes=notes)
 
 
-def headlines(found: fem.FaceLoads) -> list[Headline]:
+def headlines(loads: fem.FaceLoads) -> list[Headline]:
     """Numbers for the page's head."""
-    load = read_figure(found, "greatest_line_load")
-    factor = number(found.greatest_face_load_factor)
-    note = f"{LABELS[found.setting.model]}, {found.setting.cells} cells"
+    load = read_figure(loads, "greatest_line_load")
+    factor = number(loads.greatest_face_load_factor)
+    note = f"{LABELS[loads.setting.model]}, {loads.setting.cells} cells"
     of_factor, of_load = (
-        uncertainty(found, name) for name in ("greatest_face_load_factor", "greatest_line_load")
+        uncertainty(loads, name) for name in ("greatest_face_load_factor", "greatest_line_load")
     )
     return [
         Headline(GREATEST, factor, note, uncertainty=of_factor),
@@ -54,9 +54,9 @@ def headlines(found: fem.FaceLoads) -> list[Headline]:
     ]
 
 
-def _made_of(found: fem.FaceLoads) -> str:
+def _made_of(loads: fem.FaceLoads) -> str:
     """Causes of the variation of the load."""
-    setting, parts = found.setting, []
+    setting, parts = loads.setting, []
     for name, lead in zip(("pinion", "wheel"), setting.leads, strict=True):
         for what, value in (
             ("crowning", lead.crowning),
@@ -73,7 +73,9 @@ def _made_of(found: fem.FaceLoads) -> str:
     for plane, value in (("in", setting.alignment.in_plane), ("across", setting.alignment.out_of_plane)):
         if value:
             parts.append(f"axes {number(1e6 * value)} µm out of parallel {plane} the plane of action")
-    bent = [name for name, one in zip(("pinion", "wheel"), setting.shafts, strict=True) if one is not None]
+    bent = [
+        name for name, shaft in zip(("pinion", "wheel"), setting.shafts, strict=True) if shaft is not None
+    ]
     if bent:
         parts.append(
             f"bending and twist of the shaft of {' and '.join(f'the {name}' for name in bent)} under the load"
@@ -82,40 +84,40 @@ def _made_of(found: fem.FaceLoads) -> str:
     return said("face_made_of", made=made, cells=setting.cells, model=LABELS[setting.model])
 
 
-def _bears(found: fem.FaceLoads) -> Table:
+def _bears(loads: fem.FaceLoads) -> Table:
     """Maximum values over path and face, and the contact pattern."""
-    return Table(("over path and face", "value"), tuple(_rows(found)))
+    return Table(("over path and face", "value"), tuple(_rows(loads)))
 
 
-def _rows(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
-    off, factor = plus_minus(found.error), found.face_load_factor
-    yield GREATEST, f"{number(found.greatest_face_load_factor)} {off}"
+def _rows(loads: fem.FaceLoads) -> Iterator[tuple[str, str]]:
+    off, factor = plus_minus(loads.error), loads.face_load_factor
+    yield GREATEST, f"{number(loads.greatest_face_load_factor)} {off}"
     yield "mean of the face-load factor over the cycle", f"{number(float(factor.mean()))} {off}"
-    load = read_figure(found, "greatest_line_load")
-    *_, cell = np.unravel_index(np.argmax(found.line_load), found.line_load.shape)
-    yield load.meaning, f"{number(float(load.values))} {load.unit} {plus_minus(found.line_load_error)}"
-    at = f"{number(1e3 * float(found.face_position[cell]), 3)} mm"
+    load = read_figure(loads, "greatest_line_load")
+    *_, cell = np.unravel_index(np.argmax(loads.line_load), loads.line_load.shape)
+    yield load.meaning, f"{number(float(load.values))} {load.unit} {plus_minus(loads.line_load_error)}"
+    at = f"{number(1e3 * float(loads.face_position[cell]), 3)} mm"
     yield "its place on the face, from the middle", at
-    pressure = read_figure(found, "hertz_pressure")
+    pressure = read_figure(loads, "hertz_pressure")
     yield f"maximum {pressure.meaning}", f"{number(float(np.nanmax(pressure.values)))} {pressure.unit}"
-    yield "contact pattern: part of the face in contact", percent(found.contact_pattern, 3)
-    yield from _of_shafts(found)
+    yield "contact pattern: part of the face in contact", percent(loads.contact_pattern, 3)
+    yield from _of_shafts(loads)
 
 
-def _of_shafts(found: fem.FaceLoads) -> Iterator[tuple[str, str]]:
+def _of_shafts(loads: fem.FaceLoads) -> Iterator[tuple[str, str]]:
     """Deflection and tilt of shafts, and their parts of the transmission error; nothing for rigid shafts."""
-    if found.shaft_deflection is None or found.shaft_error is None or found.tilt_error is None:
+    if loads.shaft_deflection is None or loads.shaft_error is None or loads.tilt_error is None:
         return
-    errors = plus_minus(found.shaft_error), plus_minus(found.tilt_error)
+    errors = plus_minus(loads.shaft_error), plus_minus(loads.tilt_error)
     for gear, name in enumerate(("pinion", "wheel")):
         for what, values, off in (
-            ("deflection along the line of action", found.shaft_deflection[gear], errors[0]),
-            ("misalignment over the face", found.shaft_misalignment[gear], errors[1]),
+            ("deflection along the line of action", loads.shaft_deflection[gear], errors[0]),
+            ("misalignment over the face", loads.shaft_misalignment[gear], errors[1]),
         ):
             if np.any(values):
                 size = number(1e6 * float(values[np.argmax(np.abs(values))]))
                 yield f"maximum {what} by the shaft of the {name}", f"{size} µm {off}"
-    parts = found.shaft_transmission_error, found.tilt_transmission_error
+    parts = loads.shaft_transmission_error, loads.tilt_transmission_error
     for name, part, off in zip(("shafts", "shafts' tilt"), parts, errors, strict=True):
         if part is not None:
             ends = " to ".join(number(1e6 * float(end)) for end in (part.min(), part.max()))

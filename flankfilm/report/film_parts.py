@@ -33,7 +33,7 @@ HELD = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}
 def film(cycle: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
     """Film along the path, through chosen contacts, and its stiffness by every definition."""
     stage = cycle.film
-    secant, tangent = (100 * one for one in (cycle.secant_stiffness_change, cycle.stiffness_change))
+    secant, tangent = (100 * change for change in (cycle.secant_stiffness_change, cycle.stiffness_change))
     verdict = said("film_changes", secant=secant, tangent=tangent)
     if abs(cycle.secant_stiffness_change) < tolerance:
         verdict += said("film_left_out", tolerance=percent(tolerance))
@@ -86,16 +86,16 @@ def _captions(stage: FilmAlongPath) -> dict[str, str]:
 
 def _over_face(cycle: LubricatedCycle) -> Iterator[str]:
     """Composition of films over the face, and the effects that they leave out."""
-    found = cycle.over_face
-    if found is not None:
+    face_films = cycle.over_face
+    if face_films is not None:
         yield said(
             "film_over_face",
-            least=number(1e6 * found.least_film),
-            place=number(1e3 * found.least_film_place, 3),
-            films=counted(found.films, "film"),
-            table=percent(found.table_error),
-            zone=number(1e3 * found.end_zone, 2),
-            side=percent(found.side_flow, 2),
+            least=number(1e6 * face_films.least_film),
+            place=number(1e3 * face_films.least_film_place, 3),
+            films=counted(face_films.films, "film"),
+            table=percent(face_films.table_error),
+            zone=number(1e3 * face_films.end_zone, 2),
+            side=percent(face_films.side_flow, 2),
         )
 
 
@@ -105,7 +105,7 @@ def _definitions(stage: FilmAlongPath, face: float) -> Table:
     caption = f"Stiffness in {unit_text(PER_FACE)}."
     if not stage.at_pitch:
         heads = ("film stiffness by", "minimum", "maximum")
-        return Table(heads, tuple((name, *both) for name, both in ends.items()), caption)
+        return Table(heads, tuple((name, *limits) for name, limits in ends.items()), caption)
     return Table.of(
         stage.at_pitch,
         {
@@ -142,7 +142,7 @@ def _otherwise(lubricated: LubricatedCycle, face: float) -> Table:
         }.items()
     )
     means = ("mean secant", "change", "mean tangent", "change", "first harmonic of the tangent over its mean")
-    error = percent(max((one.mean_error or 0.0 for one in (dry, lubricated)), default=None))
+    error = percent(max((mesh.mean_error or 0.0 for mesh in (dry, lubricated)), default=None))
     caption = f"Stiffness in {unit_text(PER_FACE)}; the numerical error of the means is {error}."
     return Table(("mesh stiffness with", *means), rows, caption)
 
@@ -178,7 +178,7 @@ def _ends(curve: Array) -> tuple[float, float]:
 
 def _off(cycle: LubricatedCycle) -> Uncertainty:
     """Error of the change of the mean secant stiffness by the film: of both cycles, which share their meshes."""
-    known = [one.mean_error for one in (cycle, cycle.dry)]
+    known = [mesh.mean_error for mesh in (cycle, cycle.dry)]
     errors = [error for error in known if error is not None]
     if cycle.film.error is None or len(errors) < len(known):
         return Uncertainty(None)

@@ -125,21 +125,21 @@ def _models(cycle: MeshCycle) -> str:
     return "not estimated" if None in known else ", ".join(map(percent, known))
 
 
-def references(found: StiffnessReferences, face_width: float) -> Part:
+def references(by_reference: StiffnessReferences, face_width: float) -> Part:
     """Mean stiffness for each reference of the deflection, beside ISO 6336-1, and parts of the deflection."""
     tangent, secant, iso = (
-        read_figure(found, name, face_width)
+        read_figure(by_reference, name, face_width)
         for name in ("mean_stiffness", "mean_secant_stiffness", "iso_mesh_stiffness")
     )
     means = [
         (f"{name}: {MEANINGS[name]}", number(s, 5), number(k, 5), percent(error))
         for name, k, s, error in zip(
-            found.reference, tangent.values, secant.values, found.mean_error, strict=True
+            by_reference.reference, tangent.values, secant.values, by_reference.mean_error, strict=True
         )
     ]
     means.append(("c_gamma of ISO 6336-1", "", number(float(iso.values), 5), "unknown"))
-    of_hubs = found.deflection["hub_windup"]
-    whole = sum(found.deflection.values()) - of_hubs
+    of_hubs = by_reference.deflection["hub_windup"]
+    whole = sum(by_reference.deflection.values()) - of_hubs
     parts = [
         # what rounding leaves of a part is none
         (
@@ -150,7 +150,7 @@ def references(found: StiffnessReferences, face_width: float) -> Part:
                 else (number(1e6 * part, 4), percent(part / whole))
             ),
         )
-        for name, part in found.deflection.items()
+        for name, part in by_reference.deflection.items()
     ]
     parts.insert(-1, ("total, relative to the bodies", number(1e6 * whole, 4), percent(1.0)))
     parts.append(
@@ -172,7 +172,7 @@ def _harmonics(cycle: MeshCycle) -> Table:
     for name in names:
         values, errors = read_figure(cycle, name), getattr(cycle, f"{name}_error")
         heads += [values.label, "±"]
-        columns.append([number(one, 4) for one in values.values[:LISTED].tolist()])
+        columns.append([number(amplitude, 4) for amplitude in values.values[:LISTED].tolist()])
         scale = values.values[0] / getattr(cycle, name)[0]
         columns.append(["unknown"] * LISTED if errors is None else alike(scale * errors[:LISTED]))
     return Table(tuple(heads), tuple(zip(*columns, strict=True)), f"Harmonics of the mesh: {cycle.label}.")
@@ -196,10 +196,15 @@ def contact_table(contact: Iso6336ContactStress, loaded: fem.MeshCycle | None) -
         figure = read_figure(contact, name)
         rows.append((figure.label, *(number(float(figure.values), 5),) * 2))
     factors = (contact.Z_B, contact.Z_D)
-    rows.append(("single pair tooth contact factors Z_B and Z_D", *(number(one, 5) for one in factors)))
+    rows.append(
+        (
+            "single pair tooth contact factors Z_B and Z_D",
+            *(number(coefficient, 5) for coefficient in factors),
+        )
+    )
     for name in ("stresses", "single_pair_stresses"):
         figure = read_figure(contact, name)
-        rows.append((figure.label, *(number(one, 5) for one in figure.values.tolist())))
+        rows.append((figure.label, *(number(stress, 5) for stress in figure.values.tolist())))
     heads = ("ISO 6336-2, whole force, all factors K = 1", "pinion", "wheel")
     if loaded is None:
         return Table(heads, tuple(rows))
@@ -224,13 +229,18 @@ def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
     error = read_figure(cycle, "transmission_error_range")
     figures = ((secant, ".4g", cycle.label), (tangent, ".4g", "for small vibration"))
     shown = [
-        (relative_to(one.meaning, cycle.reference), format(float(one.values), digits), note, one.unit)
-        for one, digits, note in figures
+        (
+            relative_to(reading.meaning, cycle.reference),
+            format(float(reading.values), digits),
+            note,
+            reading.unit,
+        )
+        for reading, digits, note in figures
     ]
     lag = relative_to("loaded transmission error", cycle.reference)
     shown.append((lag, f"{float(error.values):.3g}", "peak to peak", error.unit))
     names = ("mean_secant_stiffness", "mean_stiffness", "transmission_error_range")
-    return [Headline(*one, uncertainty(cycle, name)) for one, name in zip(shown, names, strict=True)]
+    return [Headline(*cells, uncertainty(cycle, name)) for cells, name in zip(shown, names, strict=True)]
 
 
 def pressure_headlines(loaded: fem.MeshCycle, single: SinglePairs | None) -> list[Headline]:
@@ -249,7 +259,7 @@ def pressure_headlines(loaded: fem.MeshCycle, single: SinglePairs | None) -> lis
 
 def _both(stresses: Sequence[float]) -> str:
     """Stress of pinion and wheel [MPa], once where it is the same."""
-    return " and ".join(dict.fromkeys(f"{1e-6 * one:.4g}" for one in stresses))
+    return " and ".join(dict.fromkeys(f"{1e-6 * stress:.4g}" for stress in stresses))
 
 
 def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
@@ -276,8 +286,8 @@ def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
     note = f"ISO 6336-3 gives no result: {stage.iso_fault}"
     if stage.iso is not None:
         tables.append(_iso(stage.iso))
-        both = "at D for the pinion and at B for the wheel"
-        note = said("iso6336_3", where="at the tip" if stage.iso.load_at == "tip" else both)
+        places = "at D for the pinion and at B for the wheel"
+        note = said("iso6336_3", where="at the tip" if stage.iso.load_at == "tip" else places)
     drawn = pictures(results, "root_stress", *(("root_face_map",) if over_face else ()))
     notes = (note, *((said("root_over_face", left_out=stage.iso_left_out),) if over_face else ()))
     return Part("roots", "Root stress", figures=drawn, tables=tuple(tables), notes=notes)
@@ -302,7 +312,7 @@ def _over_face(stage: RootStresses) -> Table:
 def root_headlines(stage: RootStresses) -> list[Headline]:
     """Maximum stresses of both gears."""
     largest = [read_figure(stage.stress, f"{gear}_tension_Pa") for gear in ("pinion", "wheel")]
-    values = " and ".join(f"{float(one.values):.4g}" for one in largest)
+    values = " and ".join(f"{float(tension.values):.4g}" for tension in largest)
     note = ""
     if stage.iso is not None:
         note = f"ISO 6336-3 nominal {_both(stage.iso.stresses)}"
@@ -328,16 +338,17 @@ def over_torque(stage: TorqueCurves, results: xr.Dataset) -> Part:
     names = ("secant_stiffness", "tangent_stiffness", "transmission_error", "harmonic_1")
     curves = [read(results, f"torque_{name}", per_face=name.endswith("stiffness")) for name in names]
     shown = [read(results, "torque"), *curves]
-    cells = zip(*([number(value, 5) for value in one.values.tolist()] for one in shown), strict=True)
+    cells = zip(*([number(value, 5) for value in reading.values.tolist()] for reading in shown), strict=True)
     errors = {"stiffness": stage.error, "peak to peak": stage.range_error}
     caption = "Largest numerical errors: " + ", ".join(f"{n} {percent(e)}" for n, e in errors.items()) + "."
-    table = Table(tuple(one.label for one in shown), tuple(cells), caption)
+    table = Table(tuple(reading.label for reading in shown), tuple(cells), caption)
     drawn = pictures(results, "over_torque")
     notes = (f"Left out: {stage.message}",) if stage.message else ()
     orders = stage.transmission_error_harmonic
     waves = [read(results, f"torque_transmission_error_harmonic_{order}") for order in orders]
     rows = zip(
-        *([number(value, 4) for value in one.values.tolist()] for one in (shown[0], *waves)), strict=True
+        *([number(value, 4) for value in reading.values.tolist()] for reading in (shown[0], *waves)),
+        strict=True,
     )
     heads = (shown[0].label, *(waves[0].named(f"harmonic {order}") for order in orders))
     off = read(results, "torque_harmonics_error")

@@ -72,11 +72,11 @@ def fourier_headlines(stage: MeshSeries) -> list[Headline]:
         return [Headline("stiffness, first harmonic over the mean", f"{kappa:.4f}", "as given")]
     errors = stage.harmonic_error
     known = None if errors is None or not len(errors) else float(errors[0])
-    left = f"remainder after {counted(stage.order, 'harmonic')}: {percent(stage.remainder)} of the mean"
+    remainder = f"remainder after {counted(stage.order, 'harmonic')}: {percent(stage.remainder)} of the mean"
     if stage.left_out is not None and stage.left_out.motion is not None:
-        left += f" and up to {percent(float(stage.left_out.motion[stage.order]))} of the motion"
+        remainder += f" and up to {percent(float(stage.left_out.motion[stage.order]))} of the motion"
     off = Uncertainty(known, first_harmonic(stage), size=1.0)
-    return [Headline("stiffness, first harmonic over the mean", f"{kappa:.4f}", left, uncertainty=off)]
+    return [Headline("stiffness, first harmonic over the mean", f"{kappa:.4f}", remainder, uncertainty=off)]
 
 
 def scaling(stage: PairOscillator, _: xr.Dataset) -> Part:
@@ -158,7 +158,9 @@ def _swept(stage: SpeedSweep) -> list[str]:
     """Effect of the omitted harmonics on the sweep; nothing for a given series."""
     if stage.longer_order is None or stage.force_change is None or stage.spread_change is None:
         return []
-    force, spread = (np.concatenate(list(one.values())) for one in (stage.force_change, stage.spread_change))
+    force, spread = (
+        np.concatenate(list(change.values())) for change in (stage.force_change, stage.spread_change)
+    )
     same, repeating = np.isfinite(spread), ~np.isnan(spread)
     other, rest = int(np.sum(repeating & ~same)), int(np.sum(~repeating))
     notes = [
@@ -206,11 +208,11 @@ def _greatest(stage: SpeedSweep) -> list[Headline]:
         return []
     at = float(stage.frequency[int(np.nanargmax(np.nanmax(factors, axis=0)))])
     rpm = _speed(stage)
-    where = f"ω = {at:.4g}" if rpm is None else f"{rpm * at:.0f} rpm"
-    note, error = f"at {where}, of the speeds swept", stage.greatest_factor_error
+    speed = f"ω = {at:.4g}" if rpm is None else f"{rpm * at:.0f} rpm"
+    note, error = f"at {speed}, of the speeds swept", stage.greatest_factor_error
     if stage.force_change is not None and error is not None:
-        left = percent(error - stage.sampling_error)
-        note += f"; {left} of the error by harmonics that the series omits"
+        omitted = percent(error - stage.sampling_error)
+        note += f"; {omitted} of the error by harmonics that the series omits"
     off = Uncertainty(_finite(error))
     return [Headline("maximum force over the mean force", f"{np.nanmax(factors):.3g}", note, "", off)]
 
@@ -305,7 +307,7 @@ def _longer(stage: SpeedDiagram, jump: Jump) -> str:
 
 
 def _notes(stage: SpeedDiagram) -> list[str]:
-    separated, back = (_ranges(stage, one) for one in (stage.separated, stage.back_contact))
+    separated, back = (_ranges(stage, ranges) for ranges in (stage.separated, stage.back_contact))
     none = "" if stage.jumps else "Jump speeds: none in range."
     notes = [said("contact_lost", separated=separated, back=back, jumps=none)]
     if stage.force_factor.size:

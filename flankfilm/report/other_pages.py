@@ -51,19 +51,19 @@ MOST_ROWS = 100
 """Maximum number of rows on a page; the files hold all."""
 
 
-def write_study_page(found: StudyResults, data: xr.Dataset, folder: Path) -> Path:
+def write_study_page(study: StudyResults, data: xr.Dataset, folder: Path) -> Path:
     """Write ``report.html`` of a study and return its path.
 
     Parameters
     ----------
-    found : StudyResults
+    study : StudyResults
     data : xarray.Dataset
         What ``study.nc`` holds.
     folder : Path
     """
-    plan, rows = found.plan, len(found.rows)
+    plan, rows = study.plan, len(study.rows)
     headlines = [_range(data, name) for name in plan.outputs if np.isfinite(data[name]).any()]
-    failed = Counter(row.fault for row in found.failures)
+    failed = Counter(row.fault for row in study.failures)
     notes = tuple(f"{counted(count, 'row')} failed: {fault}" for fault, count in failed.most_common(20))
     varied, drawn = plan.keys[: plan.varied], []
     if varied_numbers(data, varied):
@@ -73,8 +73,8 @@ def write_study_page(found: StudyResults, data: xr.Dataset, folder: Path) -> Pat
         caption = f"Every output against {key_words(varied_numbers(data, varied)[0])[0]}"
         caption += "; the other keys make families." if len(varied) > 1 else "."
         drawn.append(picture(draw, data, caption))
-    left = f"The first {MOST_ROWS} of {rows}; rows.csv and study.nc hold all." if rows > MOST_ROWS else ""
-    table = _rows(data, plan, [(plan.rows[row.index], row) for row in found.rows[:MOST_ROWS]], left)
+    omitted = f"The first {MOST_ROWS} of {rows}; rows.csv and study.nc hold all." if rows > MOST_ROWS else ""
+    table = _rows(data, plan, [(plan.rows[row.index], row) for row in study.rows[:MOST_ROWS]], omitted)
     facts = [
         Fact(f"{counted(rows, 'row')}, {plan.design}", "rows"),
         _tolerance(data),
@@ -87,33 +87,33 @@ def write_study_page(found: StudyResults, data: xr.Dataset, folder: Path) -> Pat
         _inputs(data),
     ]
     if notes:
-        facts.append(Fact(f"{len(found.failures)} failed", "faults"))
+        facts.append(Fact(f"{len(study.failures)} failed", "faults"))
         parts.insert(1, Part("faults", "Rows that failed", notes=notes, unfolded=True))
     return write_page(folder, Head(plan.title or "Study", facts, headlines), parts)
 
 
-def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
+def write_optimum_page(optimum: Optimum, data: xr.Dataset, folder: Path) -> Path:
     """Write ``report.html`` of an optimisation and return its path.
 
     Parameters
     ----------
-    found : Optimum
+    optimum : Optimum
     data : xarray.Dataset
         What ``optimum.nc`` holds.
     folder : Path
     """
-    task, points = found.task, found.evaluations
-    chosen = [points[place] for place in found.best]
-    one = len(task.objectives) == 1
+    task, points = optimum.task, optimum.evaluations
+    chosen = [points[place] for place in optimum.best]
+    single = len(task.objectives) == 1
     coarse, fine = (percent(tolerance) for tolerance in task.tolerances)
-    settled = "converged" if found.converged else "not converged"
+    settled = "converged" if optimum.converged else "not converged"
     facts = [
-        Fact(counted(found.points, "point"), "points"),
+        Fact(counted(optimum.points, "point"), "points"),
         _work(data),
-        Fact("one optimum" if one else f"{counted(len(chosen), 'point')} on the front", "best"),
+        Fact("one optimum" if single else f"{counted(len(chosen), 'point')} on the front", "best"),
         Fact(settled, "claims"),
     ]
-    drawn = [picture(figures.optimum, data, said("optimum_of_one" if one else "optimum_of_several"))]
+    drawn = [picture(figures.optimum, data, said("optimum_of_one" if single else "optimum_of_several"))]
     if can_be_mapped(data):
         drawn.insert(0, picture(figures.optimum_map, data, said("optimum_map")))
     note = said("two_tolerances", coarse=coarse, fine=fine)
@@ -122,16 +122,16 @@ def write_optimum_page(found: Optimum, data: xr.Dataset, folder: Path) -> Path:
         Part(
             "claims",
             "What was found",
-            (_in_words(found.message),),
-            notes=(*gained(found), tied(found)),
+            (_in_words(optimum.message),),
+            notes=(*gained(optimum), tied(optimum)),
             unfolded=True,
         ),
         Part("points", "Points", figures=tuple(drawn)),
-        Part("best", "Optimum" if one else "Front", tables=(table,), notes=(note,), unfolded=True),
+        Part("best", "Optimum" if single else "Front", tables=(table,), notes=(note,), unfolded=True),
         _inputs(data),
     ]
     return write_page(
-        folder, Head(task.asked.title or "Optimisation", facts, _best_cards(found, data)), parts
+        folder, Head(task.asked.title or "Optimisation", facts, _best_cards(optimum, data)), parts
     )
 
 
@@ -145,29 +145,29 @@ def _bounds(task: Task, name: str) -> str:
     return ", ".join(f"{which} {number(bound)}" for which, bound in ends if bound is not None)
 
 
-def _best_cards(found: Optimum, data: xr.Dataset) -> list[Headline]:
+def _best_cards(optimum: Optimum, data: xr.Dataset) -> list[Headline]:
     """Outputs of the best point with their errors and the gain on the start; its keys where it is the only one."""
-    task, first = found.task, found.evaluations[found.best[0]]
-    gains = {gain.objective: gain for gain in found.gains}
+    task, first = optimum.task, optimum.evaluations[optimum.best[0]]
+    gains = {gain.objective: gain for gain in optimum.gains}
     cards = []
     for name, value in zip(task.outputs, first.result.values, strict=True):
         if name in ERROR_OF.values():
             continue
         note = []
         if name in task.objectives:
-            error = plus_minus(found.error_of(name, first.result))
+            error = plus_minus(optimum.error_of(name, first.result))
             note.append("exact" if exact(name) else error)
         else:
             note.append(f"limit: {_bounds(task, name)}")
-        if (gain := gains.get(name)) is not None and len(found.best) == 1:
+        if (gain := gains.get(name)) is not None and len(optimum.best) == 1:
             start = f"{number(gain.start, 5)} {unit_of(data, name, '')}".strip()
             note.append(f"{start} for the scene as given")
-        if len(found.best) > 1:
+        if len(optimum.best) > 1:
             note.append("at the best first objective")
         cards.append(Headline(words(data, name), number(value, 5), ", ".join(note), unit_of(data, name, "")))
-    if len(found.best) > 1:
+    if len(optimum.best) > 1:
         return cards
-    ties = found.tied_ranges()
+    ties = optimum.tied_ranges()
     for key, value in zip(task.keys, first.values, strict=True):
         name, unit = key_words(key)
         low, high = ties.get(key, (value, value))
@@ -176,17 +176,17 @@ def _best_cards(found: Optimum, data: xr.Dataset) -> list[Headline]:
     return cards
 
 
-def write_verification_page(found: Verification, data: xr.Dataset, folder: Path) -> Path:
+def write_verification_page(verification: Verification, data: xr.Dataset, folder: Path) -> Path:
     """Write ``report.html`` of a verification and return its path.
 
     Parameters
     ----------
-    found : Verification
+    verification : Verification
     data : xarray.Dataset
         What ``verify.nc`` holds.
     folder : Path
     """
-    whole, pair = found.references[0], found.pair
+    whole, pair = verification.references[0], verification.pair
     headlines = [
         Headline(
             relative_to(f"{d.model}: mean mesh stiffness", whole.deflection_reference),
@@ -194,26 +194,30 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
             f"against finite elements, whose error is {percent(d.reference_error)}",
             "%",
         )
-        for d in found.differences
+        for d in verification.differences
         if (d.figure, d.reference) == ("mesh, mean", whole.label)
     ]
-    tables = tuple(_differences(found, reference.label) for reference in (whole, found.like_for_like))
-    cost = "; ".join(f"{c.label} {seconds(c.cost.seconds)}" for c in (*found.references, *found.models))
-    shared = f"Finite elements {seconds(found.cost.seconds)} once; then each model: {cost}."
-    work = found.cost.seconds + sum(c.cost.seconds for c in found.references)
+    tables = tuple(
+        _differences(verification, reference.label) for reference in (whole, verification.like_for_like)
+    )
+    cost = "; ".join(
+        f"{c.label} {seconds(c.cost.seconds)}" for c in (*verification.references, *verification.models)
+    )
+    shared = f"Finite elements {seconds(verification.cost.seconds)} once; then each model: {cost}."
+    work = verification.cost.seconds + sum(c.cost.seconds for c in verification.references)
     facts = [
         Fact(f"{pair.pinion.teeth}/{pair.wheel.teeth} teeth, module {1e3 * pair.module:g} mm"),
-        Fact(f"pinion: {found.torque:g} N m"),
+        Fact(f"pinion: {verification.torque:g} N m"),
         Fact(f"{seconds(work)} of work", "costs"),
     ]
-    over = found.over_face
+    over = verification.over_face
     parts = [
         Part("curves", "Curves", figures=pictures(data, "verification")),
         Part(
             "differences",
             "Differences",
             tables=tables,
-            notes=(found.message,) if found.message else (),
+            notes=(verification.message,) if verification.message else (),
             unfolded=True,
         ),
         *([] if over is None else [face_parts.beside(over, data)]),
@@ -223,31 +227,35 @@ def write_verification_page(found: Verification, data: xr.Dataset, folder: Path)
     return write_page(folder, Head(str(data.attrs["title"]) or "Closed forms", facts, headlines), parts)
 
 
-def _differences(found: Verification, reference: str) -> Table:
+def _differences(verification: Verification, reference: str) -> Table:
     """Every figure of every model against one reference."""
-    rows = tuple((f"{name} [{unit_text(unit)}]", *cells) for name, unit, *cells in compared(found, reference))
-    against = compared_with(found, reference)
-    heads = ("figure", "finite elements", *(model.label for model in found.models))
+    rows = tuple(
+        (f"{name} [{unit_text(unit)}]", *cells) for name, unit, *cells in compared(verification, reference)
+    )
+    against = compared_with(verification, reference)
+    heads = ("figure", "finite elements", *(model.label for model in verification.models))
     return Table(heads, rows, f"Against {against}")
 
 
-def compared_with(found: Verification, reference: str) -> str:
+def compared_with(verification: Verification, reference: str) -> str:
     """Finite elements that models are compared with: the parts left out, and the reference of the deflection."""
-    whole = next(one for one in found.references if one.label == reference)
+    whole = next(elements for elements in verification.references if elements.label == reference)
     return relative_to(
         reference if reference == "finite elements" else f"finite elements {reference}",
         whole.deflection_reference,
     )
 
 
-def compared(found: Verification, reference: str) -> Iterator[tuple[str, ...]]:
+def compared(verification: Verification, reference: str) -> Iterator[tuple[str, ...]]:
     """Cells of every figure against one reference: name, unit, by finite elements with its error, by each model."""
     for figure, unit in UNITS.items():
-        by_model = {d.model: d for d in found.differences if (d.figure, d.reference) == (figure, reference)}
+        by_model = {
+            d.model: d for d in verification.differences if (d.figure, d.reference) == (figure, reference)
+        }
         if by_model:
             first = next(iter(by_model.values()))
             whole = f"{first.reference_value:.4g} ± {100 * first.reference_error:.2g} %"
-            yield figure, unit, whole, *(_against(by_model.get(model.label)) for model in found.models)
+            yield figure, unit, whole, *(_against(by_model.get(model.label)) for model in verification.models)
 
 
 def _against(difference: Difference | None) -> str:
@@ -305,16 +313,18 @@ def _off(data: xr.Dataset, name: str, rows: Booleans) -> str:
     """Largest uncertainty of an output over rows, marked where one does not meet the tolerance of its row."""
     errors = data[ERROR_OF[name]].values[rows]
     model = MODEL_ERROR_OF.get(name)
-    left = data[model].values[rows] if model in data else None
-    known = None if left is None or not np.isfinite(left).all() else float(left.max())
+    model_errors = data[model].values[rows] if model in data else None
+    known = None if model_errors is None or not np.isfinite(model_errors).all() else float(model_errors.max())
     if not np.isfinite(errors).all():
         return "error unknown"
     if "tolerance" in data.coords:
         asked = data["tolerance"].values[rows]
-        tolerances = [float(parse_tolerance(str(one))) for one in np.broadcast_to(asked, errors.shape)]
+        tolerances = [float(parse_tolerance(str(text))) for text in np.broadcast_to(asked, errors.shape)]
     else:
         tolerances = [_asked(data)] * errors.size
-    missed = [one for one, allowed in zip(errors.tolist(), tolerances, strict=True) if not met(one, allowed)]
+    missed = [
+        error for error, allowed in zip(errors.tolist(), tolerances, strict=True) if not met(error, allowed)
+    ]
     return off(Uncertainty(float(errors.max()), known), min(tolerances) if missed else None)
 
 

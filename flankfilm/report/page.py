@@ -101,7 +101,7 @@ class Table:
 
 def _unbroken(text: str) -> str:
     """Text whose units, errors and per cents stay on the line of what they belong to."""
-    return BOUND.sub(lambda found: found.group().replace(" ", "\u00a0"), text)
+    return BOUND.sub(lambda words: words.group().replace(" ", "\u00a0"), text)
 
 
 def _side(column: Sequence[str]) -> str:
@@ -190,25 +190,25 @@ class Headline:
 
     def against(self, tolerance: float) -> Headline:
         """Put the uncertainty before the note, marked where it does not meet the tolerance."""
-        found = self.uncertainty
-        if found is None:
+        uncertainty = self.uncertainty
+        if uncertainty is None:
             return self
         return replace(
             self,
-            note="; ".join(filter(None, (off(found, tolerance), self.note))),
-            bound=total(found),
-            made_up=parts(found),
-            mark=missed(found, tolerance),
+            note="; ".join(filter(None, (off(uncertainty, tolerance), self.note))),
+            bound=total(uncertainty),
+            made_up=parts(uncertainty),
+            mark=missed(uncertainty, tolerance),
             remark=self.note,
         )
 
     def miss(self, tolerance: float) -> str:
         """Say that its error is above the tolerance; empty where it is not, or not known."""
-        found = self.uncertainty
-        if found is None or found.numerical is None or found.met(tolerance):
+        uncertainty = self.uncertainty
+        if uncertainty is None or uncertainty.numerical is None or uncertainty.met(tolerance):
             return ""
         return (
-            f"{self.name}: its numerical error of {percent(found.numerical)} is above the tolerance of "
+            f"{self.name}: its numerical error of {percent(uncertainty.numerical)} is above the tolerance of "
             f"{percent(tolerance)}"
         )
 
@@ -288,7 +288,7 @@ class Head:
 
     @property
     def _ranked(self) -> list[Headline]:
-        return sorted(self.headlines, key=lambda one: one.rank)
+        return sorted(self.headlines, key=lambda headline: headline.rank)
 
 
 def render(head: Head, parts: Sequence[Part]) -> str:

@@ -32,11 +32,16 @@ HEADLINES = ("contact_ratio", "working_centre_distance", "working_pressure_angle
 
 def headlines(pair: GearPair) -> list[Headline]:
     """Numbers for the page's head."""
-    found = (read_figure(pair, name) for name in HEADLINES)
+    readings = (read_figure(pair, name) for name in HEADLINES)
     note = "closed form, exact to rounding"
     return [
-        Headline(one.meaning, number(float(one.values), 6), note, "" if one.unit == "-" else one.unit)
-        for one in found
+        Headline(
+            reading.meaning,
+            number(float(reading.values), 6),
+            note,
+            "" if reading.unit == "-" else reading.unit,
+        )
+        for reading in readings
     ]
 
 
@@ -47,9 +52,9 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
     cells = [(read(results, row.name).label, *_cells(row)) for row in rows]
     path = ("path of contact A to E [mm]", *_aligned("mm", [float(travel(results, "path_point_rho1")[-1])]))
     common = (*(row for row in cells if len(row) == 2), path)
-    both = (*(row for row in cells if len(row) == 3), ("undercut", *undercut))
+    of_gears = (*(row for row in cells if len(row) == 3), ("undercut", *undercut))
     drawn = pictures(results, "kinematics")
-    tables = Table(("pair", ""), common), Table(("", "pinion", "wheel"), both)
+    tables = Table(("pair", ""), common), Table(("", "pinion", "wheel"), of_gears)
     note = (
         "Thicknesses, span and size over pins include the thinning of the teeth; spans and pins touch near d + 2 x m, "
         "on the involute below any tip relief."
@@ -90,9 +95,9 @@ def _aligned(unit: str, values: Sequence[float]) -> tuple[str, ...]:
 
 def heat(warm: WarmPair) -> Part:
     """Cold and warm backlash, pressure angle and base pitches."""
-    names = [one.name for one in quantities(warm).values()]
-    found = [read_figure(warm, name) for name in names]
-    rows = tuple((figure.label, number(float(figure.values), 6)) for figure in found)
+    names = [quantity.name for quantity in quantities(warm).values()]
+    readings = [read_figure(warm, name) for name in names]
+    rows = tuple((figure.label, number(float(figure.values), 6)) for figure in readings)
     note = (
         "All other figures are of the gears expanded to their temperatures. Unequal base pitches act as a gap that "
         "increases along the path of contact, in the loaded contact by finite elements of coupled pairs."

@@ -103,19 +103,19 @@ def _work(name: str, results: Results) -> Work:
 
 def failures(results: Results) -> list[Part]:
     """Parts that were not computed, the reasons, and dependent parts; no section if all were computed."""
-    own = [one for one in results.failures if not one.because]
+    own = [failure for failure in results.failures if not failure.because]
     if not own:
         return []
     needing = {
-        one.title: ", ".join(other.title for other in results.failures if other.because == one.title)
-        for one in own
+        failure.title: ", ".join(other.title for other in results.failures if other.because == failure.title)
+        for failure in own
     }
     table = Table.of(
         own,
         {
-            "part": lambda one: one.title,
-            "why, and what to do": lambda one: one.why,
-            "not computed because of it": lambda one: needing[one.title],
+            "part": lambda failure: failure.title,
+            "why, and what to do": lambda failure: failure.why,
+            "not computed because of it": lambda failure: needing[failure.title],
         },
     )
     return [Part("failures", "Not computed", (said("failures"),), tables=(table,), unfolded=True)]
@@ -139,9 +139,9 @@ def warnings(results: Results, misses: Sequence[str] = ()) -> list[str]:
         alike.setdefault(NUMBER.sub("#", text), []).append(text)
     lines = []
     for texts in alike.values():
-        if (one := merged(texts)) is not None:
+        if (common := merged(texts)) is not None:
             titles = dict.fromkeys(title for text in texts for title in heard[text])
-            lines.append(f"{', '.join(titles)}: {one}")
+            lines.append(f"{', '.join(titles)}: {common}")
         else:
             lines += [f"{', '.join(heard[text])}: {text}" for text in texts]
     return [*misses, *lines]

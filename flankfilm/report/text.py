@@ -67,7 +67,7 @@ def plus_minus(value: float | None) -> str:
     return "error unknown" if (text := percent(value)) == "unknown" else f"± {text}"
 
 
-def off(found: Uncertainty, tolerance: float | None = None) -> str:
+def off(uncertainty: Uncertainty, tolerance: float | None = None) -> str:
     """Total uncertainty of a figure with its parts, and a mark where it does not meet the tolerance.
 
     Examples
@@ -79,12 +79,14 @@ def off(found: Uncertainty, tolerance: float | None = None) -> str:
     >>> off(Uncertainty(5e-4, size=378.0, unit="K"))
     '± 0.19 K (numerical; model not estimated)'
     """
-    if found.total is None:
-        return total(found)
-    return "; ".join(filter(None, (f"{total(found)} ({parts(found)})", missed(found, tolerance))))
+    if uncertainty.total is None:
+        return total(uncertainty)
+    return "; ".join(
+        filter(None, (f"{total(uncertainty)} ({parts(uncertainty)})", missed(uncertainty, tolerance)))
+    )
 
 
-def total(found: Uncertainty) -> str:
+def total(uncertainty: Uncertainty) -> str:
     """Total uncertainty of a figure.
 
     Examples
@@ -92,10 +94,10 @@ def total(found: Uncertainty) -> str:
     >>> total(Uncertainty(0.0012, 0.37)), total(Uncertainty(5e-4, size=378.0, unit="K")), total(Uncertainty(None))
     ('± 37 %', '± 0.19 K', 'error unknown')
     """
-    return "error unknown" if found.total is None else f"± {_sized(found, found.total)}"
+    return "error unknown" if uncertainty.total is None else f"± {_sized(uncertainty, uncertainty.total)}"
 
 
-def parts(found: Uncertainty) -> str:
+def parts(uncertainty: Uncertainty) -> str:
     """Numerical and model part of an uncertainty; empty where it is unknown.
 
     Examples
@@ -103,14 +105,14 @@ def parts(found: Uncertainty) -> str:
     >>> parts(Uncertainty(0.0012, 0.37)), parts(Uncertainty(0.0012)), parts(Uncertainty(None))
     ('numerical 0.12 %, model 37 %', 'numerical; model not estimated', '')
     """
-    if found.total is None:
+    if uncertainty.total is None:
         return ""
-    if found.model is None:
+    if uncertainty.model is None:
         return "numerical; model not estimated"
-    return f"numerical {_sized(found, found.numerical)}, model {_sized(found, found.model)}"
+    return f"numerical {_sized(uncertainty, uncertainty.numerical)}, model {_sized(uncertainty, uncertainty.model)}"
 
 
-def missed(found: Uncertainty, tolerance: float | None) -> str:
+def missed(uncertainty: Uncertainty, tolerance: float | None) -> str:
     """Mark of a figure that does not meet the tolerance; empty of one that does, or whose error is unknown.
 
     Examples
@@ -118,14 +120,18 @@ def missed(found: Uncertainty, tolerance: float | None) -> str:
     >>> missed(Uncertainty(0.018), 0.01), missed(Uncertainty(0.001, 0.37), 0.01)
     ('! above the tolerance of 1 %', '')
     """
-    if tolerance is None or found.total is None or found.met(tolerance):
+    if tolerance is None or uncertainty.total is None or uncertainty.met(tolerance):
         return ""
     return f"{MARK} above the tolerance of {percent(tolerance)}"
 
 
-def _sized(found: Uncertainty, error: float | None) -> str:
+def _sized(uncertainty: Uncertainty, error: float | None) -> str:
     """Error in per cent, or in the unit of the figure."""
-    return f"{plain(found.size * (error or 0.0))} {found.unit}".strip() if found.size else percent(error)
+    return (
+        f"{plain(uncertainty.size * (error or 0.0))} {uncertainty.unit}".strip()
+        if uncertainty.size
+        else percent(error)
+    )
 
 
 MARK = "!"
