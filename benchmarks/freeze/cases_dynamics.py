@@ -176,7 +176,7 @@ def basins_and_exponents() -> dict[str, Any]:
     for name, osc in (("at 0.6", OSC), ("at 0.83", replace(OSC, frequency=0.83))):
         pool = dynamics.basins(osc, (-1.0, 1.0, 40), (-1.0, 1.0, 40))
         figures[name] = {**take(pool, "x v labels error"), "attractors": [take(a, "label state|states share|cells")
-                                                                      for a in pool.attractors]}  # fmt: skip
+                                                                        for a in pool.attractors]}  # fmt: skip
     plane = np.zeros((2, 8))
     plane[0, 1], plane[1, 5] = 1.0, 1.0
     figures["train"] = take(
