@@ -37,9 +37,9 @@ class Fault:
 
     def __str__(self) -> str:
         """One line: where, value, what must hold, remedy."""
-        found = f" = {self.value}" if self.value else ""
+        shown = f" = {self.value}" if self.value else ""
         remedy = f". {self.remedy[:1].upper()}{self.remedy[1:]}" if self.remedy else ""
-        return f"{self.where}{found}: {self.allowed}{remedy}"
+        return f"{self.where}{shown}: {self.allowed}{remedy}"
 
 
 class FlankfilmError(Exception):

@@ -70,12 +70,12 @@ class Limit:
         below = value < self.high if self.high_open else value <= self.high
         return above and below and math.isfinite(value)
 
-    def faults(self, where: str, value: object) -> tuple[Fault, ...]:
+    def faults(self, path: str, value: object) -> tuple[Fault, ...]:
         """Faults of one value: no number, not finite, not whole, outside; a boolean is no number.
 
         Parameters
         ----------
-        where : str
+        path : str
             Path of the value.
         value : object
             As given.
@@ -87,9 +87,9 @@ class Limit:
         """
         kind = Integral if self.whole else Real
         if isinstance(value, bool) or not isinstance(value, kind):
-            return (Fault(where, shorten(value), str(self), self.remedy or "give a number"),)
+            return (Fault(path, shorten(value), str(self), self.remedy or "give a number"),)
         if not self.holds(float(value)):
-            return (Fault(where, f"{value!s}", str(self), self.remedy),)
+            return (Fault(path, f"{value!s}", str(self), self.remedy),)
         return ()
 
     def in_unit(self, factor: float, unit: str) -> Limit:
@@ -107,8 +107,8 @@ class Faults:
 
     Examples
     --------
-    >>> with Faults() as found:
-    ...     found.number("tolerance", 0.005, Limit(0.0, 0.2, low_open=True))
+    >>> with Faults() as faults:
+    ...     faults.number("tolerance", 0.005, Limit(0.0, 0.2, low_open=True))
     0.005
     """
 
@@ -119,9 +119,9 @@ class Faults:
     @classmethod
     def of(cls, record: Any, limits: Mapping[str, Limit], path: str = "") -> Self:
         """Collector with the faults of a record's numbers; arguments as of `fields`."""
-        found = cls()
-        found.fields(record, limits, path)
-        return found
+        faults = cls()
+        faults.fields(record, limits, path)
+        return faults
 
     def __enter__(self) -> Self:
         """Collect until the block ends."""
@@ -132,17 +132,17 @@ class Faults:
         if kind is None:
             self.raise_if_any()
 
-    def add(self, where: str, value: object, allowed: str, remedy: str = "") -> None:
+    def add(self, path: str, value: object, allowed: str, remedy: str = "") -> None:
         """Note a fault; arguments as of `Fault.of`."""
-        self.found.append(Fault.of(where, value, allowed, remedy))
+        self.found.append(Fault.of(path, value, allowed, remedy))
 
     def extend(self, faults: Iterable[Fault]) -> None:
         """Note faults that were found elsewhere."""
         self.found.extend(faults)
 
-    def number(self, where: str, value: object, limit: Limit) -> float:
+    def number(self, path: str, value: object, limit: Limit) -> float:
         """Return the value as a float; where it breaks `limit`, note that and return nan."""
-        faults = limit.faults(where, value)
+        faults = limit.faults(path, value)
         self.found.extend(faults)
         return math.nan if faults else float(value)  # type: ignore[arg-type]
 
@@ -169,27 +169,27 @@ class Faults:
             if not (value is None and name in optional):
                 self.number(path + name, value, limit)
 
-    def whole(self, where: str, value: object, low: int, high: int, remedy: str = "") -> int:
+    def whole(self, path: str, value: object, low: int, high: int, remedy: str = "") -> int:
         """Return the value as an int; where it is none within [low, high], note that and return `low`."""
         if isinstance(value, float | np.floating) and value.is_integer():
             value = int(value)
-        number = self.number(where, value, Limit(low, high, remedy=remedy, whole=True))
+        number = self.number(path, value, Limit(low, high, remedy=remedy, whole=True))
         return low if math.isnan(number) else int(number)
 
     def instance(
-        self, where: str, value: object, kind: type, remedy: str = "", optional: bool = False
+        self, path: str, value: object, kind: type, remedy: str = "", optional: bool = False
     ) -> bool:
         """Whether the value is of a class, or None where it is optional; where it is not, note that."""
         if isinstance(value, kind) or (optional and value is None):
             return True
         allowed = f"must be a {kind.__name__}" + (", or left out" if optional else "")
-        self.add(where, shorten(value), allowed, remedy)
+        self.add(path, shorten(value), allowed, remedy)
         return False
 
-    def choice(self, where: str, value: T, options: Sequence[T], remedy: str = "") -> T:
+    def choice(self, path: str, value: T, options: Sequence[T], remedy: str = "") -> T:
         """Return the value; where it is none of `options`, note that."""
         if value not in options:
-            self.add(where, shorten(value), f"must be {' or '.join(map(repr, options))}", remedy)
+            self.add(path, shorten(value), f"must be {' or '.join(map(repr, options))}", remedy)
         return value
 
     def raise_if_any(self) -> None:

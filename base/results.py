@@ -231,11 +231,11 @@ def described(
 
     def made(function: Callable[[Any], T]) -> Any:
         meaning = (function.__doc__ or "").strip().split("\n")[0].rstrip(".")
-        found: Any = cached_property(function) if kept else Described(function)
-        found.__figure__ = Figure(
+        descriptor: Any = cached_property(function) if kept else Described(function)
+        descriptor.__figure__ = Figure(
             unit, meaning, tuple(dims.split()), shown, error, no_error, model_error, called
         )
-        return found
+        return descriptor
 
     return made
 
@@ -270,10 +270,10 @@ def record(cls: type[T]) -> type[T]:
 
 def figures(cls: type) -> dict[str, Figure]:
     """Figures of a record's class by name: fields in their order, then properties."""
-    found = {f.name: f.metadata["figure"] for f in dataclasses.fields(cls) if "figure" in f.metadata}
+    of_fields = {f.name: f.metadata["figure"] for f in dataclasses.fields(cls) if "figure" in f.metadata}
     names = dict.fromkeys(name for base in reversed(cls.__mro__) for name in vars(base))
     marked = ((name, getattr(getattr(cls, name, None), "__figure__", None)) for name in names)
-    return found | {name: figure for name, figure in marked if figure is not None}
+    return of_fields | {name: figure for name, figure in marked if figure is not None}
 
 
 def quantities(result: object) -> dict[str, Quantity]:
@@ -284,8 +284,8 @@ def quantities(result: object) -> dict[str, Quantity]:
     >>> @record
     ... class Contact:
     ...     load: float = quantity("N/m", "force per length of face")
-    >>> found = quantities(Contact(1e5))["load"]
-    >>> found.value, found.figure.unit, found.figure.meaning
+    >>> load = quantities(Contact(1e5))["load"]
+    >>> load.value, load.figure.unit, load.figure.meaning
     (100000.0, 'N/m', 'force per length of face')
     """
     values = {name: (figure, getattr(result, name)) for name, figure in figures(type(result)).items()}
@@ -307,10 +307,10 @@ def why_no_error(record: object, name: str) -> str:
     >>> [why_no_error(Tooth, name) for name in ("height", "deflection", "error")] == [EXACT, "", ITSELF]
     True
     """
-    every = figures(record if isinstance(record, type) else type(record))
-    if every[name].no_error:
-        return every[name].no_error
-    if name == "error" or any(one.error == name for one in every.values()):
+    known = figures(record if isinstance(record, type) else type(record))
+    if known[name].no_error:
+        return known[name].no_error
+    if name == "error" or any(figure.error == name for figure in known.values()):
         return ITSELF
     return str(getattr(record, "no_error", ""))
 
@@ -357,18 +357,21 @@ def _documented(cls: type) -> str:
     if not any({"figure", "meaning"} & set(f.metadata) for f, _ in about) or "Attributes\n" in text:
         return text
     lines = ["", "", "    Attributes", "    ----------"]
-    for one, meaning in about:
-        figure: Figure | None = one.metadata.get("figure")
+    for record_field, meaning in about:
+        figure: Figure | None = record_field.metadata.get("figure")
         shape = f", ({', '.join(figure.dims)})" if figure is not None and figure.dims else ""
-        lines += [f"    {one.name} : {one.type}{shape}", f"        {meaning}{_unit(figure, ' [{}]')}."]
+        lines += [
+            f"    {record_field.name} : {record_field.type}{shape}",
+            f"        {meaning}{_unit(figure, ' [{}]')}.",
+        ]
     return text + "\n".join(lines) + "\n    "
 
 
-def meaning_of(one: dataclasses.Field[Any]) -> str:
+def meaning_of(record_field: dataclasses.Field[Any]) -> str:
     """What a record's field is, in words; of `error`, `cost` and so on that of every `Result`; else empty."""
-    if (figure := one.metadata.get("figure")) is not None:
+    if (figure := record_field.metadata.get("figure")) is not None:
         return str(figure.meaning)
-    if "meaning" in one.metadata:
-        return str(one.metadata["meaning"])
-    common = getattr(Result, one.name, None)
+    if "meaning" in record_field.metadata:
+        return str(record_field.metadata["meaning"])
+    common = getattr(Result, record_field.name, None)
     return (common.__doc__ or "").rstrip(".") if isinstance(common, property) else ""

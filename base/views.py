@@ -183,8 +183,8 @@ def _registered(places: Mapping[str, str], result: object) -> Callable[[Any], An
 
 def _named(place: str) -> Callable[[Any], Any]:
     module, _, name = place.partition(":")
-    found: Callable[[Any], Any] = getattr(import_module(module), name)
-    return found
+    function: Callable[[Any], Any] = getattr(import_module(module), name)
+    return function
 
 
 @cache

@@ -41,7 +41,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 def pair_html(pair: GearPair) -> str:
     """Key data of a pair and a drawing of its mesh at the pitch point."""
     teeth = pair.teeth_profiles
-    both = [
+    gear_rows = [
         ("teeth", "", *(f"{tooth.teeth}" for tooth in teeth)),
         ("profile shift", "", f"{pair.pinion.profile_shift:g}", f"{pair.wheel.profile_shift:g}"),
         *(
@@ -57,7 +57,7 @@ def pair_html(pair: GearPair) -> str:
         ("contact ratio", f"{pair.contact_ratio:.4f}"),
         ("normal backlash", f"{1e6 * pair.backlash + 0.0:.1f} µm"),
     ]
-    data = table(("", "", "pinion", "wheel"), both) + table((), common)
+    data = table(("", "", "pinion", "wheel"), gear_rows) + table((), common)
     return f'<div style="display: flex; gap: 1em; flex-wrap: wrap"><div>{data}</div>{_drawing(pair)}</div>'
 
 

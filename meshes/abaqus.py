@@ -74,8 +74,8 @@ def mesh_text(gears: Mapping[str, GearMesh], element: str = "CPE6") -> str:
         nodes[f"{prefix}GEAR"] = np.arange(node, node + len(mesh.points))
         elements[f"{prefix}GEAR"] = [np.arange(first, first + len(mesh.triangles))]
         if np.any(mesh.thickness < 1.0):
-            for name, some in (("WEB", mesh.thickness < 1.0), ("RIM_AND_HUB", mesh.thickness == 1.0)):
-                elements[f"{prefix}{name}"] = [first + np.flatnonzero(some)]
+            for name, inside in (("WEB", mesh.thickness < 1.0), ("RIM_AND_HUB", mesh.thickness == 1.0)):
+                elements[f"{prefix}{name}"] = [first + np.flatnonzero(inside)]
         for tooth in mesh.teeth:
             elements[f"{prefix}TOOTH_{_signed(tooth)}"] = [first + np.flatnonzero(mesh.tooth == tooth)]
         middles = mesh.triangles[:, 3:].ravel()

@@ -45,8 +45,8 @@ class GearMesh:
     @property
     def teeth(self) -> list[int]:
         """Numbers of the teeth, growing."""
-        found: list[int] = np.unique(self.tooth).tolist()
-        return found
+        numbers: list[int] = np.unique(self.tooth).tolist()
+        return numbers
 
 
 def gear_mesh(

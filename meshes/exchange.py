@@ -127,7 +127,7 @@ def _straight(cells: Integers, *data: Integers) -> tuple[Integers, ...]:
     """Straight elements that stand for second-order ones, all first ones before all second ones, and their data."""
     picks = ([0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]) if cells.shape[1] == 6 else ([0, 2], [2, 1])
     pieces = np.concatenate([cells[:, pick] for pick in picks])
-    return pieces, *(np.tile(one, len(picks)) for one in data)
+    return pieces, *(np.tile(cell_data, len(picks)) for cell_data in data)
 
 
 def write_by_meshio(

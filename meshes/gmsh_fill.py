@@ -36,8 +36,8 @@ def triangulate(polygon: Array) -> tuple[Array, Integers]:
         raise InputError.at("outline", "nan or inf", "must have finite coordinates", remedy)
     cut = crossing(polygon)
     if cut is not None:
-        where = polygon[cut[0]]
-        crossed = f"edges {cut[0]} and {cut[1]} cross near ({where[0]:g}, {where[1]:g})"
+        corner = polygon[cut[0]]
+        crossed = f"edges {cut[0]} and {cut[1]} cross near ({corner[0]:g}, {corner[1]:g})"
         remedy = "use smaller elements, or check the tooth's profile and the bore"
         raise InputError.at("outline", crossed, "must not cut itself", remedy)
     scale = float(np.max(np.ptp(polygon, axis=0)))

@@ -110,15 +110,15 @@ class Curve:
             chord = last - first
             return np.asarray(np.sum(off * chord, axis=1) / np.sum(chord * chord, axis=1))
 
-        found = 0.5 * (low + high)
-        uneven = np.abs(farther(found)) > OFF_MIDDLE
+        means = 0.5 * (low + high)
+        uneven = np.abs(farther(means)) > OFF_MIDDLE
         if not uneven.any():
-            return np.asarray(found)
+            return np.asarray(means)
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
             beyond = farther(middle) > 0.0
             low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
-        return np.asarray(np.where(uneven, 0.5 * (low + high), found))
+        return np.asarray(np.where(uneven, 0.5 * (low + high), means))
 
     def scaled(self, factor: float) -> Curve:
         """Curve of a gear that is larger by a factor; a parameter that is a length grows with it."""

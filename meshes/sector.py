@@ -103,10 +103,10 @@ class SectorMesh:
 
     def thickness_at(self, points: Array) -> Array:
         """Thickness over the face width at points (n, 2), which lie on no step."""
-        radii, found = np.linalg.norm(points, axis=1), np.ones(len(points))
+        radii, thickness = np.linalg.norm(points, axis=1), np.ones(len(points))
         for radius, below in self.steps:
-            found[radii < radius] = below
-        return found
+            thickness[radii < radius] = below
+        return thickness
 
     @property
     def thickness(self) -> Array:
@@ -197,8 +197,8 @@ def _layer_radii(rim: float, bore: float, sizes: Sizes, module: float) -> Array:
     """Radii from the rim to the bore: heights grow, but stay a part of the radius (strains grow inwards)."""
     heights = [sizes.rim * module]
     while sum(heights) < rim - bore:
-        left = rim - sum(heights)
-        heights.append(min(heights[-1] * sizes.layer_growth, 0.3 * left))
+        remaining = rim - sum(heights)
+        heights.append(min(heights[-1] * sizes.layer_growth, 0.3 * remaining))
     if len(heights) > 1 and sum(heights) - (rim - bore) > 0.5 * heights[-1]:
         heights.pop()
     radii: Array = rim - (rim - bore) * np.concatenate([[0.0], np.cumsum(heights) / sum(heights)])
@@ -234,10 +234,10 @@ def _add_layers(
     right = np.stack([down[:0:-1, -1], down[-2::-1, -1]], axis=1)
     outward, inward = np.stack([radii[:0:-1], radii[-2::-1]], 1), np.stack([radii[:-1], radii[1:]], 1)
     ends["side_left"] = tuple(  # type: ignore[assignment]
-        np.concatenate(both) for both in zip(ends["side_left"], (left, inward), strict=True)
+        np.concatenate(pieces) for pieces in zip(ends["side_left"], (left, inward), strict=True)
     )
     ends["side_right"] = tuple(  # type: ignore[assignment]
-        np.concatenate(both) for both in zip((right, outward), ends["side_right"], strict=True)
+        np.concatenate(pieces) for pieces in zip((right, outward), ends["side_right"], strict=True)
     )
     ends["bottom"] = (np.stack([rows[-1][:-1], rows[-1][1:]], axis=1), ends["bottom"][1])
     return np.concatenate(fresh), np.concatenate([triangles, *quads])
@@ -259,12 +259,12 @@ def _second_order(
     facets, parameters = {}, {}
     for name, (nodes, t) in ends.items():
         low, high = np.sort(nodes, axis=1).T
-        found = np.searchsorted(unique, low * len(corners) + high)
-        if not np.array_equal(unique[np.minimum(found, len(unique) - 1)], low * len(corners) + high):
+        edge_numbers = np.searchsorted(unique, low * len(corners) + high)
+        if not np.array_equal(unique[np.minimum(edge_numbers, len(unique) - 1)], low * len(corners) + high):
             allowed = "must keep every edge of the outline"
             raise InputError.at(name, "edges lost", allowed, "use smaller elements")
-        points[len(corners) + found] = curves[name].at(curves[name].middles(t))
-        facets[name] = np.column_stack([nodes, len(corners) + found])
+        points[len(corners) + edge_numbers] = curves[name].at(curves[name].middles(t))
+        facets[name] = np.column_stack([nodes, len(corners) + edge_numbers])
         parameters[name] = t
     six = np.concatenate([triangles, len(corners) + inverse.reshape(-1, 3)], axis=1)
     _refuse_inverted(points, six)
@@ -287,9 +287,9 @@ def _refuse_inverted(points: Array, triangles: Integers) -> None:
     bad = np.flatnonzero((x_xi * y_eta - x_eta * y_xi).min(axis=1) <= 0)
     if len(bad):
         x, y = points[triangles[bad[0], :3]].mean(axis=0)
-        found = f"{len(bad)} turned inside out, the first near ({x:g}, {y:g})"
+        inverted = f"{len(bad)} turned inside out, the first near ({x:g}, {y:g})"
         remedy = "use smaller elements on curved boundaries"
-        raise InputError.at("elements", found, "must have positive Jacobians", remedy)
+        raise InputError.at("elements", inverted, "must have positive Jacobians", remedy)
 
 
 def refined(mesh: SectorMesh) -> SectorMesh:

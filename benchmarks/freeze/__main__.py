@@ -22,7 +22,7 @@ SHOWN = 6
 """Changes of a case that are listed unless all are asked for."""
 
 
-def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
+def arguments(command_line: Sequence[str] | None = None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.freeze", description="Compare two commits bit by bit on this machine."
@@ -38,7 +38,7 @@ def arguments(given: Sequence[str] | None = None) -> argparse.Namespace:
     add("--all", action="store_true", help=f"list every changed array, not the first {SHOWN} of a case")
     add("--keep", type=Path, metavar="FOLDER", help="keep the arrays of both commits there, as .npz")
     add("--list", action="store_true", help="list the cases and stop")
-    return parser.parse_args(given)
+    return parser.parse_args(command_line)
 
 
 def chosen(cases: Sequence[Case], only: Sequence[str] | None, quick: bool) -> list[Case]:
@@ -47,7 +47,7 @@ def chosen(cases: Sequence[Case], only: Sequence[str] | None, quick: bool) -> li
     return [case for case in kept if not only or any(fnmatch(case.name, pattern) for pattern in only)]
 
 
-def line(outcome: Outcome, tolerance: float, every: bool) -> str:
+def line(outcome: Outcome, tolerance: float, all_changes: bool) -> str:
     """What a case did, on one line, and below it the changes."""
     took = f"[{outcome.seconds[0]:.0f} + {outcome.seconds[1]:.0f} s]"
     name = f"{outcome.case.name:32}"
@@ -61,7 +61,7 @@ def line(outcome: Outcome, tolerance: float, every: bool) -> str:
         return f"{name} bitwise ({outcome.arrays} arrays) {took}"
     accepted = "within the tolerance" if within(outcome.changes, tolerance) else "CHANGED"
     head = f"{name} {accepted}: {len(outcome.changes)} of {outcome.arrays} arrays {took}"
-    shown = outcome.changes if every else outcome.changes[:SHOWN]
+    shown = outcome.changes if all_changes else outcome.changes[:SHOWN]
     rest = len(outcome.changes) - len(shown)
     more = [f"    and {rest} more (--all)"] if rest else []
     return "\n".join([head, *(f"    {change}" for change in shown), *more])
@@ -69,25 +69,25 @@ def line(outcome: Outcome, tolerance: float, every: bool) -> str:
 
 def summary(outcomes: Sequence[Outcome], tolerance: float) -> str:
     """How many cases are the same, accepted, changed and failed."""
-    failed = [one for one in outcomes if any(one.faults)]
-    changed = [one for one in outcomes if one.changes and not within(one.changes, tolerance)]
-    accepted = [one for one in outcomes if one.changes and within(one.changes, tolerance)]
+    failed = [outcome for outcome in outcomes if any(outcome.faults)]
+    changed = [outcome for outcome in outcomes if outcome.changes and not within(outcome.changes, tolerance)]
+    accepted = [outcome for outcome in outcomes if outcome.changes and within(outcome.changes, tolerance)]
     same = len(outcomes) - len(failed) - len(changed) - len(accepted)
     parts = [f"{same} of {len(outcomes)} cases bitwise"]
     for cases, word in ((accepted, "within the tolerance"), (changed, "changed"), (failed, "failed")):
         if cases:
-            parts.append(f"{len(cases)} {word} ({', '.join(one.case.name for one in cases)})")
+            parts.append(f"{len(cases)} {word} ({', '.join(outcome.case.name for outcome in cases)})")
     return "; ".join(parts)
 
 
 def passed(outcomes: Sequence[Outcome], tolerance: float) -> bool:
     """Whether every case ran in both commits and changed no more than the tolerance."""
-    return all(not any(one.faults) and within(one.changes, tolerance) for one in outcomes)
+    return all(not any(outcome.faults) and within(outcome.changes, tolerance) for outcome in outcomes)
 
 
-def main(given: Sequence[str] | None = None) -> int:
+def main(command_line: Sequence[str] | None = None) -> int:
     """Compare; 0 where nothing changed, 1 where something did or failed, 2 where nothing could be compared."""
-    asked = arguments(given)
+    asked = arguments(command_line)
     cases = chosen(all_cases(), asked.only, asked.quick)
     if asked.list or not cases:
         print("\n".join(case.name for case in cases) or "no case has such a name: --list shows all")

@@ -43,24 +43,24 @@ def article() -> Any:
 @case(quick=True)
 def models() -> dict[str, Any]:
     """Mesh cycles and single pairs by every model, pairs coupled and independent."""
-    found: dict[str, Any] = {}
+    by_model: dict[str, Any] = {}
     rho1 = PAIR.path_of_contact(n=21).rho1
     for model in ("fem", "ishikawa", "weber-banaschek", "potential-energy"):
         bodies = {"compliance": article()} if model == "fem" else {}
         for pairs in ("coupled", "independent"):
             cycle = ff.mesh_cycle(PAIR, TORQUE, positions=24, model=model, pairs=pairs, **bodies)
-            found[f"{model}, {pairs}"] = cycle_figures(cycle)
-        found[f"{model}, one pair"] = ff.single_pair_stiffness(PAIR, 17736.3, rho1, model, article())
-    return found
+            by_model[f"{model}, {pairs}"] = cycle_figures(cycle)
+        by_model[f"{model}, one pair"] = ff.single_pair_stiffness(PAIR, 17736.3, rho1, model, article())
+    return by_model
 
 
 LUBRICATED = "least_film thinnest_film stiffness_change secant_stiffness_change mismatch rounds"
 
 
-def lubricated_figures(**given: Any) -> dict[str, Any]:
+def lubricated_figures(**options: Any) -> dict[str, Any]:
     """A cycle with films, the cycle without and the films themselves."""
-    bodies = {} if "model" in given else {"compliance": article()}
-    cycle = ff.lubricated_cycle(PAIR, TORQUE, SPEED, COLD_OIL, tolerance=0.02, **given, **bodies)
+    bodies = {} if "model" in options else {"compliance": article()}
+    cycle = ff.lubricated_cycle(PAIR, TORQUE, SPEED, COLD_OIL, tolerance=0.02, **options, **bodies)
     dry, film = cycle_figures(cycle.dry), take(cycle.film, ALONG)
     return {**cycle_figures(cycle, LUBRICATED), "dry": dry, "film": film}
 
@@ -124,9 +124,10 @@ def losses() -> dict[str, Any]:
         PAIR, 300.0, 0.2 * SPEED, OIL, tolerance=0.02, roughness=ehl.Roughness.from_drawing(mean=0.4e-6),
         compliance=bodies,
     )  # fmt: skip
-    given = ff.mesh_losses(PAIR, TORQUE, SPEED, OIL, tolerance=0.02, model="potential-energy")
+    closed_form = ff.mesh_losses(PAIR, TORQUE, SPEED, OIL, tolerance=0.02, model="potential-energy")
     return {
-        name: take(one, LOSSES) for name, one in (("free", free), ("rough", rough), ("closed form", given))
+        name: take(loss, LOSSES)
+        for name, loss in (("free", free), ("rough", rough), ("closed form", closed_form))
     }
 
 
@@ -202,13 +203,16 @@ def errors_of_manufacture() -> dict[str, Any]:
     )
     figures = "amplitude phase range remainder all_amplitudes error"
     curves = "label single_stiffness secant_stiffness transmission_error figures error left_out"
-    found = ff.compare_closed_forms(PAIR, TORQUE, 0.01, article())
+    comparison = ff.compare_closed_forms(PAIR, TORQUE, 0.01, article())
     return {
         "curve": take(ff.error_series(5e-6 * np.sin(angle) + 1e-6 * np.cos(3 * angle), order=4), figures),
         "relief": take(ff.unloaded_error(RELIEVED, positions=256, order=4), figures),
         "revolution": take(ff.revolution_error(PAIR, deviations, order=3), figures),
         "verify": {
-            "differences": found.differences,
-            **{f"{k}": take(one, curves) for k, one in enumerate((*found.references, *found.models))},
+            "differences": comparison.differences,
+            **{
+                f"{k}": take(curve, curves)
+                for k, curve in enumerate((*comparison.references, *comparison.models))
+            },
         },
     }

@@ -58,7 +58,7 @@ def branch_figures(branch: Any) -> dict[str, Any]:
 @case(quick=True)
 def flow() -> dict[str, Any]:
     """Exact flow: states, Jacobians, trajectories, of one freedom in every form and of a train."""
-    found: dict[str, Any] = {}
+    flows: dict[str, Any] = {}
     forms = {
         "one harmonic": OSC,
         "two harmonics": RICH,
@@ -70,24 +70,24 @@ def flow() -> dict[str, Any]:
         starts = (0.3, 0.0), (0.0, 0.9), (-0.7, -0.4)
         images = [take(dynamics.period_map(osc, start, 5), MAP) for start in starts]
         path = dynamics.trajectory(osc, (0.3, 0.1), 3, 50)
-        found[name] = {
+        flows[name] = {
             "map": images,
             "path": take(path, "tau x v events extrema"),
         }
     drive = train()
     state = np.array([0.3, -0.4, 0.1, 0.2, 0.5, -0.6, 0.2, 0.1])
     image, path = dynamics.period_map(drive, state, 4), dynamics.trajectory(drive, state, 2, 50)
-    found["train"] = {
+    flows["train"] = {
         "map": take(image, MAP), "path": take(path, "tau states events"),
     }  # fmt: skip
     ours = dynamics.period_map(smooth(), (0.3, 0.0), 3)
-    return {**found, "smooth": take(ours, "states jacobian counts")}
+    return {**flows, "smooth": take(ours, "states jacobian counts")}
 
 
 @case(quick=True)
 def orbits() -> dict[str, Any]:
     """Periodic motions of one freedom, trains and smooth laws, found and searched for."""
-    found: dict[str, Any] = {
+    motions: dict[str, Any] = {
         "found": take(dynamics.find_orbit(OSC, (0.5, 0.2)), ORBIT),
         "rich": take(dynamics.find_orbit(RICH, (0.5, 0.2), transient=100), ORBIT),
         "train": take(dynamics.find_orbit(train(), np.zeros(8), transient=300), ORBIT),
@@ -95,7 +95,7 @@ def orbits() -> dict[str, Any]:
         "filmed": take(dynamics.find_orbit(smooth(film=dynamics.SqueezeFilm(0.02, 0.05)), (0.4, 0.0)), ORBIT),
     }
     searched = dynamics.find_orbits(OSC, (1, 2, 3)).orbits
-    return {**found, "searched": [take(orbit, ORBIT) for orbit in searched]}
+    return {**motions, "searched": [take(orbit, ORBIT) for orbit in searched]}
 
 
 @case(quick=True)
@@ -106,34 +106,34 @@ def branches() -> dict[str, Any]:
     error = dynamics.continue_branch(orbit, "error_amplitude", (0.05, 0.5))
     doubling = branch.special("period-doubling")[0]
     doubled = dynamics.doubled_orbit(OSC, "frequency", doubling, (0.5, 1.2))
-    found: dict[str, Any] = {"frequency": branch_figures(branch), "error": branch_figures(error)}
-    found["doubled"] = None if doubled is None else take(doubled, ORBIT)
+    figures: dict[str, Any] = {"frequency": branch_figures(branch), "error": branch_figures(error)}
+    figures["doubled"] = None if doubled is None else take(doubled, ORBIT)
     fold = branch.special("saddle-node")[0]
-    found["sensitivities"] = dynamics.special_sensitivities(OSC, "frequency", fold)
+    figures["sensitivities"] = dynamics.special_sensitivities(OSC, "frequency", fold)
     start = dynamics.find_orbit(train(), np.zeros(8), transient=300)
-    found["train"] = branch_figures(dynamics.continue_branch(start, "frequency", (0.85, 0.95)))
-    return found
+    figures["train"] = branch_figures(dynamics.continue_branch(start, "frequency", (0.85, 0.95)))
+    return figures
 
 
 @case()
 def loci_and_diagram() -> dict[str, Any]:
     """Loci of a fold, a doubling and a grazing in two parameters; a diagram."""
     branch = dynamics.continue_branch(dynamics.find_orbit(OSC, (0.5, 0.2)), "frequency", (0.5, 1.2))
-    found: dict[str, Any] = {}
+    figures: dict[str, Any] = {}
     for kind in ("saddle-node", "period-doubling", "grazing"):
         for k, point in enumerate(branch.special(kind)[:2]):
             locus = dynamics.continue_locus(
                 OSC, point, ("frequency", "mean_force"), ((0.5, 1.1), (0.05, 0.2))
             )
-            special = [take(one, "kind values state") for one in locus.points]
-            found[f"{kind} {k}"] = {
+            special = [take(special_point, "kind values state") for special_point in locus.points]
+            figures[f"{kind} {k}"] = {
                 **take(locus, "values states multipliers labels ended error"),
                 "points": special,
             }
     drawn = dynamics.diagram(OSC, "frequency", (0.6, 0.9), periods=(1, 2), searches=3, swept=20, max_period=2)
-    found["diagram"] = [branch_figures(one) for one in drawn.branches]
+    figures["diagram"] = [branch_figures(drawn_branch) for drawn_branch in drawn.branches]
     graze = dynamics.contact_grazing(OSC, "frequency", (0.3, 1.2))
-    return {**found, "clearance": take(graze, "values clearance error")}
+    return {**figures, "clearance": take(graze, "values clearance error")}
 
 
 @case()
@@ -147,23 +147,23 @@ def smooth_branch() -> dict[str, Any]:
 def sweeps() -> dict[str, Any]:
     """Sweeps up and down, of several motions, run-ups, spectra; of one freedom and of a train."""
     values, figures = np.linspace(0.3, 1.2, 60), "values states labels periods impacts error message"
-    found: dict[str, Any] = {
+    swept: dict[str, Any] = {
         way: take(dynamics.sweep(OSC, "frequency", values, way), figures) for way in ("up", "down")
     }
-    found["error"] = take(
+    swept["error"] = take(
         dynamics.sweep(RICH, "error_amplitude[0]", np.linspace(0.05, 0.5, 30), "up"), figures
     )
-    found["train"] = take(dynamics.sweep(train(), "frequency", np.linspace(0.8, 1.0, 10), "up"), figures)
+    swept["train"] = take(dynamics.sweep(train(), "frequency", np.linspace(0.8, 1.0, 10), "up"), figures)
     several = dynamics.multi_sweep(OSC, "frequency", np.linspace(0.6, 0.9, 8), seeds=3, starts=3)
-    found["several"] = [
-        [take(one, "label state|states share|periods") for one in here] for here in several.motions
+    swept["several"] = [
+        [take(motion, "label state|states share|periods") for motion in here] for here in several.motions
     ]
     for name, osc in (("run-up", OSC), ("run-up of a train", train())):
         figures_of_run = "frequency tau rms peak force_rms force_peak separated order force_order state"
-        found[name] = take(dynamics.run_up(osc, (0.4, 1.0), 1500), figures_of_run)
+        swept[name] = take(dynamics.run_up(osc, (0.4, 1.0), 1500), figures_of_run)
     orbit = dynamics.find_orbit(OSC, (0.5, 0.2))
     return {
-        **found,
+        **swept,
         "spectrum": take(dynamics.motion_spectrum(OSC, orbit.state), "order displacement force rms"),
     }
 
@@ -172,19 +172,21 @@ def sweeps() -> dict[str, Any]:
 def basins_and_exponents() -> dict[str, Any]:
     """Small basins of one freedom and of a train; exponents of regular and chaotic motion."""
     exponents = "exponents standard_errors state error message"
-    found: dict[str, Any] = {}
+    figures: dict[str, Any] = {}
     for name, osc in (("at 0.6", OSC), ("at 0.83", replace(OSC, frequency=0.83))):
         pool = dynamics.basins(osc, (-1.0, 1.0, 40), (-1.0, 1.0, 40))
-        found[name] = {**take(pool, "x v labels error"), "attractors": [take(a, "label state|states share|cells")
-                                                                      for a in pool.attractors]}  # fmt: skip
+        figures[name] = {**take(pool, "x v labels error"), "attractors": [take(a, "label state|states share|cells")
+                                                                        for a in pool.attractors]}  # fmt: skip
     plane = np.zeros((2, 8))
     plane[0, 1], plane[1, 5] = 1.0, 1.0
-    found["train"] = take(dynamics.basins(train(), (-0.5, 0.5, 6), (-0.5, 0.5, 6), plane=plane), "x v labels")
+    figures["train"] = take(
+        dynamics.basins(train(), (-0.5, 0.5, 6), (-0.5, 0.5, 6), plane=plane), "x v labels"
+    )
     for name, osc in (("regular", OSC), ("chaotic", replace(OSC, frequency=1.13)), ("train", train())):
         periods = 300 if name == "train" else 2000
-        found[f"exponents, {name}"] = take(dynamics.lyapunov_exponents(osc, periods), exponents)
+        figures[f"exponents, {name}"] = take(dynamics.lyapunov_exponents(osc, periods), exponents)
     scan = dynamics.lyapunov_scan(OSC, "frequency", np.linspace(0.6, 1.2, 12), 500)
-    return {**found, "scan": np.asarray(scan.exponents)}
+    return {**figures, "scan": np.asarray(scan.exponents)}
 
 
 @case()
@@ -195,16 +197,16 @@ def structure() -> dict[str, Any]:
     crisis = dynamics.boundary_crisis(saddle, "frequency", (1.116, 1.13), points=300, periods=60)
     curves = dynamics.manifold(saddle, "stable", BOX, length=8.0)
     pool = dynamics.basins(OSC, (-1.0, 1.0, 24), (-1.0, 1.0, 24))
-    found: dict[str, Any] = {
+    figures: dict[str, Any] = {
         "crisis": take(crisis, "parameter side overshoot before after error"),
         "manifold": take(curves, "curves rounds error"),
     }
     if len(pool.attractors) > 1:
         edge = dynamics.basin_boundary(OSC, pool.attractors, BOX, levels=4)
         saddles = dynamics.edge_saddles(OSC, pool.attractors[0], rays=4)
-        found["boundary"] = take(edge, "points cell counts dimension shares")
-        found["saddles"] = [take(orbit, ORBIT) for orbit in saddles]
-    return found
+        figures["boundary"] = take(edge, "points cell counts dimension shares")
+        figures["saddles"] = [take(orbit, ORBIT) for orbit in saddles]
+    return figures
 
 
 @case(quick=True)

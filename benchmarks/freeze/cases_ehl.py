@@ -34,7 +34,10 @@ def meniscus(contact: ehl.LineContact, half_widths: float) -> ehl.Meniscus:
 
 def film_figures(film: Any) -> dict[str, Any]:
     """Fields, figures and every stiffness of a film."""
-    return {**take(film, FILM), "stiffness": [film.stiffness(definition=one) for one in STIFFNESSES]}
+    return {
+        **take(film, FILM),
+        "stiffness": [film.stiffness(definition=definition) for definition in STIFFNESSES],
+    }
 
 
 @case(quick=True)
@@ -50,33 +53,33 @@ def isothermal() -> dict[str, Any]:
         ),
         "incompressible": replace(COLD, lubricant=replace(COLD_OIL, compressible=False)),
     }
-    found: dict[str, Any] = {
-        name: film_figures(ehl.solve(one, tolerance=0.005)) for name, one in contacts.items()
+    films: dict[str, Any] = {
+        name: film_figures(ehl.solve(contact, tolerance=0.005)) for name, contact in contacts.items()
     }
-    found |= {f"{n} nodes": film_figures(ehl.solve(COLD, nodes=n)) for n in (129, 257)}
-    found["domain"] = film_figures(ehl.solve(COLD, nodes=129, domain=(-15.0, 2.5)))
-    found["fine"] = film_figures(ehl.solve(COLD, tolerance=0.003, spike=0.05))
-    found["formulas"] = [
+    films |= {f"{n} nodes": film_figures(ehl.solve(COLD, nodes=n)) for n in (129, 257)}
+    films["domain"] = film_figures(ehl.solve(COLD, nodes=129, domain=(-15.0, 2.5)))
+    films["fine"] = film_figures(ehl.solve(COLD, tolerance=0.003, spike=0.05))
+    films["formulas"] = [
         ehl.dowson(COLD).central_thickness, ehl.dowson_toyoda_central(COLD), ehl.moes_central(COLD),
         ehl.pan_hamrock_central(COLD), ehl.pan_hamrock_minimum(COLD), ehl.dowson_higginson_minimum(COLD),
         ehl.nijenbanning_line_central(COLD), ehl.hertz_approach(COLD),
     ]  # fmt: skip
-    return found
+    return films
 
 
 @case(quick=True)
 def starved() -> dict[str, Any]:
     """Films with the meniscus or the layer of oil held, cold and heated."""
-    found: dict[str, Any] = {}
+    films: dict[str, Any] = {}
     for name, half_widths in (("meniscus", 1.1), ("far meniscus", 3.0)):
-        found[name] = film_figures(ehl.solve(COLD, tolerance=0.01, supply=meniscus(COLD, half_widths)))
+        films[name] = film_figures(ehl.solve(COLD, tolerance=0.01, supply=meniscus(COLD, half_widths)))
         hot = ehl.solve_thermal(HOT, supply=meniscus(HOT, half_widths))
-        found[f"{name}, heated"] = take(hot, f"{FILM} {HEAT}")
+        films[f"{name}, heated"] = take(hot, f"{FILM} {HEAT}")
     for name, thickness in (("layer", 0.2e-6), ("thick layer", 20e-6)):
         layer = ehl.OilLayer(thickness)
-        found[name] = film_figures(ehl.solve(COLD, tolerance=0.01, supply=layer))
-        found[f"{name}, heated"] = take(ehl.solve_thermal(HOT, supply=layer), f"{FILM} {HEAT}")
-    return found
+        films[name] = film_figures(ehl.solve(COLD, tolerance=0.01, supply=layer))
+        films[f"{name}, heated"] = take(ehl.solve_thermal(HOT, supply=layer), f"{FILM} {HEAT}")
+    return films
 
 
 @case(quick=True)
@@ -93,14 +96,14 @@ def heated() -> dict[str, Any]:
         "limited": ehl.solve_thermal(replace(HOT, lubricant=limited, sliding=3.0)),
         "nodes": ehl.solve_thermal(HOT, nodes=129),
     }
-    found: dict[str, Any] = {name: take(film, f"{FILM} {HEAT}") for name, film in films.items()}
-    found["slopes"] = film_figures(ehl.with_load_slopes(films["eyring"]))
-    found["flash"] = ehl.blok_flash_temperature(HOT, 0.05)
+    figures: dict[str, Any] = {name: take(film, f"{FILM} {HEAT}") for name, film in films.items()}
+    figures["slopes"] = film_figures(ehl.with_load_slopes(films["eyring"]))
+    figures["flash"] = ehl.blok_flash_temperature(HOT, 0.05)
     curve = ehl.traction_curve(OIL, 1e9, 5.0, [0.0, 0.02, 0.1], radius=0.012, temperature=343.15)
-    found["traction"] = take(
+    figures["traction"] = take(
         curve, "traction_coefficient central_thickness oil_temperature_rise traction_error"
     )
-    return found
+    return figures
 
 
 @case(quick=True)
@@ -108,7 +111,7 @@ def rough() -> dict[str, Any]:
     """Mixed films, cold and heated, flooded and starved."""
     slow = replace(COLD, entrainment=0.05)
     figures = "asperity_share asperity_stiffness separation_slope film_ratio minimum_thickness central_thickness error"
-    found: dict[str, Any] = {
+    films: dict[str, Any] = {
         name: take(ehl.solve_mixed(contact, ROUGH, supply=supply), figures)
         for name, contact, supply in (
             ("slow", slow, None),
@@ -118,9 +121,9 @@ def rough() -> dict[str, Any]:
         )
     }
     heated = ehl.solve_mixed_thermal(replace(HOT, entrainment=0.5, sliding=0.2), ROUGH)
-    found["heated"] = take(heated, "asperity_share boundary_friction traction_coefficient film_ratio error")
-    found["heated film"] = take(heated.film, f"{FILM} {HEAT}")
-    return found
+    films["heated"] = take(heated, "asperity_share boundary_friction traction_coefficient film_ratio error")
+    films["heated film"] = take(heated.film, f"{FILM} {HEAT}")
+    return films
 
 
 @case(quick=True)
@@ -138,17 +141,17 @@ def over_time() -> dict[str, Any]:
         "speed": ehl.solve_transient(COLD, load, time, entrainment=lambda t: 1.0 + 0.02 * t / unit, nodes=65),
         "meniscus": ehl.solve_transient(COLD, load, time, nodes=65, supply=meniscus(COLD, 2.0)),
     }
-    found: dict[str, Any] = {name: take(film, figures) for name, film in films.items()}
+    histories: dict[str, Any] = {name: take(film, figures) for name, film in films.items()}
     frequency = np.geomspace(1e2, 1e6, 13)
     for name, film in (
         ("flooded", ehl.solve(COLD)),
         ("starved", ehl.solve(COLD, supply=meniscus(COLD, 1.2))),
     ):
         answer = ehl.film_response(film, frequency)
-        found[f"response, {name}"] = take(
+        histories[f"response, {name}"] = take(
             answer, "compliance stiffness damping static_stiffness relative_error"
         )
-    return found
+    return histories
 
 
 @case()
@@ -157,8 +160,8 @@ def along_a_path() -> dict[str, Any]:
     contacts = [
         replace(COLD, load=1e5 * s, radius=0.01 * s, entrainment=0.8 + s) for s in (0.6, 0.8, 1.0, 1.2)
     ]
-    found: dict[str, Any] = {
+    films: dict[str, Any] = {
         f"{k}": film_figures(film) for k, film in enumerate(ehl.solve_path(contacts, tolerance=0.01))
     }
     rows = ehl.stiffness_table(ehl.solve(COLD), 0.04, bodies=4e8)
-    return {**found, "table": [take(row, "definition stiffness error loss") for row in rows]}
+    return {**films, "table": [take(row, "definition stiffness error loss") for row in rows]}

@@ -35,18 +35,18 @@ def bodies() -> Any:
 @case()
 def cells() -> dict[str, Any]:
     """4, 8 and 64 cells, straight and askew; slices and walls beside free ends."""
-    found: dict[str, Any] = {}
+    figures: dict[str, Any] = {}
     for number in (4, 8):
         cycle = mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=ASKEW, cells=number)
-        found[f"{number} cells"] = face_figures(cycle)
+        figures[f"{number} cells"] = face_figures(cycle)
     many = mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=ASKEW, cells=64)
-    found["64 cells"] = face_figures(many)
-    found["straight"] = face_figures(mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=Alignment(), cells=8))
+    figures["64 cells"] = face_figures(many)
+    figures["straight"] = face_figures(mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=Alignment(), cells=8))
     walls = mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=ASKEW, cells=8, face_model="walls")
     slices = mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=ASKEW, cells=16, face_model="slices")
-    found |= {"walls": face_figures(walls), "slices": take(slices, f"{SAMPLED} {OVER_FACE}")}
+    figures |= {"walls": face_figures(walls), "slices": take(slices, f"{SAMPLED} {OVER_FACE}")}
     held = mesh_cycle(SMALL, [10.0, 100.0, 300.0], 12, bodies(), False, alignment=ASKEW, cells=16)
-    return {**found, **{f"path/{k}": face_figures(one) for k, one in enumerate(held)}}
+    return {**figures, **{f"path/{k}": face_figures(held_cycle) for k, held_cycle in enumerate(held)}}
 
 
 @case()
@@ -55,7 +55,7 @@ def leads() -> dict[str, Any]:
     ended = replace(PAIR, pinion=replace(PAIR.pinion, lead=Lead(end_relief=8e-6, end_relief_length=5e-3)))
     crowned = mesh_cycle(CROWNED, [30.0, 150.0], 8, alignment=ASKEW, cells=24, tolerance=0.02)
     return {
-        **{f"crowned/{k}": face_figures(one) for k, one in enumerate(crowned)},
+        **{f"crowned/{k}": face_figures(cycle) for k, cycle in enumerate(crowned)},
         "ended": face_figures(
             mesh_cycle(ended, 600.0, 6, cells=64, alignment=Alignment(20e-6), tolerance=0.02)
         ),
@@ -75,14 +75,17 @@ def shafts() -> dict[str, Any]:
     """Shafts that bend and twist under their gears."""
     cycle = mesh_cycle(SMALL, [40.0, 100.0], 12, bodies(), cells=16, shafts=SHAFTS)
     more = "shaft_misalignment shaft_deflection shaft_transmission_error tilt_transmission_error mesh_matrix"
-    return {f"{k}": {**face_figures(one), "shafts": take(one.face, more)} for k, one in enumerate(cycle)}
+    return {
+        f"{k}": {**face_figures(of_torque), "shafts": take(of_torque.face, more)}
+        for k, of_torque in enumerate(cycle)
+    }
 
 
 @case()
 def plastic() -> dict[str, Any]:
     """Contacts that move, over the face."""
-    found = mesh_cycle(PLASTIC, [2.0, 8.0], 4, cells=4, alignment=Alignment(20e-6), tolerance=0.02)
-    return {f"{k}": face_figures(one) for k, one in enumerate(found)}
+    cycles = mesh_cycle(PLASTIC, [2.0, 8.0], 4, cells=4, alignment=Alignment(20e-6), tolerance=0.02)
+    return {f"{k}": face_figures(cycle) for k, cycle in enumerate(cycles)}
 
 
 @case()
@@ -95,15 +98,15 @@ def small_backlash() -> dict[str, Any]:
 @case()
 def root_stress() -> dict[str, Any]:
     """Root stress over the face, with few cells and more."""
-    found: dict[str, Any] = {}
+    figures: dict[str, Any] = {}
     for number in (4, 12):
         cycle = mesh_cycle(SMALL, 100.0, 12, bodies(), alignment=ASKEW, cells=number)
         stress = fem.root_stress(SMALL, cycle, tolerance=0.02)
-        found[f"{number}"] = take(stress, "pinion_tension_Pa wheel_tension_Pa error")
+        figures[f"{number}"] = take(stress, "pinion_tension_Pa wheel_tension_Pa error")
         for gear in ("pinion", "wheel"):
             face = getattr(getattr(stress, gear), "face", None)
-            found[f"{number}"][gear] = take(
+            figures[f"{number}"][gear] = take(
                 getattr(stress, gear) if face is None else face,
                 "tension compression tension_error compression_error",
             )
-    return found
+    return figures

@@ -43,14 +43,14 @@ def single_pair() -> dict[str, Any]:
     """Stiffness of one pair of teeth along the path against every reference, tips included; bodies alone."""
     rho1, force = PAIR.path_of_contact(n=41).rho1, PAIR.normal_force(TORQUE)
     bodies = article()
-    found = {
+    stiffness = {
         reference: fem.single_pair_stiffness(PAIR, force, rho1, bodies, reference=reference)
         for reference in ("body", "bore", "teeth")
     }
     coarse = fem.single_pair_stiffness(SHIFTED, 1e4, SHIFTED.path_of_contact(n=21).rho1, tolerance=0.01)
     stress = fem.single_pair_stiffness(PAIR, force, rho1[::8], tolerance=0.01, plane="stress")
     return {
-        **found,
+        **stiffness,
         "shifted": coarse,
         "plane stress": stress,
         "bodies": take(bodies, "error gain fit_error"),
@@ -62,13 +62,13 @@ def steel() -> dict[str, Any]:
     """Steel: held to the path and with tips free, several torques, every reference, both ways of the sequence."""
     bodies = article()
     several = mesh_cycle(PAIR, [5.0, 100.0, 600.0, 1500.0], positions=40, compliance=bodies)
-    found: dict[str, Any] = {f"tips/{k}": cycle_figures(one) for k, one in enumerate(several)}
+    cycles: dict[str, Any] = {f"tips/{k}": cycle_figures(cycle) for k, cycle in enumerate(several)}
     back = mesh_cycle(PAIR, [1500.0, 100.0], positions=40, compliance=bodies)
-    found |= {f"falling/{k}": cycle_figures(one) for k, one in enumerate(back)}
+    cycles |= {f"falling/{k}": cycle_figures(cycle) for k, cycle in enumerate(back)}
     for reference in ("body", "bore", "teeth"):
         held = mesh_cycle(PAIR, TORQUE, 40, bodies, beyond_path=False, reference=reference)
-        found[f"path, {reference}"] = cycle_figures(held)
-    return found
+        cycles[f"path, {reference}"] = cycle_figures(held)
+    return cycles
 
 
 @case()
@@ -93,7 +93,7 @@ def relief() -> dict[str, Any]:
     rubbing = mesh_cycle(RELIEVED, 300.0, 40, bodies, friction=0.06)
     stays = mesh_cycle(RELIEVED, 300.0, 20, bodies, beyond_path=False, moving_contact=True)
     return {
-        **{f"torque {k}": cycle_figures(one) for k, one in enumerate(cycles)},
+        **{f"torque {k}": cycle_figures(cycle) for k, cycle in enumerate(cycles)},
         "rounded": cycle_figures(rounded),
         "friction": cycle_figures(rubbing, "efficiency"),
         "steel moves": cycle_figures(stays),
@@ -118,12 +118,12 @@ def deviations() -> dict[str, Any]:
 def plastic() -> dict[str, Any]:
     """Steel on plastic: contacts that move and that stay, with and without tips, torques up to back contact."""
     bodies = fem.compliance(PLASTIC, 0.005, motion=True)
-    found: dict[str, Any] = {}
+    figures: dict[str, Any] = {}
     for beyond in (True, False):
         cycles = mesh_cycle(PLASTIC, [1.0, 5.0, 12.0, 30.0], 24, bodies, beyond)
-        found |= {f"beyond {beyond}/{k}": cycle_figures(one) for k, one in enumerate(cycles)}
+        figures |= {f"beyond {beyond}/{k}": cycle_figures(cycle) for k, cycle in enumerate(cycles)}
     stays = mesh_cycle(PLASTIC, 5.0, 24, bodies, moving_contact=False, reference="bore")
-    return {**found, "stays": cycle_figures(stays)}
+    return {**figures, "stays": cycle_figures(stays)}
 
 
 @case()
@@ -132,24 +132,24 @@ def back_flanks() -> dict[str, Any]:
     tight = PAIR.with_backlash(2e-6)
     none = replace(PAIR.with_backlash(0.0), tight=True)
     bodies = fem.compliance(none, 0.005)
-    found: dict[str, Any] = {}
+    figures: dict[str, Any] = {}
     for name, pair, torques in (("tight", tight, [100.0, 1200.0]), ("none", none, [50.0, 600.0])):
         for beyond in (True, False):
             cycles = mesh_cycle(pair, torques, 24, bodies if pair is none else None, beyond)
-            found |= {
+            figures |= {
                 f"{name}, beyond {beyond}/{k}": cycle_figures(c, "back_gap") for k, c in enumerate(cycles)
             }
             opposite = {
                 k: None if c.opposite is None else take(c.opposite, "forces") for k, c in enumerate(cycles)
             }
-            found[f"{name}, beyond {beyond}/opposite"] = opposite
-    return found
+            figures[f"{name}, beyond {beyond}/opposite"] = opposite
+    return figures
 
 
 @case(quick=True)
 def root_stress() -> dict[str, Any]:
     """Stress of the roots over the cycle, of steel and of a wheel of plastic."""
-    found: dict[str, Any] = {}
+    figures: dict[str, Any] = {}
     for name, pair, torque in (
         ("steel", PAIR, TORQUE),
         ("plastic", PLASTIC, 8.0),
@@ -157,6 +157,6 @@ def root_stress() -> dict[str, Any]:
     ):
         cycle = mesh_cycle(pair, torque, 24, article() if pair is PAIR else None, tolerance=0.005)
         stress = fem.root_stress(pair, cycle, tolerance=0.02)
-        found[name] = take(stress, "pinion_tension_Pa wheel_tension_Pa error errors converged message")
-        found[name]["gears"] = {one: getattr(stress, one) for one in ("pinion", "wheel")}
-    return found
+        figures[name] = take(stress, "pinion_tension_Pa wheel_tension_Pa error errors converged message")
+        figures[name]["gears"] = {gear: getattr(stress, gear) for gear in ("pinion", "wheel")}
+    return figures

@@ -24,11 +24,11 @@ PAIRS = {"article": PAIR, "relieved": RELIEVED, "shifted": SHIFTED}
 @case(quick=True)
 def geometry() -> dict[str, Any]:
     """Figures of pairs, the path of contact, contours, placement, inspection."""
-    found: dict[str, Any] = {}
+    figures: dict[str, Any] = {}
     for name, pair in PAIRS.items():
         path = pair.path_of_contact(n=41)
         placed = pair.placement(path.rho1[7])
-        found[name] = {
+        figures[name] = {
             **take(pair, FIGURES),
             "points": take(pair.points, "A B C D E"),
             "path": take(path, "rho1 rho2 radius radii specific_sliding position"),
@@ -46,13 +46,13 @@ def geometry() -> dict[str, Any]:
                 gears.check_meshing(pair), "angle_deviation back_clearance tip_clearances overlap"
             ),
         }
-    return found
+    return figures
 
 
 @case(quick=True)
 def closed_forms() -> dict[str, Any]:
     """Deflection by closed forms, their parts; factors of ISO 6336-1 to -3; losses."""
-    found: dict[str, Any] = {}
+    figures: dict[str, Any] = {}
     for name, pair in PAIRS.items():
         path, force = pair.path_of_contact(n=21), pair.normal_force(TORQUE)
         forms = {
@@ -61,7 +61,7 @@ def closed_forms() -> dict[str, Any]:
             "weber-banaschek": closed_form.weber_banaschek(pair, path, force),
         }
         root = closed_form.iso6336_3(pair, force)
-        found[name] = {
+        figures[name] = {
             **{f"{key}/stiffness": np.asarray(form) for key, form in forms.items()},
             **{f"{key}/parts": form.parts for key, form in forms.items()},
             "iso6336-1": {
@@ -71,10 +71,13 @@ def closed_forms() -> dict[str, Any]:
             "iso6336-2": take(closed_form.iso6336_2(pair, force), "Z_H Z_B Z_D Z_E Z_eps stresses"),
             "iso6336-3": {
                 "stresses": root.stresses,
-                **{f"{k}": take(one, "Y_F Y_S s_Fn h_Fe rho_F") for k, one in enumerate(root.sections)},
+                **{
+                    f"{k}": take(section, "Y_F Y_S s_Fn h_Fe rho_F")
+                    for k, section in enumerate(root.sections)
+                },
             },
         }
-    return found
+    return figures
 
 
 @case()

@@ -92,8 +92,8 @@ def command(room: Room, *arguments: str) -> dict[str, Any]:
 def scene(room: Room, name: str) -> dict[str, Any]:
     """Results of an example and the text of its scene."""
     source = room.tree / "examples" / f"{name}.toml"
-    found = command(room, "run", str(shortened(source, EXAMPLES[name])))
-    return {**found, "scene": np.array(source.read_text(encoding="utf-8").splitlines())}
+    results = command(room, "run", str(shortened(source, EXAMPLES[name])))
+    return {**results, "scene": np.array(source.read_text(encoding="utf-8").splitlines())}
 
 
 for _name in EXAMPLES:

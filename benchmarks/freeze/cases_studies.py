@@ -45,8 +45,8 @@ case = Cases("studies")
 def study(room: Room, name: str) -> dict[str, Any]:
     """Rows of a study and the text of its file."""
     source = room.tree / "examples" / "studies" / f"{name}.toml"
-    found = command(room, "study", str(shortened(source, STUDIES[name])), "--workers", "1")
-    return {**found, "study": np.array(source.read_text(encoding="utf-8").splitlines())}
+    rows = command(room, "study", str(shortened(source, STUDIES[name])), "--workers", "1")
+    return {**rows, "study": np.array(source.read_text(encoding="utf-8").splitlines())}
 
 
 for _name in STUDIES:

@@ -152,7 +152,7 @@ def _text(values: Any) -> Any:
     array = np.asarray(values)
     if array.dtype.kind not in "OS":
         return array
-    plain = [one.decode() if isinstance(one, bytes) else str(one) for one in array.ravel().tolist()]
+    plain = [entry.decode() if isinstance(entry, bytes) else str(entry) for entry in array.ravel().tolist()]
     return np.array(plain, dtype=str).reshape(array.shape) if plain else np.array([], dtype=str)
 
 

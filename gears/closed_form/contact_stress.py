@@ -101,11 +101,11 @@ def iso6336_2(pair: GearPair, force: float) -> Iso6336ContactStress:
     Iso6336ContactStress(1031.6 MPa, Z_H 2.495, Z_eps 0.875, Z_B 1.006, Z_D 1)
     """
     ratio = pair.contact_ratio
-    with Faults(GeometryError) as found:
-        found.number("force", force, NORMAL_FORCE)
+    with Faults(GeometryError) as faults:
+        faults.number("force", force, NORMAL_FORCE)
         if ratio >= LARGEST_RATIO:
             allowed = f"must be below {LARGEST_RATIO:g}, where the standard's Z_eps is zero"
-            found.add("contact_ratio", f"{ratio:.4g}", allowed, "take finite elements")
+            faults.add("contact_ratio", f"{ratio:.4g}", allowed, "take finite elements")
     if ratio >= SHARED:
         said = f"ISO 6336-2: contact ratio {ratio:.3f} is not below {SHARED:g}: no pair bears alone"
         warnings.warn(said, RangeWarning, stacklevel=2)

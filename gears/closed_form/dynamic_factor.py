@@ -96,12 +96,12 @@ def iso6336_dynamic(
     """
     omega = np.asarray(speed, dtype=np.float64)
     ratio = pair.contact_ratio
-    with Faults(GeometryError) as found:
-        found.numbers(_LIMITS, (force, reduced_mass, pitch_deviation, profile_deviation, relief))
+    with Faults(GeometryError) as faults:
+        faults.numbers(_LIMITS, (force, reduced_mass, pitch_deviation, profile_deviation, relief))
         if not (np.all(np.isfinite(omega)) and np.all(omega >= 0.0)):
-            found.add("speed", "an entry", "must be finite and at least 0", "give rad/s")
+            faults.add("speed", "an entry", "must be finite and at least 0", "give rad/s")
         if not ratio > 1.0:
-            found.add("pair", f"{ratio:g}", "must have a contact ratio above 1", "method B requires it")
+            faults.add("pair", f"{ratio:g}", "must have a contact ratio above 1", "method B requires it")
     stiffness = iso6336(pair, force)
     tangential = force * math.cos(pair.rack.alpha) / pair.face_width  # N/m
     load = tangential / 1e3  # N/mm

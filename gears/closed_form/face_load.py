@@ -86,9 +86,9 @@ def iso6336_face_load(pair: GearPair, torque: float, misalignment: float) -> Iso
     >>> f"{iso6336_face_load(pair, 600.0, 20e-6).K_Hbeta:.2f}"
     '1.42'
     """
-    with Faults(GeometryError) as found:
-        found.number("torque", torque, _LIMITS["torque"])
-        found.number("misalignment", misalignment, _LIMITS["misalignment"])
+    with Faults(GeometryError) as faults:
+        faults.number("torque", torque, _LIMITS["torque"])
+        faults.number("misalignment", misalignment, _LIMITS["misalignment"])
     radius = 0.5 * pair.module * pair.pinion.teeth
     line_load = torque / radius / pair.face_width
     stiffness = FACE_STIFFNESS * iso6336(pair).c_gamma

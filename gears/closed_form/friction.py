@@ -62,8 +62,8 @@ def schlenk_friction(
     '0.0516'
     """
     values = (torque, speed, viscosity, roughness, lubricant_factor)
-    with Faults(GeometryError) as found:
-        found.numbers(_LIMITS, values)
+    with Faults(GeometryError) as faults:
+        faults.numbers(_LIMITS, values)
     at_pitch = pair.path_at(pair.points.C)
     load = 1e-3 * torque / pair.base_radii[0] / pair.face_width
     rolling = 2.0 * at_pitch.entrainment(speed).item()

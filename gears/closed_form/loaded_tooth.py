@@ -132,7 +132,7 @@ def loaded_teeth(pair: GearPair, path: PathOfContact) -> tuple[LoadedTooth, Load
     if webs:
         warnings.warn("closed form: " + "; ".join(webs), RangeWarning, stacklevel=3)
     teeth = []
-    with Faults(GeometryError) as found:
+    with Faults(GeometryError) as faults:
         for name, profile, material, rho in zip(
             ("rho1", "rho2"), pair.teeth_profiles, pair.materials, (path.rho1, path.rho2), strict=True
         ):
@@ -141,6 +141,6 @@ def loaded_teeth(pair: GearPair, path: PathOfContact) -> tuple[LoadedTooth, Load
             if not np.all((rho >= low - slack) & (rho <= high + slack)):
                 allowed = f"must be at least {low:.6g} and at most {high:.6g} m, the flank"
                 value = f"{np.min(rho):g} .. {np.max(rho):g}"
-                found.add(f"path.{name}", value, allowed, "closed forms hold between A and E")
+                faults.add(f"path.{name}", value, allowed, "closed forms hold between A and E")
             teeth.append(LoadedTooth(profile, material, np.clip(rho, low, high)))
     return teeth[0], teeth[1]

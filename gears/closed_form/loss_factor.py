@@ -40,11 +40,11 @@ def ohlendorf_loss_factor(pair: GearPair) -> float:
     """
     points, pitch = pair.points, pair.base_pitch
     after, before = (points.E - points.C) / pitch, (points.C - points.A) / pitch
-    with Faults(GeometryError) as found:
+    with Faults(GeometryError) as faults:
         if min(after, before) < 0.0 or max(after, before) > 1.0 or after + before >= 2.0:
-            given = f"{before:.3g} before and {after:.3g} after C"
+            parts = f"{before:.3g} before and {after:.3g} after C"
             allowed = "must be 0 to 1 each, where C lies on the path and one pair carries there"
             remedy = "take the loss factor of a computed load share"
-            found.add("contact ratio", given, allowed, remedy)
+            faults.add("contact ratio", parts, allowed, remedy)
     teeth = 1.0 / pair.pinion.teeth + 1.0 / pair.wheel.teeth
     return math.pi * teeth * (1.0 - after - before + after**2 + before**2)

@@ -126,9 +126,9 @@ def iso6336_3(pair: GearPair, force: float, load_at: str = "D") -> Iso6336RootSt
     >>> iso6336_3(pair, force=10e3)
     Iso6336RootStress(... and ... MPa, load at D, Y_B 1 and 1)
     """
-    with Faults(GeometryError) as found:
-        found.number("force", force, NORMAL_FORCE)
-        found.choice("load_at", load_at, ("D", "tip"), "'D' is the standard's method B")
+    with Faults(GeometryError) as faults:
+        faults.number("force", force, NORMAL_FORCE)
+        faults.choice("load_at", load_at, ("D", "tip"), "'D' is the standard's method B")
     points = pair.points
     ends = [profile.flank_rho[1] for profile in pair.teeth_profiles]
     outer = ends if load_at == "tip" else [points.D, pair.line_of_action - points.B]
@@ -224,15 +224,15 @@ def rim_factor(ratio: float) -> float:
 
 
 def _outside(name: str, profile: ToothProfile, section: RootSection) -> list[str]:
-    found = []
+    remarks = []
     if not 1.0 <= section.q_s < 8.0:
-        found.append(f"q_s = {section.q_s:.3g} of the {name} is not within 1 to 8")
+        remarks.append(f"q_s = {section.q_s:.3g} of the {name} is not within 1 to 8")
     rim = profile.rim_thickness / profile.module
     if rim < 1.75:
-        found.append(f"the {name}'s rim of {rim:.3g} modules is thinner than 1.75")
+        remarks.append(f"the {name}'s rim of {rim:.3g} modules is thinner than 1.75")
     if section.theta > profile.fillet_curve.end:
-        found.append(f"the section of the {name} lies above its form circle")
-    return found
+        remarks.append(f"the section of the {name} lies above its form circle")
+    return remarks
 
 
 def _inv(tangent: float) -> float:

@@ -16,7 +16,7 @@ ROUNDING = 1e-9
 """Part of the face width by which faces may miss each other by rounding."""
 
 
-def check_faces(found: Findings, pair: PairGeometry) -> None:
+def check_faces(findings: Findings, pair: PairGeometry) -> None:
     """Note a gear that does not cover the face in contact, and a face in contact that is less than both gears have."""
     half, rounding = 0.5 * pair.face_width, ROUNDING * pair.face_width
     names, widths, offsets = ("pinion", "wheel"), pair.face_widths, pair.face_offsets
@@ -28,7 +28,7 @@ def check_faces(found: Findings, pair: PairGeometry) -> None:
             remedy = "every gear covers the face in contact, the pair's face_width"
             if offset:
                 remedy += ": set it off less, or make the gear wider"
-            found.add(
+            findings.add(
                 f"{name}.face_width",
                 f"{width:g}",
                 f"must be at least {rounded_up(least * (1.0 - ROUNDING))} m",
@@ -47,4 +47,4 @@ def check_faces(found: Findings, pair: PairGeometry) -> None:
                 f"{offset - middle:.6g} m of the {n}" for n, offset in zip(names, offsets, strict=True)
             )
             remedy += f" and face_offset from its middle, {away}"
-        found.add("face_width", f"{pair.face_width:g}", allowed, remedy)
+        findings.add("face_width", f"{pair.face_width:g}", allowed, remedy)

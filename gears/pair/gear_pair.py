@@ -83,43 +83,45 @@ class GearPair(PairGeometry):
 
     def __post_init__(self) -> None:
         """Refuse values and geometries that no pair has, all faults at once."""
-        found = Findings()
-        self._check_values(found)
-        wrong = [fault.where for fault in found.found]
-        if not any(where == "module" or where.startswith("rack") for where in wrong):
+        findings = Findings()
+        self._check_values(findings)
+        wrong = [fault.where for fault in findings.found]
+        if not any(path == "module" or path.startswith("rack") for path in wrong):
             width = None if "face_width" in wrong else self.face_width
             for name, gear in (("pinion", self.pinion), ("wheel", self.wheel)):
-                if not any(where.startswith(name) for where in wrong):
+                if not any(path.startswith(name) for path in wrong):
                     own = width if gear.face_width is None else gear.face_width
-                    check_gear(found, name, gear, self.module, self.rack, own)
+                    check_gear(findings, name, gear, self.module, self.rack, own)
             faces = ("pinion", "wheel", "face_width", "face_offset")
-            if width is not None and not any(where.endswith(faces) for where in wrong):
-                check_faces(found, self)
-        if not found.found:
-            if (distance := unrounded_distance(found, self)) is not None:
+            if width is not None and not any(path.endswith(faces) for path in wrong):
+                check_faces(findings, self)
+        if not findings.found:
+            if (distance := unrounded_distance(findings, self)) is not None:
                 object.__setattr__(self, "centre_distance", distance)
-            check_mesh(found, self)
-        found.raise_if_any()
-        for message in found.warnings:
+            check_mesh(findings, self)
+        findings.raise_if_any()
+        for message in findings.warnings:
             warnings.warn(message, GeometryWarning, stacklevel=3)
 
-    def _check_values(self, found: Findings) -> None:
+    def _check_values(self, findings: Findings) -> None:
         """Note faults of single values of the pair and its parts: wrong kind, not finite, out of bounds."""
-        found.fields(self, LIMITS)
+        findings.fields(self, LIMITS)
         if not isinstance(self.tight, bool):
-            found.add("tight", self.tight, "must be True or False", "True lets both sides of the teeth bear")
+            findings.add(
+                "tight", self.tight, "must be True or False", "True lets both sides of the teeth bear"
+            )
         for name, kind in (("pinion", Gear), ("wheel", Gear), ("rack", BasicRack)):
             if isinstance(part := getattr(self, name), kind):
-                found.extend(part.faults(name))
+                findings.extend(part.faults(name))
             else:
-                found.add(name, part, f"must be a {kind.__name__}", f"pass gears.{kind.__name__}(...)")
+                findings.add(name, part, f"must be a {kind.__name__}", f"pass gears.{kind.__name__}(...)")
         several = isinstance(self.material, tuple)
         if len(self.materials) != 2 or not all(isinstance(material, Material) for material in self.materials):
             remedy = "pass gears.Material(...)"
-            found.add("material", self.material, "must be a Material or two of them", remedy)
+            findings.add("material", self.material, "must be a Material or two of them", remedy)
             return
         for name, material in zip(("pinion", "wheel") if several else ("",), self.materials, strict=several):
-            found.extend(material.faults(f"material.{name}".strip(".")))
+            findings.extend(material.faults(f"material.{name}".strip(".")))
 
     def __repr__(self) -> str:
         """One line: teeth, sizes and what follows from them."""
@@ -152,13 +154,13 @@ class GearPair(PairGeometry):
             The same pair with new thickness allowances (those it had are replaced).
         """
         least = self._least_backlash
-        with Faults(GeometryError) as found:
-            if found.number("backlash", normal_backlash, BACKLASH) < least:
+        with Faults(GeometryError) as faults:
+            if faults.number("backlash", normal_backlash, BACKLASH) < least:
                 cut = any(gear.generating_shift is not None for gear in (self.pinion, self.wheel))
-                given = "centre distance and generating shifts give" if cut else "centre distance gives"
-                allowed = f"must be at least {least:.6g} m, which the {given}"
+                source = "centre distance and generating shifts give" if cut else "centre distance gives"
+                allowed = f"must be at least {least:.6g} m, which the {source}"
                 remedy = "ask for more, or reduce the centre distance"
-                found.add("backlash", normal_backlash, allowed, remedy)
+                faults.add("backlash", normal_backlash, allowed, remedy)
         allowance = 0.5 * (normal_backlash - least) / math.cos(self.rack.alpha)
         return dataclasses.replace(
             self,

@@ -71,7 +71,7 @@ class Dimensions:
     def __repr__(self) -> str:
         """One line: span and size over pins of both gears."""
         spans = [f"{w:.3f} mm over {k}" for w, k in zip(1e3 * self.span, self.span_teeth, strict=True)]
-        pins = [f"{one:.3f} mm" for one in 1e3 * self.over_pins]
+        pins = [f"{size:.3f} mm" for size in 1e3 * self.over_pins]
         return f"Dimensions(span {spans[0]} and {spans[1]} teeth, over pins {pins[0]} and {pins[1]})"
 
 
@@ -114,9 +114,15 @@ def dimensions(
     teeth, points, line = pair.teeth_profiles, pair.points, pair.line_of_action
     gears = (pair.pinion, pair.wheel)
     pins = []
-    for name, tooth, gear, given in zip(("pinion", "wheel"), teeth, gears, pin_diameters, strict=True):
+    for name, tooth, gear, chosen_diameter in zip(
+        ("pinion", "wheel"), teeth, gears, pin_diameters, strict=True
+    ):
         middle = _middle(tooth, gear.profile_shift)
-        diameter = _rounded_up(_touching_pin(tooth, middle)) if given is None else _checked(name, given)
+        diameter = (
+            _rounded_up(_touching_pin(tooth, middle))
+            if chosen_diameter is None
+            else _checked(name, chosen_diameter)
+        )
         pins.append(_over_pins(tooth, diameter))
     spans = [
         _span(tooth, _middle(tooth, gear.profile_shift)) for tooth, gear in zip(teeth, gears, strict=True)
@@ -166,8 +172,8 @@ def _each(values: Iterable[float]) -> Array:
 
 
 def _checked(name: str, diameter: float) -> float:
-    with Faults(GeometryError) as found:
-        return found.number(f"pin_diameters.{name}", diameter, PIN)
+    with Faults(GeometryError) as faults:
+        return faults.number(f"pin_diameters.{name}", diameter, PIN)
 
 
 def _half_angle(tooth: ToothProfile) -> float:

@@ -49,7 +49,7 @@ class Findings(Faults):
 
 
 def check_gear(
-    found: Findings, name: str, gear: Gear, module: float, rack: BasicRack, face_width: float | None = None
+    findings: Findings, name: str, gear: Gear, module: float, rack: BasicRack, face_width: float | None = None
 ) -> None:
     """Note faults and warnings of one generated gear.
 
@@ -58,7 +58,7 @@ def check_gear(
 
     Parameters
     ----------
-    found : Findings
+    findings : Findings
         Where to.
     name : str
         ``pinion`` or ``wheel``.
@@ -72,27 +72,27 @@ def check_gear(
     root = module * (0.5 * gear.teeth - rack.h_fP + gear.cut_shift)
     if root <= 0.0:
         least = f"must be more than {rounded_up(rack.h_fP - 0.5 * gear.teeth, 4)}"
-        found.add(*shift, least, "the rack cuts through the axis: raise profile_shift or teeth")
+        findings.add(*shift, least, "the rack cuts through the axis: raise profile_shift or teeth")
         return
     depth = module * (rack.h_aP + rack.h_fP + gear.tip_alteration + gear.profile_shift - gear.cut_shift)
     if gear.tip_chamfer >= depth > 0.0:
         allowed = f"must be less than the tooth depth, {rounded_down(depth, 4)} m"
-        found.add(f"{name}.tip_chamfer", f"{gear.tip_chamfer:g}", allowed, "chamfer less")
+        findings.add(f"{name}.tip_chamfer", f"{gear.tip_chamfer:g}", allowed, "chamfer less")
         return
     bore = 0.5 * root if gear.bore_radius is None else gear.bore_radius
     if gear.blank is not None:
-        gear.blank.check(found, f"{name}.blank", root, bore, module, face_width)
+        gear.blank.check(findings, f"{name}.blank", root, bore, module, face_width)
     tooth = generate(gear, module, rack)
     if tooth is not None and tooth.flank_end_radius > tooth.form_radius * (1.0 + ROUNDING):
-        _check_tooth(found, name, gear, tooth, rack)
-        _check_rim(found, name, root, tooth.bore_radius, module, tooth.tip_radius - root)
+        _check_tooth(findings, name, gear, tooth, rack)
+        _check_rim(findings, name, root, tooth.bore_radius, module, tooth.tip_radius - root)
     else:
         remedy = (
             "the fillet cuts away the whole flank: raise profile_shift, teeth or tip_alteration, or shorten "
         )
         remedy += "the tip chamfer"
-        found.add(*shift, "must leave an involute between fillet and tip", remedy)
-        _check_rim(found, name, root, bore, module)
+        findings.add(*shift, "must leave an involute between fillet and tip", remedy)
+        _check_rim(findings, name, root, bore, module)
 
 
 def _neck(tooth: ToothProfile) -> float:
@@ -100,7 +100,7 @@ def _neck(tooth: ToothProfile) -> float:
     return float(np.min(tooth.fillet(np.linspace(0.0, 1.0, 65))[:, 0]))
 
 
-def _check_tooth(found: Findings, name: str, gear: Gear, tooth: ToothProfile, rack: BasicRack) -> None:
+def _check_tooth(findings: Findings, name: str, gear: Gear, tooth: ToothProfile, rack: BasicRack) -> None:
     """Neck, tip and relief of a tooth that has a flank."""
     if _neck(tooth) <= 0.0:
         whole = generate(dataclasses.replace(gear, thickness_allowance=0.0), tooth.module, rack)
@@ -108,22 +108,24 @@ def _check_tooth(found: Findings, name: str, gear: Gear, tooth: ToothProfile, ra
         cause = "thickness_allowance" if thinned else "profile_shift"
         remedy = "the fillets of the two sides meet in the tooth: "
         remedy += "thin the tooth less" if thinned else "raise profile_shift or teeth"
-        found.add(f"{name}.{cause}", f"{getattr(gear, cause):g}", "must leave the tooth a neck", remedy)
+        findings.add(f"{name}.{cause}", f"{getattr(gear, cause):g}", "must leave the tooth a neck", remedy)
     if tooth.tip_half_angle <= 0.0:
-        _add_pointed(found, name, gear, tooth)
+        _add_pointed(findings, name, gear, tooth)
     relief, flank = tooth.tip_relief, tooth.flank_rho[1] - tooth.flank_rho[0]
     if relief is not None and relief.length > flank:
         allowed = f"must be at most the flank's {rounded_down(flank)} m"
-        found.add(f"{name}.tip_relief.length", f"{relief.length:g}", allowed, "shorten the relief")
+        findings.add(f"{name}.tip_relief.length", f"{relief.length:g}", allowed, "shorten the relief")
     if relief is not None and relief.amount > 0.5 * tooth.module:
         allowed = f"must be at most half a module, {rounded_down(0.5 * tooth.module)} m"
-        found.add(f"{name}.tip_relief.amount", f"{relief.amount:g}", allowed, "relieve less")
+        findings.add(f"{name}.tip_relief.amount", f"{relief.amount:g}", allowed, "relieve less")
     land = 2.0 * tooth.tip_radius * tooth.tip_half_angle / tooth.module
     if 0.0 < land < THIN_TIP:
-        found.warnings.append(f"{name}: the top land is {land:.3f} modules thick, thinner than {THIN_TIP:g}")
+        findings.warnings.append(
+            f"{name}: the top land is {land:.3f} modules thick, thinner than {THIN_TIP:g}"
+        )
 
 
-def _add_pointed(found: Findings, name: str, gear: Gear, tooth: ToothProfile) -> None:
+def _add_pointed(findings: Findings, name: str, gear: Gear, tooth: ToothProfile) -> None:
     """Note a pointed tooth, with what thins it, with the highest tip that the flanks allow."""
     spare = gear.thickness_allowance + 2.0 * tooth.reference_radius * tooth.tip_half_angle
     point = tooth.base_radius * math.hypot(1.0, tangent_from_involute(max(tooth.base_half_angle, 1e-9)))
@@ -143,31 +145,31 @@ def _add_pointed(found: Findings, name: str, gear: Gear, tooth: ToothProfile) ->
     else:
         cause, allowed = "profile_shift", "must leave a top land, which no tip_alteration does"
         remedy = "reduce profile_shift"
-    found.add(f"{name}.{cause}", f"{getattr(gear, cause):g}", allowed, f"the tip is pointed: {remedy}")
+    findings.add(f"{name}.{cause}", f"{getattr(gear, cause):g}", allowed, f"the tip is pointed: {remedy}")
 
 
 def _check_rim(
-    found: Findings, name: str, root: float, bore: float, module: float, depth: float = 0.0
+    findings: Findings, name: str, root: float, bore: float, module: float, depth: float = 0.0
 ) -> None:
     """Bore and rim; `depth` of the tooth [m], 0 where there is none."""
     largest = root - THINNEST_RIM * module
     if bore > largest + ROUNDING * module:
         why = "is not inside the root circle" if bore >= root else "leaves a rim too thin for a gear"
         remedy = f"the bore {why} (root radius {root:.6g} m): reduce it"
-        found.add(f"{name}.bore_radius", f"{bore:g}", f"must be at most {rounded_down(largest)} m", remedy)
+        findings.add(f"{name}.bore_radius", f"{bore:g}", f"must be at most {rounded_down(largest)} m", remedy)
     elif root - bore < THIN_RIM * depth:
         share = (root - bore) / depth
-        found.warnings.append(
+        findings.warnings.append(
             f"{name}: the rim is {share:.2f} of the tooth depth thick, thinner than {THIN_RIM:g}"
         )
 
 
-def unrounded_distance(found: Findings, pair: PairGeometry) -> float | None:
+def unrounded_distance(findings: Findings, pair: PairGeometry) -> float | None:
     """Centre distance of no backlash where the given one is short of it by rounding alone, with a remark.
 
     Parameters
     ----------
-    found : Findings
+    findings : Findings
         Where the remark goes.
     pair : PairGeometry
         Two sound gears.
@@ -177,41 +179,41 @@ def unrounded_distance(found: Findings, pair: PairGeometry) -> float | None:
     float or None
         The distance [m]; None where the given one stands: long enough, too short, or of a pair that may be tight.
     """
-    given = pair.centre_distance
-    if given is None or pair.tight or given <= sum(pair.base_radii):
+    distance = pair.centre_distance
+    if distance is None or pair.tight or distance <= sum(pair.base_radii):
         return None
     least = pair.centre_distance_of_backlash(0.0)
-    short = (least - given) / pair.module
+    short = (least - distance) / pair.module
     if not ROUNDING < short <= LAST_DIGIT:
         return None
-    found.warnings.append(
-        f"centre_distance: {1e3 * given:.9g} mm is {1e6 * (least - given):.2g} um short of {1e3 * least:.9g} mm, at "
-        "which these teeth have no backlash: taken as rounded, the longer one is used"
+    findings.warnings.append(
+        f"centre_distance: {1e3 * distance:.9g} mm is {1e6 * (least - distance):.2g} um short of {1e3 * least:.9g} mm, "
+        "at which these teeth have no backlash: taken as rounded, the longer one is used"
     )
     return least
 
 
-def check_mesh(found: Findings, pair: PairGeometry) -> None:
+def check_mesh(findings: Findings, pair: PairGeometry) -> None:
     """Note why two sound gears cannot run together: axes, jam, contact ratio, interference, tips."""
     bases = sum(pair.base_radii)
     if pair.centre_distance is not None and pair.centre_distance <= bases:
         allowed = f"must be more than the sum of the base radii, {rounded_up(bases)} m"
         remedy = "there is no line of action: move the axes apart"
-        found.add("centre_distance", f"{pair.centre_distance:g}", allowed, remedy)
+        findings.add("centre_distance", f"{pair.centre_distance:g}", allowed, remedy)
         return
     if pair.centre_distance is None and pair._working_involute <= 0.0:
         value = f"{pair.pinion.profile_shift + pair.wheel.profile_shift:g}"
         remedy = "no working pressure angle exists: raise a profile shift, or give centre_distance"
-        found.add("pinion.profile_shift + wheel.profile_shift", value, "must be larger", remedy)
+        findings.add("pinion.profile_shift + wheel.profile_shift", value, "must be larger", remedy)
         return
     rounding = ROUNDING * pair.module
     if pair.backlash < (-TIGHTEST * pair.module if pair.tight else -rounding):
-        _add_jam(found, pair)
+        _add_jam(findings, pair)
     if not pair.contact_ratio >= 1.0:
         remedy = (
             "the next pair comes too late: lengthen the teeth by tip_alteration, or bring the axes closer"
         )
-        found.add("contact_ratio", f"{pair.contact_ratio:.6g}", "must be at least 1", remedy)
+        findings.add("contact_ratio", f"{pair.contact_ratio:.6g}", "must be at least 1", remedy)
     first, second = pair.teeth_profiles
     # each gear with its mate, and its curvature radius where contact comes nearest to its root
     meshing = (
@@ -221,7 +223,7 @@ def check_mesh(found: Findings, pair: PairGeometry) -> None:
     if pair.contact_ratio > 0.0:
         for name, other, tooth, mate, lowest in meshing:
             if lowest < tooth.flank_rho[0] - rounding:
-                _add_interference(found, pair, name, other, tooth, mate)
+                _add_interference(findings, pair, name, other, tooth, mate)
     for name, other, tooth, mate, _ in meshing:
         clearance = pair.working_centre_distance - mate.tip_radius - tooth.root_radius
         if clearance <= 0.0:
@@ -229,10 +231,10 @@ def check_mesh(found: Findings, pair: PairGeometry) -> None:
             remedy = f"the tip of the {other} meets the root circle of the {name}: "
             lowered = _lowered(pair, other, LEAST_CLEARANCE - clearance / pair.module)
             remedy += " or ".join([*lowered, "move the axes apart by centre_distance"])
-            found.add(f"{other}.tip_radius", f"{mate.tip_radius:.6g}", allowed, remedy)
+            findings.add(f"{other}.tip_radius", f"{mate.tip_radius:.6g}", allowed, remedy)
 
 
-def _add_jam(found: Findings, pair: PairGeometry) -> None:
+def _add_jam(findings: Findings, pair: PairGeometry) -> None:
     """Note teeth thicker than their gaps at the given centre distance, by more than a tight pair may be."""
     least = pair.centre_distance_of_backlash(-TIGHTEST * pair.module if pair.tight else 0.0)
     allowance = -pair.backlash / math.cos(pair.rack.alpha)
@@ -243,11 +245,11 @@ def _add_jam(found: Findings, pair: PairGeometry) -> None:
     if not pair.tight and pair.backlash >= -TIGHTEST * pair.module:
         remedy += ", or let both sides of the teeth bear: tight = true"
     allowed = f"must be at least {rounded_up(least)} m"
-    found.add("centre_distance", f"{pair.working_centre_distance:.6g}", allowed, remedy)
+    findings.add("centre_distance", f"{pair.working_centre_distance:.6g}", allowed, remedy)
 
 
 def _add_interference(
-    found: Findings, pair: PairGeometry, name: str, other: str, tooth: ToothProfile, mate: ToothProfile
+    findings: Findings, pair: PairGeometry, name: str, other: str, tooth: ToothProfile, mate: ToothProfile
 ) -> None:
     """Note a mate whose flank end would touch below the form circle of `tooth`."""
     longest = pair.line_of_action - tooth.flank_rho[0]
@@ -261,7 +263,9 @@ def _add_interference(
     if tooth.undercut or not remedies:
         why = ", which lessens the undercut" if tooth.undercut else ""
         remedies.append(f"raise {name}.profile_shift{why}, or {name}.teeth")
-    found.add(f"{other}.tip_radius", f"{mate.flank_end_radius:.6g}", allowed, remedy + ", or ".join(remedies))
+    findings.add(
+        f"{other}.tip_radius", f"{mate.flank_end_radius:.6g}", allowed, remedy + ", or ".join(remedies)
+    )
 
 
 def _lowered(pair: PairGeometry, name: str, by: float) -> list[str]:

@@ -158,8 +158,8 @@ def _sides(profile: ToothProfile, whole: bool) -> Array:
     side = tooth_side(profile, 33)
     if not whole:
         side = side[np.hypot(side[:, 0], side[:, 1]) >= profile.flank_end_radius * (1.0 - 1e-12)]
-    both = np.concatenate((side, mirrored(side)))
-    return np.stack([turned(both, tooth * profile.pitch_angle) for tooth in _NEIGHBOURS])
+    sides = np.concatenate((side, mirrored(side)))
+    return np.stack([turned(sides, tooth * profile.pitch_angle) for tooth in _NEIGHBOURS])
 
 
 def _seen_by_mate(

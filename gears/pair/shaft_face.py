@@ -82,15 +82,15 @@ def _joined(places: Array, apart: float) -> tuple[Array, Integers]:
 
     A beam between places that differ by rounding would have a stiffness beside which all others are lost.
     """
-    found, number = np.unique(places, return_inverse=True)
-    first = np.append(True, np.diff(found) > apart)
-    return found[first], (np.cumsum(first) - 1)[number]
+    distinct, number = np.unique(places, return_inverse=True)
+    first = np.append(True, np.diff(distinct) > apart)
+    return distinct[first], (np.cumsum(first) - 1)[number]
 
 
 def _twist(shaft: Shaft, places: Array, face: tuple[float, float]) -> Array:
     """Turn at places by unit torques at places (n, n) [rad/(N m)], against the end of the face on the torque's side."""
-    ends = np.concatenate([[0.0], np.cumsum([one.length for one in shaft.segments])])
-    polar = np.array([2.0 * one.second_moment for one in shaft.segments])
+    ends = np.concatenate([[0.0], np.cumsum([segment.length for segment in shaft.segments])])
+    polar = np.array([2.0 * segment.second_moment for segment in shaft.segments])
     turned = np.concatenate([[0.0], np.cumsum(np.diff(ends) / (shaft.material.shear_modulus * polar))])
     enters = np.clip(shaft.torque_position, *face)
     way = np.interp(places, ends, turned) - np.interp(enters, ends, turned)

@@ -145,8 +145,8 @@ class Shaft:
         ends = np.concatenate([[0.0], np.cumsum([segment.length for segment in self.segments])])
         ends[-1] = self.length
         marks = [self.gear_position, self.torque_position, *(bearing.position for bearing in self.bearings)]
-        found = np.unique(np.concatenate([ends, marks]))
-        return np.asarray(found[np.append(True, np.diff(found) > SAME * self.length)])
+        distinct = np.unique(np.concatenate([ends, marks]))
+        return np.asarray(distinct[np.append(True, np.diff(distinct) > SAME * self.length)])
 
     def segment_at(self, position: float) -> ShaftSegment:
         """Step that holds a place inside it."""

@@ -84,8 +84,8 @@ class Heat:
         coefficients = first.thermal_expansion, second.thermal_expansion, self.housing_expansion
         temperatures = self.pinion_temperature, self.wheel_temperature, self.housing_temperature
         s_1, s_2, s_h = (
-            1.0 + some * (temperature - self.reference_temperature)
-            for some, temperature in zip(coefficients, temperatures, strict=True)
+            1.0 + coefficient * (temperature - self.reference_temperature)
+            for coefficient, temperature in zip(coefficients, temperatures, strict=True)
         )
         return s_1, s_2, s_h
 
@@ -143,8 +143,8 @@ def warm_pair(pair: GearPair, heat: Heat) -> WarmPair:
     >>> round(1e6 * warm.backlash, 1), round(1e6 * warm.base_pitch_difference, 2)
     (29.3, 0.68)
     """
-    with Faults(GeometryError) as found:
-        found.fields(heat, LIMITS)
+    with Faults(GeometryError) as faults:
+        faults.fields(heat, LIMITS)
     s_1, s_2, s_h = heat.growths(pair)
     warm = pair
     if (s_1, s_2, s_h) != (1.0, 1.0, 1.0):
@@ -176,8 +176,8 @@ def _grown(pair: GearPair, heat: Heat) -> dict[str, Any]:
     s_1, s_2, s_h = heat.growths(pair)
     teeth = pair.pinion.teeth + pair.wheel.teeth
     mean = (pair.pinion.teeth * s_1 + pair.wheel.teeth * s_2) / teeth
-    given = {one.name: getattr(pair, one.name) for one in dataclasses.fields(pair)}
-    return given | {
+    arguments = {field.name: getattr(pair, field.name) for field in dataclasses.fields(pair)}
+    return arguments | {
         "pinion": _larger(pair.pinion, mean),
         "wheel": _larger(pair.wheel, mean),
         "module": pair.module * mean,
@@ -192,8 +192,8 @@ def _larger(gear: Gear, factor: float) -> Gear:
     if relief is not None:
         relief = dataclasses.replace(relief, amount=relief.amount * factor, length=relief.length * factor)
     if blank is not None:
-        lengths = {one.name: getattr(blank, one.name) for one in dataclasses.fields(blank)}
-        larger = {name: one * factor for name, one in lengths.items() if one is not None}
+        lengths = {field.name: getattr(blank, field.name) for field in dataclasses.fields(blank)}
+        larger = {name: size * factor for name, size in lengths.items() if size is not None}
         blank = dataclasses.replace(blank, **larger)
     return dataclasses.replace(
         gear,
@@ -225,12 +225,12 @@ def _eaten(pair: GearPair, heat: Heat, backlash: float, least: float) -> Geometr
         return _backlash(pair, dataclasses.replace(cold, **{name: getattr(heat, name)}))
 
     key = min(("pinion_temperature", "wheel_temperature", "housing_temperature"), key=alone)
-    given, housing = float(getattr(heat, key)), key == "housing_temperature"
-    low, high = (given, TEMPERATURE.high) if housing else (TEMPERATURE.low, given)
+    part_temperature, housing = float(getattr(heat, key)), key == "housing_temperature"
+    low, high = (part_temperature, TEMPERATURE.high) if housing else (TEMPERATURE.low, part_temperature)
 
     def short(temperature: Array) -> Booleans:
-        left = _backlash(pair, dataclasses.replace(heat, **{key: float(temperature[0])}))
-        return np.array([left < least if housing else left > least])
+        remaining = _backlash(pair, dataclasses.replace(heat, **{key: float(temperature[0])}))
+        return np.array([remaining < least if housing else remaining > least])
 
     bound = float(bisect(short, np.array([low]), np.array([high]))[0])
     allowed = f"must be at least {rounded_up(bound + WITHIN)} K"
@@ -245,4 +245,4 @@ def _eaten(pair: GearPair, heat: Heat, backlash: float, least: float) -> Geometr
     remedy += "centre distance"
     if not pair.tight and backlash >= -TIGHTEST * pair.module:
         remedy += ", or let both sides of the teeth bear: tight = true"
-    return GeometryError.at(f"heat.{key}", f"{given:g}", allowed, remedy)
+    return GeometryError.at(f"heat.{key}", f"{part_temperature:g}", allowed, remedy)

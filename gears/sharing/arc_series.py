@@ -88,8 +88,8 @@ def left_out(series: Array, t: Array, weight: Array, crowded: bool = False) -> A
 
 def _aliased(t: Array, degree: int) -> Array:
     """What a series is off by for a coefficient of each degree n + 1 to 2n that it has not (m, n)."""
-    every = chebyshev.chebvander(t, 2 * degree)
-    return np.asarray(every[:, degree + 1 :] - every[:, degree - 1 :: -1])
+    polynomials = chebyshev.chebvander(t, 2 * degree)
+    return np.asarray(polynomials[:, degree + 1 :] - polynomials[:, degree - 1 :: -1])
 
 
 def ceiling(series: Array) -> float:

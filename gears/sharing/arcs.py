@@ -132,14 +132,14 @@ class Arcs:
 
     def shares(self) -> Arcs | None:
         """Load shares of the pairs as curves; None where pairs are not distinguished."""
-        found = [arc.pairs[..., SHARE] for arc in self.arcs if arc.pairs is not None]
-        return self.with_curves("share", found) if len(found) == len(self.arcs) else None
+        load_shares = [arc.pairs[..., SHARE] for arc in self.arcs if arc.pairs is not None]
+        return self.with_curves("share", load_shares) if len(load_shares) == len(self.arcs) else None
 
     def greatest_of_all(self) -> tuple[float, float]:
         """Maximum value of all curves, and its error by sampling."""
-        found = [self.extremes(name)[1] for name in self.names]
-        greatest = max(value for value, _ in found)
-        return greatest, max(value + error for value, error in found) - greatest
+        maxima = [self.extremes(name)[1] for name in self.names]
+        greatest = max(value for value, _ in maxima)
+        return greatest, max(value + error for value, error in maxima) - greatest
 
     def curve(self, name: str, position: Array, before: bool = False) -> Array:
         """Value of a curve anywhere; at an event the value after it, or before it.
@@ -155,11 +155,11 @@ class Arcs:
         within = np.mod(np.asarray(position, dtype=float), self.pitches)
         starts = self.ends[:-1]
         which = np.clip(np.searchsorted(starts, within, side="left" if before else "right") - 1, 0, None)
-        found, every = np.empty(within.shape), self._series(name)
+        values, all_series = np.empty(within.shape), self._series(name)
         for number in np.unique(which):
-            here, (arc, series) = which == number, every[number]
-            found[here] = chebyshev.chebval(arc.unit(within[here]), series)
-        return found
+            here, (arc, series) = which == number, all_series[number]
+            values[here] = chebyshev.chebval(arc.unit(within[here]), series)
+        return values
 
     def on_each(self, name: str, count: int) -> Array:
         """Values of a curve at so many equally spaced points of every arc, ends included, one after the other."""
@@ -202,8 +202,8 @@ class Arcs:
 
     def _greatest(self, name: str, sign: float) -> tuple[float, float]:
         """Maximum value of sign times a curve, times sign, and its error."""
-        series = [(sign * one, arc.crowded) for arc, one in self._series(name)]
-        ceilings = [ceiling(one) for one, _ in series]
+        series = [(sign * coefficients, arc.crowded) for arc, coefficients in self._series(name)]
+        ceilings = [ceiling(coefficients) for coefficients, _ in series]
         greatest = above = below = -np.inf
         for number in np.argsort(ceilings)[::-1]:
             if ceilings[number] < below:
@@ -230,8 +230,8 @@ class Arcs:
         c, error : (orders,) arrays
             Complex, and real.
         """
-        found, parts = self.harmonics_and_parts(name, orders)
-        return found, np.linalg.norm(parts, axis=1)
+        amplitudes, parts = self.harmonics_and_parts(name, orders)
+        return amplitudes, np.linalg.norm(parts, axis=1)
 
     def harmonics_and_parts(self, name: str, orders: Sequence[int] | Integers) -> tuple[Array, Array]:
         """Complex amplitudes, and their errors by sampling part by part: an arc's has the phase of its place.

@@ -86,8 +86,8 @@ def share_between(
     ...
     ...     def slope(self, force):
     ...         return 0.0 * force
-    >>> found = share_between(0.0, 2e-9 * np.eye(2), Nothing(), [0.0, -2e-6], [1, -1])
-    >>> found.forces.round(6), float(found.transmission_error.round(12))
+    >>> share = share_between(0.0, 2e-9 * np.eye(2), Nothing(), [0.0, -2e-6], [1, -1])
+    >>> share.forces.round(6), float(share.transmission_error.round(12))
     (array([500., 500.]), 1e-06)
     """
     stiff, clear, side = np.asarray(bulk, float), np.asarray(gaps, float), np.asarray(sides, float)
@@ -148,9 +148,9 @@ class _Problem:
 
     def _solved(self, slope: Array, residual: Array, chosen: Booleans) -> tuple[Array, Array]:
         """Answers of chosen forces to D and to residuals of their gaps."""
-        both = chosen[..., :, None] & chosen[..., None, :]
+        coupled = chosen[..., :, None] & chosen[..., None, :]
         scale = np.abs(self.bulk).max()
-        matrix = np.where(both, (self.bulk + slope[..., None] * self.eye) / scale, self.eye)
+        matrix = np.where(coupled, (self.bulk + slope[..., None] * self.eye) / scale, self.eye)
         turned = np.where(chosen, self.side, 0.0)
         sides = np.stack([turned, np.where(chosen, residual, 0.0)], axis=-1) / scale
         solved = np.linalg.solve(matrix, sides)
@@ -163,29 +163,29 @@ class _Problem:
 
     def central_path(self) -> tuple[Array, Array, int]:
         """Forces near the solution, all positive, and D."""
-        some = self.touchable
-        loads = np.where(some, self.force[..., None], 0.0)
+        touchable = self.touchable
+        loads = np.where(touchable, self.force[..., None], 0.0)
         approach = np.zeros_like(self.whole + self.length)
-        slack = np.where(some, np.maximum(self._gap(loads, approach), self.length[..., None]), 1.0)
-        count = some.sum(axis=-1)
+        slack = np.where(touchable, np.maximum(self._gap(loads, approach), self.length[..., None]), 1.0)
+        count = touchable.sum(axis=-1)
         size = self.force * self.length
         for steps in range(_PATH):
-            centre = (np.where(some, loads * slack, 0.0).sum(axis=-1) / count)[..., None]
+            centre = (np.where(touchable, loads * slack, 0.0).sum(axis=-1) / count)[..., None]
             wanting = self._gap(loads, approach) - slack
-            self.bears = some & (loads / self.force[..., None] > slack / self.length[..., None])
-            off = np.abs(np.where(some, wanting, 0.0)).max(axis=-1) / self.length
+            self.bears = touchable & (loads / self.force[..., None] > slack / self.length[..., None])
+            off = np.abs(np.where(touchable, wanting, 0.0)).max(axis=-1) / self.length
             if np.all(centre[..., 0] <= _CENTRED * size) and np.all(off <= 1e-9):
                 return loads, approach, steps
-            share = np.where(some, loads, 1.0)
-            aim = np.where(some, 0.1 * centre / share - slack - wanting, 0.0)
-            unit, response = self._solved(self._slope(share) + slack / share, aim, some)
+            share = np.where(touchable, loads, 1.0)
+            aim = np.where(touchable, 0.1 * centre / share - slack - wanting, 0.0)
+            unit, response = self._solved(self._slope(share) + slack / share, aim, touchable)
             lift = self._balanced(loads, unit, response)
             change = unit * lift[..., None] + response
-            opening = np.where(some, (0.1 * centre - slack * change) / share - slack, 0.0)
+            opening = np.where(touchable, (0.1 * centre - slack * change) / share - slack, 0.0)
             with np.errstate(divide="ignore", invalid="ignore"):
                 room = np.minimum(
-                    np.where(some & (change < 0.0), -loads / change, np.inf).min(axis=-1),
-                    np.where(some & (opening < 0.0), -slack / opening, np.inf).min(axis=-1),
+                    np.where(touchable & (change < 0.0), -loads / change, np.inf).min(axis=-1),
+                    np.where(touchable & (opening < 0.0), -slack / opening, np.inf).min(axis=-1),
                 )
             part = np.minimum(1.0, _SHORTEN * room)
             loads = loads + part[..., None] * change
@@ -231,16 +231,16 @@ class _Problem:
 def _check(force: Array, bulk: Array, gaps: Array, sides: Array) -> None:
     """Refuse malformed input, all faults at once."""
     pairs = gaps.shape[-1:]
-    with Faults(LoadSharingError) as found:
+    with Faults(LoadSharingError) as faults:
         if not np.all(np.isfinite(force)):
-            found.add("force", str(force), "must be finite", "give the force in newtons")
+            faults.add("force", str(force), "must be finite", "give the force in newtons")
         if bulk.shape[-2:] != 2 * pairs or sides.shape != pairs:
             shapes = f"bulk {bulk.shape}, gaps {gaps.shape}, sides {sides.shape}"
             allowed = "must be (..., pairs, pairs), (..., pairs) and (pairs,)"
-            found.add("bulk, gaps, sides", shapes, allowed, "give one row for each pair")
+            faults.add("bulk, gaps, sides", shapes, allowed, "give one row for each pair")
         elif not np.all(np.abs(sides) == 1.0):
-            found.add("sides", str(sides), "must be 1 or -1", "1 where D closes the gap")
+            faults.add("sides", str(sides), "must be 1 or -1", "1 where D closes the gap")
         if np.any(np.isnan(gaps)) or not np.all(np.isfinite(gaps).any(axis=-1)):
-            found.add("gaps", "nan, or inf for all pairs", "must hold a finite gap", "one pair must touch")
+            faults.add("gaps", "nan, or inf for all pairs", "must hold a finite gap", "one pair must touch")
         if not np.all(np.isfinite(bulk)):
-            found.add("bulk", "not finite", "must be finite", "check the compliance matrix")
+            faults.add("bulk", "not finite", "must be finite", "check the compliance matrix")

@@ -99,15 +99,15 @@ class Piece:
         """Chebyshev points; of a higher degree than before only the new ones."""
         return self.at(lobatto(degree) if self.degree == 0 else lobatto(degree)[1::2])
 
-    def add(self, degree: int, found: Sampled) -> None:
+    def add(self, degree: int, sampled: Sampled) -> None:
         """Take samples at `place` of a degree."""
         if self.degree == 0:
-            self.curves, self.reserve, self.pairs = found.curves, found.reserve, found.pairs
+            self.curves, self.reserve, self.pairs = sampled.curves, sampled.reserve, sampled.pairs
         else:
-            self.curves = _interleaved(self.curves.T, found.curves.T).T
-            self.reserve = _interleaved(self.reserve, found.reserve)
-            if self.pairs is not None and found.pairs is not None:
-                self.pairs = _interleaved(self.pairs, found.pairs)
+            self.curves = _interleaved(self.curves.T, sampled.curves.T).T
+            self.reserve = _interleaved(self.reserve, sampled.reserve)
+            if self.pairs is not None and sampled.pairs is not None:
+                self.pairs = _interleaved(self.pairs, sampled.pairs)
         self.degree = degree
 
     @property
@@ -151,9 +151,9 @@ class Piece:
 
 def _interleaved(old: Array, new: Array) -> Array:
     """Rows of old and new, in turn."""
-    both = np.empty((len(old) + len(new), *old.shape[1:]))
-    both[::2], both[1::2] = old, new
-    return both
+    rows = np.empty((len(old) + len(new), *old.shape[1:]))
+    rows[::2], rows[1::2] = old, new
+    return rows
 
 
 class Bracket:
@@ -200,10 +200,10 @@ class Bracket:
         if len(places) < 2:
             return middle
         weights = np.array(
-            [np.prod(np.delete(values, i) / (np.delete(values, i) - one)) for i, one in enumerate(values)]
+            [np.prod(np.delete(values, i) / (np.delete(values, i) - value)) for i, value in enumerate(values)]
         )
-        found = float(weights @ places)
-        return found if self.low < found < self.high else middle
+        crossing = float(weights @ places)
+        return crossing if self.low < crossing < self.high else middle
 
     def asked(self) -> Array:
         """Places inside the bracket, closest about the foreseen one."""

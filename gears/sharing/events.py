@@ -139,14 +139,14 @@ class _Search:
         known = np.append((np.arange(self.pitches)[:, None] + within).ravel(), self.pitches)
         known = known[np.diff(known, prepend=-1.0) > SHORTEST]
         known[-1] = self.pitches
-        ends = [End.at(float(one)) for one in known]
-        pending = [Piece.between(*both) for both in pairwise(ends)]
+        ends = [End.at(float(position)) for position in known]
+        pending = [Piece.between(*neighbours) for neighbours in pairwise(ends)]
         done: list[Piece] = []
         resolved = True
         while pending:
             self._sampled(pending)
             turning = [(piece, piece.brackets()) for piece in pending]
-            located = iter(self._located([one for _, some in turning for one in some]))
+            located = iter(self._located([bracket for _, of_piece in turning for bracket in of_piece]))
             following = []
             for piece, brackets in turning:
                 events = [next(located) for _ in brackets]
@@ -163,40 +163,40 @@ class _Search:
     def alike(self, division: Division) -> Arcs | None:
         """Follow known events, and sample the arcs between them at known degrees."""
         events, known = division.events, []
-        ends = [End.at(one) for one in events.position.tolist()]
+        ends = [End.at(position) for position in events.position.tolist()]
         for number in np.flatnonzero(events.switched >= 0).tolist():
             room = float(np.min(np.diff(events.position)[max(number - 1, 0) : number + 1]))
             known.append((number, events.position[number] + 0.4 * min(room, 0.05) * NEAR))
         if known:
-            found, start = self.ask(np.concatenate([place for _, place in known])).reserve, 0
+            reserves, start = self.ask(np.concatenate([place for _, place in known])).reserve, 0
             brackets = []
             for number, place in known:
                 switch = int(events.switched[number])
-                reserve = found[start : (start := start + len(place)), switch]
+                reserve = reserves[start : (start := start + len(place)), switch]
                 turns = np.flatnonzero((reserve[1:] >= 0.0) != (reserve[:-1] >= 0.0))
                 if len(turns) != 1 or not np.all(np.isfinite(reserve)):
                     return None
                 brackets.append(Bracket(switch, place, reserve, int(turns[0])))
             for (number, _), end in zip(known, self._located(brackets, ALIKE), strict=True):
                 ends[number] = end
-        pieces = [Piece.between(*both) for both in pairwise(ends)]
+        pieces = [Piece.between(*neighbours) for neighbours in pairwise(ends)]
         degrees = [arc.values.shape[1] - 1 for arc in division.arcs.arcs]
         self._take(pieces, degrees)
         return self._division(pieces, True).arcs
 
     def _sampled(self, pieces: list[Piece]) -> None:
         """Sample pieces at their next degree, all at once."""
-        self._take(pieces, [next(one for one in DEGREES if one > piece.degree) for piece in pieces])
+        self._take(pieces, [next(degree for degree in DEGREES if degree > piece.degree) for piece in pieces])
 
     def _take(self, pieces: list[Piece], degrees: list[int]) -> None:
         """Sample pieces at given degrees."""
         places = [piece.place(degree) for piece, degree in zip(pieces, degrees, strict=True)]
-        found, start = self.ask(np.concatenate(places)), 0
+        sampled, start = self.ask(np.concatenate(places)), 0
         for piece, degree, place in zip(pieces, degrees, places, strict=True):
             here = slice(start, start := start + len(place))
-            pairs = None if found.pairs is None else found.pairs[here]
-            piece.add(degree, Sampled(found.curves[:, here], found.reserve[here], pairs))
-        least, most = found.curves.min(axis=1), found.curves.max(axis=1)
+            pairs = None if sampled.pairs is None else sampled.pairs[here]
+            piece.add(degree, Sampled(sampled.curves[:, here], sampled.reserve[here], pairs))
+        least, most = sampled.curves.min(axis=1), sampled.curves.max(axis=1)
         self.low = least if self.low.size == 0 else np.minimum(self.low, least)
         self.high = most if self.high.size == 0 else np.maximum(self.high, most)
 
@@ -206,11 +206,12 @@ class _Search:
         if last - first < SHORTEST:
             return None
         inside = sorted(
-            (one for one in events if first < one.before and one.after < last), key=lambda one: one.before
+            (event for event in events if first < event.before and event.after < last),
+            key=lambda event: event.before,
         )
         if inside:
             ends = _parted([piece.low, *_apart(inside), piece.high])
-            return [Piece.between(*both, piece.halvings) for both in pairwise(ends)]
+            return [Piece.between(*neighbours, piece.halvings) for neighbours in pairwise(ends)]
         look = piece.degree == DEGREES[0] and piece.halvings < LOOKS
         middle = piece.missed() if look else None
         if middle is None and self._smooth(piece):
@@ -236,13 +237,13 @@ class _Search:
 
     def _located(self, brackets: list[Bracket], width: float = LOCATED) -> list[End]:
         """Events in brackets, all at once, to a width [base pitches]."""
-        while wide := [one for one in brackets if one.width > width]:
-            asked = [one.asked() for one in wide]
-            found, start = self.ask(np.concatenate(asked)).reserve, 0
-            for one, places in zip(wide, asked, strict=True):
-                one.add(places, found[start : start + len(places), one.switch])
+        while wide := [bracket for bracket in brackets if bracket.width > width]:
+            asked = [bracket.asked() for bracket in wide]
+            reserves, start = self.ask(np.concatenate(asked)).reserve, 0
+            for bracket, places in zip(wide, asked, strict=True):
+                bracket.add(places, reserves[start : start + len(places), bracket.switch])
                 start += len(places)
-        return [one.end() for one in brackets]
+        return [bracket.end() for bracket in brackets]
 
     def _division(self, pieces: list[Piece], resolved: bool) -> Division:
         ends = [piece.low for piece in pieces] + [pieces[-1].high]
@@ -256,12 +257,12 @@ class _Search:
 
 def _parted(ends: list[End]) -> list[End]:
     """Ends with one more in the middle where contacts begin at one of two and end at the other."""
-    found = ends[:1]
+    parted = ends[:1]
     for low, high in pairwise(ends):
         if low.rises > 0 and high.rises < 0:
-            found.append(End.at(0.5 * (low.after + high.before)))
-        found.append(high)
-    return found
+            parted.append(End.at(0.5 * (low.after + high.before)))
+        parted.append(high)
+    return parted
 
 
 def _apart(ends: list[End]) -> list[End]:

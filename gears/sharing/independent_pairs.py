@@ -46,13 +46,13 @@ def independent_pairs(force: float, stiffness: ArrayLike, film: ArrayLike | None
     films = np.full_like(teeth, np.inf) if film is None else np.asarray(film, dtype=float)
     sound = np.all(teeth >= 0.0) and np.all(np.isfinite(teeth)) and np.all(films >= 0.0)
     carries = (teeth > 0.0) & (films > 0.0)
-    with Faults(LoadSharingError) as found:
+    with Faults(LoadSharingError) as faults:
         if not (sound and np.isfinite(force) and force >= 0.0):
             allowed = "must be finite and at least 0 (a film may be inf)"
-            found.add("force, stiffness, film", "negative or not finite", allowed, "check the stiffness")
+            faults.add("force, stiffness, film", "negative or not finite", allowed, "check the stiffness")
         if not np.all(carries.any(axis=-1)):
             allowed = "must have a pair that carries at each position"
-            found.add("stiffness", "zero for every pair", allowed, "add pairs")
+            faults.add("stiffness", "zero for every pair", allowed, "add pairs")
     compliance = 1.0 / np.where(carries, teeth, 1.0) + 1.0 / np.where(carries, films, 1.0)
     series = np.where(carries, 1.0 / compliance, 0.0)
     total = series.sum(axis=-1)

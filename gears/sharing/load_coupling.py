@@ -99,9 +99,9 @@ class DenseCoupling(Coupling):
     ) -> tuple[Array, Array, float]:
         """As of ``Coupling``, of all positions."""
         jacobian = self.matrix + slope[..., None] * np.eye(slope.shape[-1])
-        both = active[..., :, None] & active[..., None, :]
-        matrix = np.where(both, jacobian, np.eye(slope.shape[-1]))
+        coupled = active[..., :, None] & active[..., None, :]
+        matrix = np.where(coupled, jacobian, np.eye(slope.shape[-1]))
         scale = float(np.abs(jacobian).max())
         sides = np.stack((np.where(active, 1.0, 0.0), np.where(active, residual / scale, 0.0)), axis=-1)
-        found = np.linalg.solve(np.where(both, matrix / scale, matrix), sides)
-        return found[..., 0], found[..., 1], scale
+        solutions = np.linalg.solve(np.where(coupled, matrix / scale, matrix), sides)
+        return solutions[..., 0], solutions[..., 1], scale

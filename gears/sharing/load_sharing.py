@@ -148,8 +148,8 @@ def share_load(
     if near is not None:
         loads = near + nothing
         active = loads > 0.0
-    every = np.ones(clear.shape[:-1], dtype=bool)
-    wanted, slopes, bent = every, nothing, stiff.applied(loads, every, nothing)
+    everywhere = np.ones(clear.shape[:-1], dtype=bool)
+    wanted, slopes, bent = everywhere, nothing, stiff.applied(loads, everywhere, nothing)
     laws = _asked(hertz), None if film is None else _asked(film)
     before = np.zeros(clear.shape[:-1])
     if near is not None:
@@ -185,7 +185,7 @@ def share_load(
         if settled.all():
             return LoadShare(loads, approach, tangent, slopes, iteration)
         bent = stiff.applied(loads, changed, bent)
-        wanted = ~settled if stiff.apart else every
+        wanted = ~settled if stiff.apart else everywhere
     remedy = "check that bulk is positive semidefinite, hertz has a positive and film a negative slope"
     allowed = "must have deflections that grow with the force"
     raise LoadSharingError.at("share_load", f"no solution after {_ITERATIONS} steps", allowed, remedy)
@@ -268,23 +268,23 @@ def _fit(*shapes: tuple[int, ...]) -> bool:
 def _check(force: Array, bulk: Coupling, gaps: Array, levers: Array) -> None:
     """Refuse malformed input, all faults at once."""
     pairs = gaps.shape[-1:]
-    with Faults(LoadSharingError) as found:
+    with Faults(LoadSharingError) as faults:
         if not (np.all(np.isfinite(force)) and (np.all(force > 0.0) or not force.any())):
             allowed = "must be finite, all above 0 N or all 0 N"
-            found.add("force", str(force), allowed, "give the forces' sizes")
+            faults.add("force", str(force), allowed, "give the forces' sizes")
         if not (
             gaps.ndim >= 1 and pairs > (0,) and bulk.shape[-2:] == 2 * pairs and levers.shape[-1:] == pairs
         ) or not _fit(force.shape, bulk.shape[:-2], gaps.shape[:-1], levers.shape[:-1]):
             shapes = f"bulk {bulk.shape}, gaps {gaps.shape}"
             allowed = "must be (..., pairs, pairs) and (..., pairs)"
-            found.add("bulk, gaps", shapes, allowed, "give one row for each pair")
+            faults.add("bulk, gaps", shapes, allowed, "give one row for each pair")
         if not np.all(gaps >= 0.0):
             remedy = "measure from the pair that touches"
-            found.add("gaps", "negative or not a number", "must be at least 0 m, or inf", remedy)
+            faults.add("gaps", "negative or not a number", "must be at least 0 m, or inf", remedy)
         elif gaps.ndim and not np.all(np.isfinite(gaps).any(axis=-1)):
-            found.add("gaps", "inf for all pairs", "must hold a finite gap", "one pair at least must touch")
+            faults.add("gaps", "inf for all pairs", "must hold a finite gap", "one pair at least must touch")
         if not np.all((levers > 0.0) & np.isfinite(levers)):
             remedy = "reduce the friction, which tilts a force past the axis"
-            found.add("levers", "not above 0", "must be finite and more than 0", remedy)
+            faults.add("levers", "not above 0", "must be finite and more than 0", remedy)
         if not bulk.finite:
-            found.add("bulk", "not finite", "must be finite", "check the compliance matrix")
+            faults.add("bulk", "not finite", "must be finite", "check the compliance matrix")

@@ -255,15 +255,15 @@ class MeshFigures(ABC):
 
     @cached_property
     def _estimates(self) -> dict[str, Estimate]:
-        found = self.arcs
-        if found is None:
+        arcs = self.arcs
+        if arcs is None:
             return dict.fromkeys(_ESTIMATES, Estimate(float("nan"), None))
-        return {name: estimate(found) for name, estimate in _ESTIMATES.items()}
+        return {name: estimate(arcs) for name, estimate in _ESTIMATES.items()}
 
     @property
     def errors(self) -> Mapping[str, float | None]:
         """Estimated relative errors of means and extremes by their names; None where they are unknown."""
-        return MappingProxyType({name: one.relative for name, one in self._estimates.items()})
+        return MappingProxyType({name: estimate.relative for name, estimate in self._estimates.items()})
 
     @described("N/m", error="errors", called="mean_tangent_stiffness")
     def mean_stiffness(self) -> float:
@@ -375,12 +375,12 @@ class MeshFigures(ABC):
 
 
 _ESTIMATES: Mapping[str, Callable[[MeshArcs], Estimate]] = {
-    "mean_stiffness": lambda found: found.mean("stiffness"),
-    "mean_secant_stiffness": lambda found: found.mean("secant_stiffness"),
-    "transmission_error_range": lambda found: found.range("transmission_error"),
-    "least_stiffness": lambda found: found.extreme("stiffness", greatest=False),
-    "greatest_stiffness": lambda found: found.extreme("stiffness", greatest=True),
-    "least_secant_stiffness": lambda found: found.extreme("secant_stiffness", greatest=False),
-    "greatest_secant_stiffness": lambda found: found.extreme("secant_stiffness", greatest=True),
-    "greatest_load_share": lambda found: found.greatest_share(),
+    "mean_stiffness": lambda arcs: arcs.mean("stiffness"),
+    "mean_secant_stiffness": lambda arcs: arcs.mean("secant_stiffness"),
+    "transmission_error_range": lambda arcs: arcs.range("transmission_error"),
+    "least_stiffness": lambda arcs: arcs.extreme("stiffness", greatest=False),
+    "greatest_stiffness": lambda arcs: arcs.extreme("stiffness", greatest=True),
+    "least_secant_stiffness": lambda arcs: arcs.extreme("secant_stiffness", greatest=False),
+    "greatest_secant_stiffness": lambda arcs: arcs.extreme("secant_stiffness", greatest=True),
+    "greatest_load_share": lambda arcs: arcs.greatest_share(),
 }

@@ -68,20 +68,20 @@ class Blank:
     hub_radius: float | None = None  # m
     web_offset: float = 0.0  # m
 
-    def faults(self, where: str) -> tuple[Fault, ...]:
+    def faults(self, path: str) -> tuple[Fault, ...]:
         """All faults of the values by themselves, empty when there are none."""
-        return tuple(Faults.of(self, LIMITS, f"{where}.").found)
+        return tuple(Faults.of(self, LIMITS, f"{path}.").found)
 
     def check(
-        self, found: Faults, where: str, root: float, bore: float, module: float, face_width: float | None
+        self, faults: Faults, path: str, root: float, bore: float, module: float, face_width: float | None
     ) -> None:
         """Note what does not fit a gear.
 
         Parameters
         ----------
-        found : Faults
+        faults : Faults
             Where to.
-        where : str
+        path : str
             ``wheel.blank``.
         root, bore, module : float
             Root circle's and bore's radius, module [m].
@@ -94,24 +94,24 @@ class Blank:
         if self.hub_radius is not None and not bore <= self.hub_radius <= most - least:
             allowed = f"must be {rounded_up(bore)} m to {rounded_down(most - least)} m"
             remedy = "the hub lies outside the bore, and leaves half a module of rim and a quarter of web"
-            found.add(f"{where}.hub_radius", f"{self.hub_radius:g}", allowed, remedy)
+            faults.add(f"{path}.hub_radius", f"{self.hub_radius:g}", allowed, remedy)
         elif least > most - inside:
             remedy = (
                 f"half a module of rim and a quarter of web do not fit above the {below}: give a smaller one"
             )
-            found.add(
-                f"{where}.rim_thickness", f"{self.rim_thickness:g}", f"must leave the {below} room", remedy
+            faults.add(
+                f"{path}.rim_thickness", f"{self.rim_thickness:g}", f"must leave the {below} room", remedy
             )
         elif not least <= self.rim_thickness <= most - inside:
             allowed = f"must be {rounded_up(least)} m to {rounded_down(most - inside)} m"
             remedy = f"half a module carries the teeth, and a quarter is left for the web above the {below}"
-            found.add(f"{where}.rim_thickness", f"{self.rim_thickness:g}", allowed, remedy)
+            faults.add(f"{path}.rim_thickness", f"{self.rim_thickness:g}", allowed, remedy)
         if self.web_offset != 0.0:
             remedy = (
                 "a web off the middle of the face tilts the rim under load, which takes a three-dimensional "
             )
             remedy += "model: centre the web"
-            found.add(f"{where}.web_offset", f"{self.web_offset:g}", "must be 0 m", remedy)
+            faults.add(f"{path}.web_offset", f"{self.web_offset:g}", "must be 0 m", remedy)
         least = THINNEST_WEB * (face_width or 0.0)
         if face_width is not None and not least <= self.web_thickness <= face_width:
             allowed = f"must be {rounded_up(least)} m to {rounded_down(face_width)} m"
@@ -119,7 +119,7 @@ class Blank:
                 "the web is at most as wide as the face; on a thinner one the rim bends across its width, "
             )
             remedy += "which takes a three-dimensional model"
-            found.add(f"{where}.web_thickness", f"{self.web_thickness:g}", allowed, remedy)
+            faults.add(f"{path}.web_thickness", f"{self.web_thickness:g}", allowed, remedy)
 
     def steps(self, root_radius: float, face_width: float) -> tuple[tuple[float, float], ...]:
         """Radii [m] at which the thickness changes, outer ones first, each with the one below over the face width.

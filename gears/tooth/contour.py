@@ -60,9 +60,9 @@ class Segment:
         count = max(1, math.ceil(abs(self.angle) / step))
         start = math.atan2(self.points[0, 1], self.points[0, 0])
         along = start + self.angle * np.linspace(0.0, 1.0, count + 1)
-        found = radius * np.stack((np.cos(along), np.sin(along)), axis=-1)
-        found[[0, -1]] = self.points
-        return np.asarray(found)
+        points = radius * np.stack((np.cos(along), np.sin(along)), axis=-1)
+        points[[0, -1]] = self.points
+        return np.asarray(points)
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,14 +149,14 @@ def contour(
 
 def _check(profile: ToothProfile, teeth: int | None, tolerance: float) -> None:
     coarsest = 0.1 * profile.module
-    with Faults(GeometryError) as found:
+    with Faults(GeometryError) as faults:
         if teeth is not None and not 1 <= teeth <= profile.teeth:
-            found.add(
+            faults.add(
                 "teeth", teeth, f"must be 1 to {profile.teeth}, or None", "take teeth that the gear has"
             )
         if not FINEST <= tolerance <= coarsest:
             allowed = f"must be at least {FINEST:g} and at most {coarsest:g} m"
-            found.add("tolerance", tolerance, allowed, "give it in metres (1 um is 1e-6)")
+            faults.add("tolerance", tolerance, allowed, "give it in metres (1 um is 1e-6)")
 
 
 def _tooth(profile: ToothProfile, tolerance: float, relief: bool) -> list[Segment]:
@@ -179,13 +179,13 @@ def _tooth(profile: ToothProfile, tolerance: float, relief: bool) -> list[Segmen
 def _flank(profile: ToothProfile, tolerance: float, relief: bool) -> list[Array]:
     """Chords of the right-hand flank; in two pieces where a relief starts with a kink."""
     start, end = profile.flank_rho
-    given = profile.tip_relief
-    if given is None or not relief or given.amount == 0.0:
+    tip_relief = profile.tip_relief
+    if tip_relief is None or not relief or tip_relief.amount == 0.0:
         return [chords(profile.involute, start, end, tolerance)]
-    steepest = given.amount / given.length * (2.0 if given.form == "parabolic" else 1.0)
+    steepest = tip_relief.amount / tip_relief.length * (2.0 if tip_relief.form == "parabolic" else 1.0)
     if steepest >= 0.5:
         allowed = "must be less than half the length of the relief (a quarter if parabolic)"
-        raise GeometryError.at("tip_relief.amount", f"{given.amount:g}", allowed, "relieve less")
+        raise GeometryError.at("tip_relief.amount", f"{tip_relief.amount:g}", allowed, "relieve less")
 
     def relieved(rho: float | Array) -> Array:
         depth = np.asarray(profile.relief(rho))
@@ -195,7 +195,7 @@ def _flank(profile: ToothProfile, tolerance: float, relief: bool) -> list[Array]
     reach = end
     for _ in range(60):
         reach = end + float(profile.relief(reach))
-    kink = max(end - given.length, start)
+    kink = max(end - tip_relief.length, start)
     pieces = [chords(relieved, kink, reach, tolerance)]
     return pieces if kink == start else [chords(profile.involute, start, kink, tolerance), *pieces]
 

@@ -72,14 +72,14 @@ class PitchDeviations:
         values = np.array(self.cumulative)
         return np.asarray(values - np.roll(values, 1))
 
-    def faults(self, where: str, teeth: int) -> tuple[Fault, ...]:
+    def faults(self, path: str, teeth: int) -> tuple[Fault, ...]:
         """All faults of the values for a gear of so many teeth, empty when there are none."""
-        found = Faults()
-        check_finite(found, where, self.cumulative)
+        collector = Faults()
+        check_finite(collector, path, self.cumulative)
         if len(self.cumulative) != teeth:
             count = f"{len(self.cumulative)} values"
-            found.add(where, count, f"must be {teeth}, one for each tooth", "give every tooth's")
-        return tuple(found.found)
+            collector.add(path, count, f"must be {teeth}, one for each tooth", "give every tooth's")
+        return tuple(collector.found)
 
 
 C = TypeVar("C", ProfileDeviation, WearDepth)
@@ -112,23 +112,23 @@ class GearDeviations:
     def __post_init__(self) -> None:
         """Keep traces as a tuple, so that equal deviations compare equal."""
         for name in ("profile", "wear"):
-            given = getattr(self, name)
-            if isinstance(given, Sequence):
-                object.__setattr__(self, name, tuple(given))
+            curves = getattr(self, name)
+            if isinstance(curves, Sequence):
+                object.__setattr__(self, name, tuple(curves))
 
-    def faults(self, where: str, teeth: int) -> tuple[Fault, ...]:
+    def faults(self, path: str, teeth: int) -> tuple[Fault, ...]:
         """All faults for a gear of so many teeth, empty when there are none."""
-        found = Faults()
+        collector = Faults()
         for name in ("profile", "wear"):
-            given = getattr(self, name)
-            if isinstance(given, tuple) and len(given) != teeth:
-                count, remedy = f"{len(given)} curves", "give every tooth's, or one for all"
-                found.add(f"{where}.{name}", count, f"must be {teeth}, one for each tooth", remedy)
-            for number, curve in enumerate(_listed(given)):
-                at = f"[{number}]" if isinstance(given, tuple) else ""
-                found.extend(curve.faults(f"{where}.{name}{at}"))
-        found.extend(() if self.pitch is None else self.pitch.faults(f"{where}.pitch", teeth))
-        return tuple(found.found)
+            curves = getattr(self, name)
+            if isinstance(curves, tuple) and len(curves) != teeth:
+                count, remedy = f"{len(curves)} curves", "give every tooth's, or one for all"
+                collector.add(f"{path}.{name}", count, f"must be {teeth}, one for each tooth", remedy)
+            for number, curve in enumerate(_listed(curves)):
+                at = f"[{number}]" if isinstance(curves, tuple) else ""
+                collector.extend(curve.faults(f"{path}.{name}{at}"))
+        collector.extend(() if self.pitch is None else self.pitch.faults(f"{path}.pitch", teeth))
+        return tuple(collector.found)
 
     @property
     def curved(self) -> bool:
@@ -143,7 +143,7 @@ class GearDeviations:
     @cached_property
     def profiles_alike(self) -> bool:
         """Whether all teeth have the same flanks."""
-        return all(len(set(_listed(some))) <= 1 for some in (self.profile, self.wear))
+        return all(len(set(_listed(curves))) <= 1 for curves in (self.profile, self.wear))
 
     @cached_property
     def mean(self) -> GearDeviations:
@@ -152,30 +152,30 @@ class GearDeviations:
 
     def corners(self, most: int) -> Array:
         """Curvature radii of the points of profiles, and of those of wear, each where they are at most so many."""
-        found = []
-        for given in (self.profile, self.wear):
-            points = np.unique([rho for curve in _listed(given) for rho in curve.rho])
-            found.append(points if len(points) <= most else points[:0])
-        return np.concatenate(found)
+        radii = []
+        for curves in (self.profile, self.wear):
+            points = np.unique([rho for curve in _listed(curves) for rho in curve.rho])
+            radii.append(points if len(points) <= most else points[:0])
+        return np.concatenate(radii)
 
     def kinks(self, most: int) -> Array:
         """Curvature radii of the points of profiles and wear that straight lines join, each where at most so many."""
-        found = [np.zeros(0)]
-        for given in (self.profile, self.wear):
+        radii = [np.zeros(0)]
+        for curves in (self.profile, self.wear):
             points = np.unique(
-                [rho for curve in _listed(given) if curve.form == "linear" for rho in curve.rho]
+                [rho for curve in _listed(curves) if curve.form == "linear" for rho in curve.rho]
             )
-            found.append(points if len(points) <= most else points[:0])
-        return np.concatenate(found)
+            radii.append(points if len(points) <= most else points[:0])
+        return np.concatenate(radii)
 
     def excess(self, rho: Array) -> Array:
         """Excess of material at curvature radii, the mean of all teeth, an array like `rho` [m]."""
-        mean, found = self.mean, np.zeros_like(rho)
+        mean, material = self.mean, np.zeros_like(rho)
         if isinstance(mean.profile, ProfileDeviation):
-            found = found + mean.profile.at(rho)
+            material = material + mean.profile.at(rho)
         if isinstance(mean.wear, WearDepth):
-            found = found - mean.wear.at(rho)
-        return np.asarray(found)
+            material = material - mean.wear.at(rho)
+        return np.asarray(material)
 
     def of_tooth(self, tooth: Integers, rho: Array) -> Array:
         """Excess of material of single teeth beyond the mean of all.
@@ -193,18 +193,18 @@ class GearDeviations:
             Of the shape of both together [m].
         """
         tooth, rho = np.broadcast_arrays(np.asarray(tooth), rho)
-        found = np.zeros(tooth.shape)
+        material = np.zeros(tooth.shape)
         mean = self.mean
         for sign, each, common in ((1.0, self.profile, mean.profile), (-1.0, self.wear, mean.wear)):
             if not isinstance(each, tuple):
                 continue
             assert isinstance(common, ProfileDeviation | WearDepth)
-            found -= sign * common.at(rho)
+            material -= sign * common.at(rho)
             number = tooth % len(each)
             for k in np.unique(number).tolist():
                 here = number == k
-                found[here] += sign * each[k].at(rho[here])
-        return found
+                material[here] += sign * each[k].at(rho[here])
+        return material
 
     def late(self, tooth: Array) -> Array:
         """Cumulative pitch deviations of teeth, numbers of any size, an array like `tooth` [m]."""
@@ -214,12 +214,12 @@ class GearDeviations:
         return np.asarray(values[np.asarray(tooth) % len(values)])
 
 
-def _listed(given: FlankCurve | Sequence[FlankCurve] | None) -> tuple[FlankCurve, ...]:
+def _listed(curves: FlankCurve | Sequence[FlankCurve] | None) -> tuple[FlankCurve, ...]:
     """One curve or several as a tuple."""
-    if given is None:
+    if curves is None:
         return ()
-    return tuple(given) if isinstance(given, Sequence) else (given,)
+    return tuple(curves) if isinstance(curves, Sequence) else (curves,)
 
 
-def _mean(given: C | Sequence[C] | None) -> C | None:
-    return mean_curve(given) if isinstance(given, Sequence) else given
+def _mean(curves: C | Sequence[C] | None) -> C | None:
+    return mean_curve(curves) if isinstance(curves, Sequence) else curves

@@ -61,28 +61,28 @@ class Lead:
     end_relief_length: float = 0.0  # L_CI = L_CII, m
     trace: LeadTrace | None = None
 
-    def faults(self, where: str) -> tuple[Fault, ...]:
+    def faults(self, path: str) -> tuple[Fault, ...]:
         """All faults of the values by themselves, empty when there are none."""
-        found = Faults.of(self, LEAD_LIMITS, f"{where}.")
+        collector = Faults.of(self, LEAD_LIMITS, f"{path}.")
         if self.end_relief and not self.end_relief_length > 0.0:
             allowed = "must be more than 0 m with end_relief"
-            found.add(
-                f"{where}.end_relief_length", self.end_relief_length, allowed, "give its length in metres"
+            collector.add(
+                f"{path}.end_relief_length", self.end_relief_length, allowed, "give its length in metres"
             )
         if self.trace is not None:
-            found.extend(self.trace.faults(f"{where}.trace"))
-        return tuple(found.found)
+            collector.extend(self.trace.faults(f"{path}.trace"))
+        return tuple(collector.found)
 
     def removed(self, z: Array, face_width: float) -> Array:
         """Material lacking at z (n,) [m]."""
         x = 2.0 * z / face_width
-        found = self.crowning * x**2 + 0.5 * self.slope * x
+        lacking = self.crowning * x**2 + 0.5 * self.slope * x
         if self.end_relief:
             inside = 0.5 * face_width - np.abs(z)
-            found = found + self.end_relief * np.maximum(0.0, 1.0 - inside / self.end_relief_length) ** 2
+            lacking = lacking + self.end_relief * np.maximum(0.0, 1.0 - inside / self.end_relief_length) ** 2
         if self.trace is not None:
-            found = found - self.trace.at(z)
-        return np.asarray(found)
+            lacking = lacking - self.trace.at(z)
+        return np.asarray(lacking)
 
 
 STRAIGHT = Lead()
@@ -110,9 +110,9 @@ class Alignment:
     in_plane: float = 0.0  # f_Sigma beta projected, m
     out_of_plane: float = 0.0  # f_Sigma delta projected, m
 
-    def faults(self, where: str) -> tuple[Fault, ...]:
+    def faults(self, path: str) -> tuple[Fault, ...]:
         """All faults of the values, empty when there are none."""
-        return tuple(Faults.of(self, ALIGNMENT_LIMITS, f"{where}.").found)
+        return tuple(Faults.of(self, ALIGNMENT_LIMITS, f"{path}.").found)
 
     def gap(self, z: Array, face_width: float, radius: Array | float) -> Array:
         """Gap at z [m], less that at mid-face; arrays broadcast."""

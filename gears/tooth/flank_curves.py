@@ -26,10 +26,10 @@ def numbers(values: ArrayLike) -> tuple[float, ...]:
     return tuple(float(value) for value in np.atleast_1d(np.asarray(values, dtype=float)).ravel())
 
 
-def check_finite(found: Faults, where: str, values: tuple[float, ...]) -> None:
+def check_finite(faults: Faults, path: str, values: tuple[float, ...]) -> None:
     """Note values that are not finite."""
     if not all(math.isfinite(value) for value in values):
-        found.add(where, "not finite", "must be finite numbers (m)", "leave out points without a value")
+        faults.add(path, "not finite", "must be finite numbers (m)", "leave out points without a value")
 
 
 @dataclass(frozen=True)
@@ -53,8 +53,8 @@ class PointCurve(ABC):
     @property
     def places(self) -> tuple[float, ...]:
         """Where the points are [m]."""
-        found: tuple[float, ...] = getattr(self, self.placed_in)
-        return found
+        positions: tuple[float, ...] = getattr(self, self.placed_in)
+        return positions
 
     @property
     @abstractmethod
@@ -91,21 +91,21 @@ class PointCurve(ABC):
         bend = slope[cell] * t * (1 - t) ** 2 - slope[cell + 1] * t**2 * (1 - t)
         return np.asarray(ends + width[cell] * bend)
 
-    def faults(self, where: str = "profile") -> tuple[Fault, ...]:
+    def faults(self, path: str = "profile") -> tuple[Fault, ...]:
         """All faults of the points, empty when there are none."""
-        found = Faults()
-        at = f"{where}.{self.placed_in}"
-        check_finite(found, at, self.places)
-        check_finite(found, f"{where}.{self.kept_in}", self.values)
-        found.choice(f"{where}.form", self.form, FORMS)
+        collector = Faults()
+        at = f"{path}.{self.placed_in}"
+        check_finite(collector, at, self.places)
+        check_finite(collector, f"{path}.{self.kept_in}", self.values)
+        collector.choice(f"{path}.form", self.form, FORMS)
         if len(self.places) != len(self.values) or len(self.places) < 2:
             points = f"{len(self.places)} and {len(self.values)} points"
-            found.add(where, points, f"must be as many {self.called} as values, at least 2", "give pairs")
-        if not found.found and not np.all(np.diff(self.places) > 0):
-            found.add(
+            collector.add(path, points, f"must be as many {self.called} as values, at least 2", "give pairs")
+        if not collector.found and not np.all(np.diff(self.places) > 0):
+            collector.add(
                 at, "not growing", f"must be growing {self.called}", "sort the points and leave out doubles"
             )
-        return tuple(found.found)
+        return tuple(collector.found)
 
 
 @dataclass(frozen=True, repr=False)
@@ -193,13 +193,13 @@ class WearDepth(FlankCurve):
         """Depth [m]."""
         return self.depth
 
-    def faults(self, where: str = "wear") -> tuple[Fault, ...]:
+    def faults(self, path: str = "wear") -> tuple[Fault, ...]:
         """All faults of the points, empty when there are none."""
-        found = super().faults(where)
+        curve_faults = super().faults(path)
         if not (least := [depth for depth in self.depth if depth < 0.0]):
-            return found
+            return curve_faults
         remedy = "wear removes material; give what is in excess as a profile deviation"
-        return (*found, Fault(f"{where}.depth", f"{min(least):g} m", "must be at least 0 m", remedy))
+        return (*curve_faults, Fault(f"{path}.depth", f"{min(least):g} m", "must be at least 0 m", remedy))
 
 
 @dataclass(frozen=True, repr=False)
@@ -241,13 +241,13 @@ class LeadTrace(PointCurve):
         """Material in excess [m]."""
         return self.material
 
-    def faults(self, where: str = "trace") -> tuple[Fault, ...]:
+    def faults(self, path: str = "trace") -> tuple[Fault, ...]:
         """All faults of the points, empty when there are none."""
-        found = Faults()
-        found.extend(super().faults(where))
-        if not found.found:
-            found.number(f"{where}.material", max(self.material, key=abs), MATERIAL)
-        return tuple(found.found)
+        collector = Faults()
+        collector.extend(super().faults(path))
+        if not collector.found:
+            collector.number(f"{path}.material", max(self.material, key=abs), MATERIAL)
+        return tuple(collector.found)
 
 
 C = TypeVar("C", ProfileDeviation, WearDepth)

@@ -86,10 +86,10 @@ def _weights(places: Array) -> Array:
 
 def _check(radii: Array, places: Array, heights: Array) -> None:
     """Refuse a map that has not a value at each of growing places."""
-    with Faults() as found:
+    with Faults() as faults:
         for name, values in (("rho", radii), ("z", places)):
             if len(values) < 2 or not np.all(np.diff(values) > 0.0):
-                found.add(
+                faults.add(
                     name,
                     f"{len(values)} values",
                     "must be growing, at least 2",
@@ -97,6 +97,6 @@ def _check(radii: Array, places: Array, heights: Array) -> None:
                 )
         if heights.shape != (len(radii), len(places)):
             allowed = f"must have a row for each of {len(radii)} rho and a column for each of {len(places)} z"
-            found.add("material", f"{heights.shape}", allowed, "give the map as rows over the profile")
+            faults.add("material", f"{heights.shape}", allowed, "give the map as rows over the profile")
         else:
-            check_finite(found, "material", numbers(heights))
+            check_finite(faults, "material", numbers(heights))

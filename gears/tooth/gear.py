@@ -48,11 +48,11 @@ class TipRelief:
     length: float  # L_Ca, m
     form: str = "linear"
 
-    def faults(self, where: str) -> tuple[Fault, ...]:
+    def faults(self, path: str) -> tuple[Fault, ...]:
         """All faults of the values, empty when there are none."""
-        found = Faults.of(self, RELIEF_LIMITS, f"{where}.")
-        found.choice(f"{where}.form", self.form, ("linear", "parabolic"), "choose one of them")
-        return tuple(found.found)
+        collector = Faults.of(self, RELIEF_LIMITS, f"{path}.")
+        collector.choice(f"{path}.form", self.form, ("linear", "parabolic"), "choose one of them")
+        return tuple(collector.found)
 
 
 @dataclass(frozen=True)
@@ -114,21 +114,21 @@ class Gear:
 
     def __repr__(self) -> str:
         """Teeth, and what differs from the defaults."""
-        given = {field.name: getattr(self, field.name) for field in fields(self)}
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
         defaults = {field.name: field.default for field in fields(self)}
         changed = (
             f"{name}={f'{value:.9g}' if isinstance(value, float) else shorten(value)}"
-            for name, value in given.items()
+            for name, value in values.items()
             if value != defaults[name]
         )
         return f"Gear({', '.join(changed)})"
 
-    def faults(self, where: str = "gear") -> tuple[Fault, ...]:
+    def faults(self, path: str = "gear") -> tuple[Fault, ...]:
         """All faults of the values by themselves, empty when there are none."""
-        found = Faults.of(self, LIMITS, f"{where}.")
+        collector = Faults.of(self, LIMITS, f"{path}.")
         if self.tip_relief is not None:
-            found.extend(self.tip_relief.faults(f"{where}.tip_relief"))
-        found.extend(self.lead.faults(f"{where}.lead"))
+            collector.extend(self.tip_relief.faults(f"{path}.tip_relief"))
+        collector.extend(self.lead.faults(f"{path}.lead"))
         if self.blank is not None:
-            found.extend(self.blank.faults(f"{where}.blank"))
-        return tuple(found.found)
+            collector.extend(self.blank.faults(f"{path}.blank"))
+        return tuple(collector.found)

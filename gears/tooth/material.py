@@ -63,9 +63,9 @@ class Material:
         """E* = E / (1 - nu^2) [Pa]."""
         return self.youngs_modulus / (1.0 - self.poisson_ratio**2)
 
-    def faults(self, where: str = "material") -> tuple[Fault, ...]:
+    def faults(self, path: str = "material") -> tuple[Fault, ...]:
         """All faults of the values, empty when there are none."""
-        return tuple(Faults.of(self, LIMITS, f"{where}.").found)
+        return tuple(Faults.of(self, LIMITS, f"{path}.").found)
 
 
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0)

@@ -81,13 +81,13 @@ def outline(
     (66, 2)
     """
     count = profile.teeth if teeth is None else teeth
-    with Faults(GeometryError) as found:
+    with Faults(GeometryError) as faults:
         if not 1 <= count <= profile.teeth:
-            found.add(
+            faults.add(
                 "teeth", count, f"must be 1 to {profile.teeth}, or None", "draw teeth that the gear has"
             )
         if points_per_part < 2:
-            found.add("points_per_part", points_per_part, "must be at least 2", "raise it")
+            faults.add("points_per_part", points_per_part, "must be at least 2", "raise it")
     right = tooth_side(profile, points_per_part, relief_scale)
     # the middle of the land and one of the two gap middles belong to both sides or to the next tooth
     tooth = np.concatenate((right, mirrored(right[-2:0:-1])))

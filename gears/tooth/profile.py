@@ -86,12 +86,12 @@ class ToothProfile:
 
         A hub of less than 0.05 modules is none.
         """
-        found, outer, thickness = [], self.root_radius, 1.0
+        rings, outer, thickness = [], self.root_radius, 1.0
         for radius, below in self.steps:
             if radius > self.bore_radius + THINNEST_HUB * self.module:
-                found.append(Zone(radius, outer, thickness))
+                rings.append(Zone(radius, outer, thickness))
                 outer, thickness = radius, below
-        return (*found, Zone(self.bore_radius, outer, thickness))
+        return (*rings, Zone(self.bore_radius, outer, thickness))
 
     @property
     def rim_thickness(self) -> float:

@@ -118,16 +118,16 @@ class BasicRack:
         depth = self.h_fP - self.rho_fP
         return math.pi / 4.0 - depth * math.tan(self.alpha) - self.rho_fP / math.cos(self.alpha)
 
-    def faults(self, where: str = "rack") -> tuple[Fault, ...]:
+    def faults(self, path: str = "rack") -> tuple[Fault, ...]:
         """All faults of the values, empty when there are none."""
-        found = Faults.of(self, LIMITS, f"{where}.")
-        if not found.found and self.largest_fillet_radius <= 0.0:
+        collector = Faults.of(self, LIMITS, f"{path}.")
+        if not collector.found and self.largest_fillet_radius <= 0.0:
             deepest = math.pi / 4.0 / math.tan(self.alpha)
             allowed = f"must be less than {deepest:.6g} modules at this pressure angle"
             remedy = "the rack tooth ends in a point before its tip, so not even a full-radius fillet fits: "
             remedy += "reduce h_fP or alpha"
-            found.add(f"{where}.h_fP", f"{self.h_fP:g}", allowed, remedy)
-        return tuple(found.found)
+            collector.add(f"{path}.h_fP", f"{self.h_fP:g}", allowed, remedy)
+        return tuple(collector.found)
 
 
 ISO_53_A = BasicRack()
