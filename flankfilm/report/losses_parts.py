@@ -153,7 +153,9 @@ def _warm(found: MeshLosses, scene: Scene) -> str:
     """Temperatures of the flanks and where they come from."""
     known = warmth(scene)
     if known.transfer is None:
-        given = scene.heat is not None and scene.heat.given("pinion_temperature_C", "wheel_temperature_C")
+        given = scene.heat is not None and scene.heat.given_keys(
+            "pinion_temperature_C", "wheel_temperature_C"
+        )
         source = "as [heat] gives them" if given else "as warm as the oil"
     else:
         first, second = (number(one, 3) for one in found.heat)
