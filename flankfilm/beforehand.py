@@ -38,23 +38,23 @@ def refuse(scene: Scene) -> None:
     InputError
         With all of them, each under the scene's key.
     """
-    with Faults() as found:
+    with Faults() as faults:
         pair = None
         if scene.pair is not None:
-            found.extend(_faults(lambda: warm_pair(scene)))
-            if not found.found:
+            faults.extend(_faults(lambda: warm_pair(scene)))
+            if not faults.found:
                 pair = warm_pair(scene).pair
-                found.extend(_faults(lambda: deviations(scene, pair, every_tooth=True)))
-                for faults in (_held, _pressed, _menisci, faults_of_face):
-                    found.extend(faults(scene, pair))
+                faults.extend(_faults(lambda: deviations(scene, pair, every_tooth=True)))
+                for check in (_held, _pressed, _menisci, faults_of_face):
+                    faults.extend(check(scene, pair))
         if scene.lubricant is not None:
-            found.extend(_faults(lambda: lubricant(scene)))
+            faults.extend(_faults(lambda: lubricant(scene)))
         if scene.roughness is not None:
-            found.extend(_faults(lambda: roughness(scene)))
+            faults.extend(_faults(lambda: roughness(scene)))
         if scene.dynamics is not None and "diagram" in scene.wants:
-            found.extend(_undriven(scene.dynamics))
-        if MOTIONS & set(scene.wants) and not found.found:
-            found.extend(faults_of_ranges(scene, pair))
+            faults.extend(_undriven(scene.dynamics))
+        if MOTIONS & set(scene.wants) and not faults.found:
+            faults.extend(faults_of_ranges(scene, pair))
 
 
 def _faults(build: Callable[[], object]) -> tuple[Fault, ...]:

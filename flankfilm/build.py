@@ -114,7 +114,7 @@ def _under_tip_diameters(section: PairSection) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        given = {
+        tip_diameters = {
             f"{name}.tip_alteration": gear.tip_diameter_mm
             for name, gear in zip(("pinion", "wheel"), section.each, strict=True)
             if gear.tip_diameter_mm is not None
@@ -123,11 +123,11 @@ def _under_tip_diameters(section: PairSection) -> Iterator[None]:
             replace(
                 fault,
                 where=fault.where.replace("tip_alteration", "tip_diameter_mm"),
-                value=f"{given[fault.where]:.12g}",
+                value=f"{tip_diameters[fault.where]:.12g}",
                 allowed=f"gives tip_alteration = {fault.value}, which {fault.allowed}",
                 remedy=fault.remedy.replace("tip_alteration", "tip_diameter_mm"),
             )
-            if fault.where in given
+            if fault.where in tip_diameters
             else fault
             for fault in error.faults
         ) from error
@@ -178,8 +178,8 @@ def pinion_torque(scene: Scene) -> float:
 
 def _operating(scene: Scene, key: str, remedy: str) -> float:
     """Value of a key of [operating], in SI."""
-    found = scene.operating.value(key) if scene.operating else None
-    return float(required(found, f"operating.{key}", remedy=remedy))
+    si_value = scene.operating.value(key) if scene.operating else None
+    return float(required(si_value, f"operating.{key}", remedy=remedy))
 
 
 def supports(scene: Scene) -> tuple[fem.Support, fem.Support] | None:

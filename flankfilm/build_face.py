@@ -34,15 +34,17 @@ def face(scene: Scene) -> FaceOptions:
     if section is None:
         return {}
     alignment = gears.Alignment(**section.si())
-    found: FaceOptions = {
+    options: FaceOptions = {
         "alignment": alignment,
         "cells": section.cells,
         "face_model": section.face_model,
     }
     if (under := scene.shafts_under_face) is not None:
-        first, second = (None if one is None else one.shaft() for one in under.each)
-        found["shafts"] = first, second
-    return found
+        first, second = (
+            None if shaft_section is None else shaft_section.shaft() for shaft_section in under.each
+        )
+        options["shafts"] = first, second
+    return options
 
 
 def even_along_face(pair: gears.GearPair) -> gears.GearPair:
@@ -56,17 +58,17 @@ def _even(gear: gears.Gear) -> gears.Gear:
 
 def varies_by(scene: Scene) -> list[str]:
     """Keys and sections of a scene by which the load varies along the face; empty where it is even."""
-    found = [] if scene.alignment is None else ["[alignment]"]
+    keys = [] if scene.alignment is None else ["[alignment]"]
     for name in ("pinion", "wheel"):
         gear = None if scene.pair is None else getattr(scene.pair, name)
         if gear is None or scene.pair is None:
             continue
         if gear.face_width_mm not in (None, scene.pair.face_width_mm):
-            found.append(f"pair.{name}.face_width_mm")
-        found += [f"pair.{name}.{key}" for key in LEAD_KEYS if getattr(gear, key)]
+            keys.append(f"pair.{name}.face_width_mm")
+        keys += [f"pair.{name}.{key}" for key in LEAD_KEYS if getattr(gear, key)]
         if gear.deviations is not None:
-            found += [f"pair.{name}.deviations.{key}" for key in gear.deviations.given("lead", "map")]
-    return found
+            keys += [f"pair.{name}.deviations.{key}" for key in gear.deviations.given_keys("lead", "map")]
+    return keys
 
 
 def faults_of_face(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
@@ -75,24 +77,24 @@ def faults_of_face(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
     if not by or scene.stiffness.model == "given":
         return
     yield from _of_setting(scene, pair)
-    where, drop = f"where the load varies along the face, by {by}", f"or drop {by}"
-    yield from _of_films(scene, where, drop)
+    condition, drop = f"where the load varies along the face, by {by}", f"or drop {by}"
+    yield from _of_films(scene, condition, drop)
     if scene.stiffness.plane != "strain":
         remedy = f'Take stiffness.plane = "strain", {drop}'
-        yield Fault("stiffness.plane", f"{scene.stiffness.plane!r}", f'must be "strain" {where}', remedy)
+        yield Fault("stiffness.plane", f"{scene.stiffness.plane!r}", f'must be "strain" {condition}', remedy)
 
 
-def _of_films(scene: Scene, where: str, drop: str) -> Iterator[Fault]:
+def _of_films(scene: Scene, condition: str, drop: str) -> Iterator[Fault]:
     """Faults of films that do not follow from place and line load alone, and of what has no films over the face."""
     if scene.film.meniscus_half_widths is not None:
-        allowed = f"must be left out {where}: every cell would hold the meniscus elsewhere"
+        allowed = f"must be left out {condition}: every cell would hold the meniscus elsewhere"
         value = f"{scene.film.meniscus_half_widths:g}"
         yield Fault("film.meniscus_half_widths", value, allowed, f"Give meniscus_mm instead, {drop}")
     if scene.film.stiffness is not None:
-        allowed = f"must be left out {where}: films of cells have their own slope by the load"
+        allowed = f"must be left out {condition}: films of cells have their own slope by the load"
         yield Fault("film.stiffness", f"{scene.film.stiffness!r}", allowed, f"Leave it out, {drop}")
     if scene.dynamics is not None and scene.dynamics.damping_ratio == BY_FILM:
-        allowed = f"must be a number {where}: the damping of films is that of even loads"
+        allowed = f"must be a number {condition}: the damping of films is that of even loads"
         yield Fault("dynamics.damping_ratio", "'film'", allowed, f"Give a number, {drop}")
 
 
@@ -100,17 +102,17 @@ def _of_setting(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
     """Faults of cells, alignment and leads, each under its key."""
     from fem.pair.face_setting import FREE_ENDS, face_setting
 
-    given, found = face(scene), Faults()
+    options, faults = face(scene), Faults()
     setting = face_setting(
         pair,
-        given.get("alignment"),
-        given.get("cells"),
-        given.get("face_model", FREE_ENDS),
-        given.get("shafts"),
+        options.get("alignment"),
+        options.get("cells"),
+        options.get("face_model", FREE_ENDS),
+        options.get("shafts"),
     )
     if setting is not None:
-        setting.check(found, pair, POSITIONS)
-    for fault in found.found:
+        setting.check(faults, pair, POSITIONS)
+    for fault in faults.found:
         if fault.where in ("cells", "face_model"):
             yield in_keys(fault, scene.alignment, "alignment")
         else:

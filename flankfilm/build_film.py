@@ -48,7 +48,7 @@ def lubricant(scene: Scene) -> ehl.Lubricant:
 
 def flank_temperatures(scene: Scene) -> tuple[float, float] | None:
     """Temperatures of the flanks of pinion and wheel [K]; None where they have the oil's."""
-    if scene.heat is None or not scene.heat.given("pinion_temperature_C", "wheel_temperature_C"):
+    if scene.heat is None or not scene.heat.given_keys("pinion_temperature_C", "wheel_temperature_C"):
         return None
     heat = gears.Heat(**scene.heat.si(*GROWTH))
     return heat.pinion_temperature, heat.wheel_temperature
@@ -56,10 +56,10 @@ def flank_temperatures(scene: Scene) -> tuple[float, float] | None:
 
 def _by_grade(section: LubricantSection, at: float | None) -> ehl.Lubricant:
     """Oil of a grade at its own temperature, or at that of the flanks [K]."""
-    given = section.si(*BY_GRADE, "temperature_C", "compressible") | (
+    arguments = section.si(*BY_GRADE, "temperature_C", "compressible") | (
         {} if at is None else {"temperature": at}
     )
-    oil = ehl.Lubricant.from_iso_vg(**given)
+    oil = ehl.Lubricant.from_iso_vg(**arguments)
     return replace(oil, **_law(section), **section.si(*SHEAR_AND_HEAT))
 
 

@@ -44,7 +44,7 @@ def deviations(scene: Scene, pair: gears.GearPair, *, every_tooth: bool) -> Both
         With all curves that leave out a part of the active profile.
     """
     line, ends = pair.line_of_action, np.array([pair.points.A, pair.points.E])
-    found = []
+    gear_deviations = []
     with Faults() as faults:
         for name, section, radius, active in zip(
             ("pinion", "wheel"),
@@ -54,8 +54,10 @@ def deviations(scene: Scene, pair: gears.GearPair, *, every_tooth: bool) -> Both
             strict=True,
         ):
             curves = _Curves(f"pair.{name}", radius, active, faults)
-            found.append(_of_gear(curves, section.deviations, section.wear))
-    first, second = (one if one is None or every_tooth else _plain_as_none(one.mean) for one in found)
+            gear_deviations.append(_of_gear(curves, section.deviations, section.wear))
+    first, second = (
+        gear if gear is None or every_tooth else _plain_as_none(gear.mean) for gear in gear_deviations
+    )
     return (first, second) if first or second else None
 
 
@@ -84,56 +86,56 @@ def lead_trace(
     made = section.deviations
     if made is None or (made.lead is None and made.map is None):
         return None
-    given: LeadSection | MapSection
+    source: LeadSection | MapSection
     if made.map is not None:
-        given, kind = made.map, "map"
+        source, kind = made.map, "map"
         parts = _parts(made.map, base_radius)
-        found = parts.lead
+        trace = parts.lead
         if parts.twist > LEAST_TWIST:
             twist = f"{name}: the map's twist, up to {1e6 * parts.twist:.2g} um of material, is left out"
             warnings.warn(twist, gears.GeometryWarning, stacklevel=2)
     elif made.lead is not None:
-        given, kind = made.lead, "lead"
-        found = gears.LeadTrace(given.value("z_mm"), given.value("material_um"), given.form)
+        source, kind = made.lead, "lead"
+        trace = gears.LeadTrace(source.value("z_mm"), source.value("material_um"), source.form)
     half, slack = 0.5 * face_width, SLACK * face_width
-    apart = found.z[-1] <= -half or found.z[0] >= half
-    short = found.z[0] > slack - half or found.z[-1] < half - slack
-    if apart or (short and given.beyond == "refuse"):
-        where = f"{name}.deviations.{kind}" + (".file" if given.file else "")
+    apart = trace.z[-1] <= -half or trace.z[0] >= half
+    short = trace.z[0] > slack - half or trace.z[-1] < half - slack
+    if apart or (short and source.beyond == "refuse"):
+        key = f"{name}.deviations.{kind}" + (".file" if source.file else "")
         ends = f"the face, {-1e3 * half:.5g} to {1e3 * half:.5g} mm"
-        value = f"{1e3 * found.z[0]:.6g} to {1e3 * found.z[-1]:.6g} mm"
+        value = f"{1e3 * trace.z[0]:.6g} to {1e3 * trace.z[-1]:.6g} mm"
         if apart:
             remedy = "Check the unit, and that places are counted from the middle of this gear's face"
-            raise InputError.at(where, value, f"must lie on {ends}", remedy)
+            raise InputError.at(key, value, f"must lie on {ends}", remedy)
         remedy = 'Measure farther, count places from the middle of the face, or give beyond = "hold"'
-        raise InputError.at(where, value, f"must cover {ends}, but for a twentieth at either end", remedy)
-    return found
+        raise InputError.at(key, value, f"must cover {ends}, but for a twentieth at either end", remedy)
+    return trace
 
 
-def _parts(given: MapSection, base_radius: float) -> gears.FlankMap:
+def _parts(section: MapSection, base_radius: float) -> gears.FlankMap:
     """Profile, lead and twist of a map."""
-    rho = radii_of(given, base_radius)
-    return gears.flank_map(rho, given.value("z_mm"), given.value("material_um"), given.form)
+    rho = radii_of(section, base_radius)
+    return gears.flank_map(rho, section.value("z_mm"), section.value("material_um"), section.form)
 
 
 def _of_gear(
-    curves: _Curves, given: DeviationsSection | None, wear: WearSection | None
+    curves: _Curves, section: DeviationsSection | None, wear: WearSection | None
 ) -> gears.GearDeviations | None:
     """Deviations of a gear as its keys give them."""
     made = gears.GearDeviations()
-    if given is not None:
-        made = gears.GearDeviations(curves.profile(given), _pitches(given))
+    if section is not None:
+        made = gears.GearDeviations(curves.profile(section), _pitches(section))
     if wear is not None and wear.factor > 0.0:  # a factor of 0 is the gear unworn
         made = gears.GearDeviations(made.profile, made.pitch, curves.wear(wear))
     return _plain_as_none(made)
 
 
-def _plain_as_none(found: gears.GearDeviations) -> gears.GearDeviations | None:
-    return found if found.curved or found.pitch is not None else None
+def _plain_as_none(gear_deviations: gears.GearDeviations) -> gears.GearDeviations | None:
+    return gear_deviations if gear_deviations.curved or gear_deviations.pitch is not None else None
 
 
-def _pitches(given: DeviationsSection) -> gears.PitchDeviations | None:
-    values = given.si("single_pitch_um", "cumulative_pitch_um")
+def _pitches(section: DeviationsSection) -> gears.PitchDeviations | None:
+    values = section.si("single_pitch_um", "cumulative_pitch_um")
     if "single" in values:
         return gears.PitchDeviations.from_single(values["single"])
     return gears.PitchDeviations(values["cumulative"]) if "cumulative" in values else None
@@ -145,7 +147,7 @@ class _Curves:
 
     Attributes
     ----------
-    where : str
+    path : str
         The gear's place in the scene.
     base_radius : float
         [m]
@@ -155,13 +157,13 @@ class _Curves:
         Notes curves that do not cover it.
     """
 
-    where: str
+    path: str
     base_radius: float
     active: Array
     faults: Faults
 
     def profile(
-        self, given: DeviationsSection
+        self, measured: DeviationsSection
     ) -> gears.ProfileDeviation | tuple[gears.ProfileDeviation, ...] | None:
         """Measured profile of all teeth, or of each."""
 
@@ -170,32 +172,32 @@ class _Curves:
                 radii_of(section, self.base_radius), section.value("material_um"), section.form
             )
 
-        if (traces := given.traces) is not None and traces.teeth is not None:
+        if (traces := measured.traces) is not None and traces.teeth is not None:
             at = "deviations.traces." + ("file" if traces.file else "teeth")
             self._cover(at, traces.teeth, traces.beyond == "hold")
             return tuple(map(built, traces.teeth))
-        if given.map is not None:
+        if measured.map is not None:
             self._cover(
-                "deviations.map" + (".file" if given.map.file else ""),
-                [given.map],
-                given.map.beyond == "hold",
+                "deviations.map" + (".file" if measured.map.file else ""),
+                [measured.map],
+                measured.map.beyond == "hold",
             )
-            return None if self.faults.found else _parts(given.map, self.base_radius).profile
-        if given.profile is None:
+            return None if self.faults.found else _parts(measured.map, self.base_radius).profile
+        if measured.profile is None:
             return None
-        self._cover("deviations.profile", [given.profile], hold=True)
-        return built(given.profile)
+        self._cover("deviations.profile", [measured.profile], hold=True)
+        return built(measured.profile)
 
-    def wear(self, given: WearSection) -> gears.WearDepth | tuple[gears.WearDepth, ...]:
+    def wear(self, worn: WearSection) -> gears.WearDepth | tuple[gears.WearDepth, ...]:
         """Wear of all teeth, or of each."""
 
         def built(section: CurveSection) -> gears.WearDepth:
-            depth = given.factor * np.array(section.value("depth_um"))
+            depth = worn.factor * np.array(section.value("depth_um"))
             return gears.WearDepth(radii_of(section, self.base_radius), tuple(depth.tolist()), section.form)
 
-        at = "wear.file" if given.file else "wear" if given.teeth is None else "wear.teeth"
-        self._cover(at, given.teeth or [given], given.beyond == "hold", ends_at_nothing=True)
-        return built(given) if given.teeth is None else tuple(map(built, given.teeth))
+        at = "wear.file" if worn.file else "wear" if worn.teeth is None else "wear.teeth"
+        self._cover(at, worn.teeth or [worn], worn.beyond == "hold", ends_at_nothing=True)
+        return built(worn) if worn.teeth is None else tuple(map(built, worn.teeth))
 
     def _cover(
         self, at: str, curves: Sequence[CurveSection], hold: bool, ends_at_nothing: bool = False
@@ -215,19 +217,19 @@ class _Curves:
             return
         number, section, apart = bad[0]
         by = section.measured_by
-        given = getattr(section, by)
+        places = getattr(section, by)
         unit, spoken = by.rpartition("_")[2], self._spoken(by)
         more = f", and {len(bad) - 1} more teeth" if len(bad) > 1 else ""
         tooth = f"tooth {number}: " if len(curves) > 1 else ""
-        value = f"{tooth}{given[0]:.6g} to {given[-1]:.6g} {unit}{more}"
+        value = f"{tooth}{places[0]:.6g} to {places[-1]:.6g} {unit}{more}"
         span = f"the active profile, {spoken(low):.5g} to {spoken(high):.5g} {unit}"
         if apart:
             remedy = "Check the unit, and whether the points are on the involute"
-            self.faults.add(f"{self.where}.{at}", value, f"must lie on {span}", remedy)
+            self.faults.add(f"{self.path}.{at}", value, f"must lie on {span}", remedy)
         else:
             remedy = 'Measure farther, or give beyond = "hold": the ends then keep their value'
             allowed = f"must cover {span}, but for a twentieth at either end"
-            self.faults.add(f"{self.where}.{at}", value, allowed, remedy)
+            self.faults.add(f"{self.path}.{at}", value, allowed, remedy)
 
     def _spoken(self, by: str) -> Callable[[float], float]:
         """From curvature radii to the positions that a key holds."""

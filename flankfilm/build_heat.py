@@ -49,8 +49,8 @@ def solids(pair: gears.GearPair) -> tuple[ehl.Solid, ehl.Solid]:
 
 def warmth(scene: Scene) -> Warmth:
     """Temperatures of the flanks: given by [heat], balanced by its heat transfer, or those of the oil."""
-    if (given := flank_temperatures(scene)) is not None:
-        return Warmth(given)
+    if (temperatures := flank_temperatures(scene)) is not None:
+        return Warmth(temperatures)
     at = lubricant(scene).temperature
     transfer = None if scene.heat is None else scene.heat.heat_transfer_W_per_K
     if scene.heat is None or transfer is None:

@@ -72,12 +72,12 @@ def own_folder(folder: Path) -> str:
         folder.mkdir(exist_ok=True, mode=0o700)
         if not hasattr(os, "getuid"):
             return ""
-        for one in (folder.parent, folder):
-            found = one.stat()
-            if found.st_uid != os.getuid():
-                return f"{one} belongs to another user"
-            if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-                return f"{one} may be written by others; chmod 700 {one}"
+        for directory in (folder.parent, folder):
+            status = directory.stat()
+            if status.st_uid != os.getuid():
+                return f"{directory} belongs to another user"
+            if status.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+                return f"{directory} may be written by others; chmod 700 {directory}"
         folder.chmod(0o700)
     except OSError as fault:
         return f"{folder} cannot be used: {fault.strerror}"

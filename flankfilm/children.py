@@ -89,17 +89,21 @@ def answering_signals() -> Iterator[None]:
         _stop(number)
 
     # a signal that is ignored, as under nohup, stays so
-    before = {one: signal.getsignal(one) for one in ENDS if signal.getsignal(one) is not signal.SIG_IGN}
-    for one in before:
-        signal.signal(one, end)
+    before = {
+        signal_number: signal.getsignal(signal_number)
+        for signal_number in ENDS
+        if signal.getsignal(signal_number) is not signal.SIG_IGN
+    }
+    for signal_number in before:
+        signal.signal(signal_number, end)
     note, sys.unraisablehook = sys.unraisablehook, _or_again(sys.unraisablehook)
     try:
         yield
     finally:
         sys.unraisablehook = note
         on_its_way()
-        for one, handler in before.items():
-            signal.signal(one, handler if handler is not None else signal.SIG_DFL)
+        for signal_number, handler in before.items():
+            signal.signal(signal_number, handler if handler is not None else signal.SIG_DFL)
 
 
 @contextmanager
@@ -112,14 +116,18 @@ def ends_later() -> Iterator[None]:
         yield
         return
     came: list[int] = []
-    before = {one: signal.getsignal(one) for one in ENDS if signal.getsignal(one) is not signal.SIG_IGN}
-    for one in before:
-        signal.signal(one, lambda number, _frame: came.append(number))
+    before = {
+        signal_number: signal.getsignal(signal_number)
+        for signal_number in ENDS
+        if signal.getsignal(signal_number) is not signal.SIG_IGN
+    }
+    for signal_number in before:
+        signal.signal(signal_number, lambda number, _frame: came.append(number))
     try:
         yield
     finally:
-        for one, handler in before.items():
-            signal.signal(one, handler if handler is not None else signal.SIG_DFL)
+        for signal_number, handler in before.items():
+            signal.signal(signal_number, handler if handler is not None else signal.SIG_DFL)
         if came:
             signal.raise_signal(came[0])
 

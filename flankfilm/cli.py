@@ -130,17 +130,17 @@ def verify(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     wanted = _read(scene, options.tolerance)
     folder = options.out or Path(f"{scene.stem}-verify")
     with console_progress() as progress:
-        found = verify_scene(wanted, folder, use_cache=options.cache, progress=progress)
-        files = write_verification(found, wanted, folder)
+        verification = verify_scene(wanted, folder, use_cache=options.cache, progress=progress)
+        files = write_verification(verification, wanted, folder)
     screen = Console(width=None if sys.stdout.isatty() else 160)
-    for reference in (found.references[0], found.like_for_like):
-        screen.print(table(found, reference))
-    if found.over_face is not None:
-        screen.print(face_table(found.over_face))
-    elif found.message:
-        print(printable(found.message))
-    print(f"verify.csv holds the rest: {', '.join(r.label for r in found.references[1:-1])}")
-    print(costs(found))
+    for reference in (verification.references[0], verification.like_for_like):
+        screen.print(table(verification, reference))
+    if verification.over_face is not None:
+        screen.print(face_table(verification.over_face))
+    elif verification.message:
+        print(printable(verification.message))
+    print(f"verify.csv holds the rest: {', '.join(r.label for r in verification.references[1:-1])}")
+    print(costs(verification))
     print(f"{len(files)} files in {folder}: {', '.join(path.name for path in files)}")
     return 0
 
@@ -173,10 +173,10 @@ def study(study: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> int
 
     plan = read_plan(study)
     with console_rows() as progress:
-        found = run_study(plan, out, how, progress)
-    _conclude(summary(found), out, write_study(found, out))
-    if found.failures:
-        return SOLVER_FAULT if all(row.lost for row in found.rows) else PART_FAILED
+        study_results = run_study(plan, out, how, progress)
+    _conclude(summary(study_results), out, write_study(study_results, out))
+    if study_results.failures:
+        return SOLVER_FAULT if all(row.lost for row in study_results.rows) else PART_FAILED
     return 0
 
 
@@ -197,8 +197,8 @@ def optimise(task: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> i
 
     asked = read_task(task)
     with console_rows() as progress:
-        found = find(asked, out, how, progress)
-    _conclude(summary(found), out, write_optimum(found, out))
+        optimum = find(asked, out, how, progress)
+    _conclude(summary(optimum), out, write_optimum(optimum, out))
     return 0
 
 
@@ -241,12 +241,14 @@ def bench(
     from flankfilm.progress import console_progress
 
     with console_progress() as progress:
-        found = measured(out, only or (), quick=quick, repeat=repeat, against=against, progress=progress)
-    files = [*write_tables(found, out), *write_page(found, out)]
-    Console(width=None if sys.stdout.isatty() else 180).print(terminal(found))
-    for line in remarks(found):
+        measurements = measured(
+            out, only or (), quick=quick, repeat=repeat, against=against, progress=progress
+        )
+    files = [*write_tables(measurements, out), *write_page(measurements, out)]
+    Console(width=None if sys.stdout.isatty() else 180).print(terminal(measurements))
+    for line in remarks(measurements):
         print(line)
-    print(f"{len(files)} files in {out} after {found.seconds:.0f} s; {files[-1].name} shows them all")
+    print(f"{len(files)} files in {out} after {measurements.seconds:.0f} s; {files[-1].name} shows them all")
     return 0
 
 

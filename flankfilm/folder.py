@@ -47,8 +47,8 @@ def claim(folder: Path, data: str = "", files: Iterable[str] = (), folders: Iter
     with Faults() as faults:
         others = [name for name in REPORTS if name != data and (folder / name).exists()]
         if data and others and (folder / "report.html").exists():
-            found = f"holds {REPORTS[others[0]]} ({others[0]}), whose report.html would be replaced"
-            faults.add(str(folder), "", found, ELSEWHERE)
+            clash = f"holds {REPORTS[others[0]]} ({others[0]}), whose report.html would be replaced"
+            faults.add(str(folder), "", clash, ELSEWHERE)
         for path in (folder / name for name in files):
             if path.is_dir():
                 faults.add(str(path), "", "is a folder, and a file of that name will be written", AWAY)

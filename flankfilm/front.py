@@ -78,10 +78,10 @@ def run(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = True
     from flankfilm.running import run_scene
     from flankfilm.stages.failures import lines
 
-    found = run_scene(_scene(scene), None if out is None else Path(out), use_cache=cache)
-    for line in lines(found.failures):
+    results = run_scene(_scene(scene), None if out is None else Path(out), use_cache=cache)
+    for line in lines(results.failures):
         warnings.warn(line, PartWarning, stacklevel=2)
-    return found
+    return results
 
 
 def verify(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = True) -> Verification:
@@ -105,18 +105,18 @@ def verify(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = T
     ... pinion_torque_Nm = 600
     ... '''
     ... )
-    >>> found = verify(scene)
-    >>> round(found.difference("Ishikawa", "held to the path"), 2)
+    >>> verification = verify(scene)
+    >>> round(verification.difference("Ishikawa", "held to the path"), 2)
     0.09
     """
     from flankfilm.verification.run import verify_scene
     from flankfilm.verification.tables import write_verification
 
     read, folder = _scene(scene), None if out is None else Path(out)
-    found = verify_scene(read, folder, use_cache=cache)
+    verification = verify_scene(read, folder, use_cache=cache)
     if folder is not None:
-        write_verification(found, read, folder)
-    return found
+        write_verification(verification, read, folder)
+    return verification
 
 
 def write_vtk(scene: SceneOrPath, out: Path | str, *, cache: bool = True) -> list[Path]:
@@ -182,9 +182,9 @@ def optimise(task: Task | Path | str, out: Path | str | None = None, how: Execut
     return _rows(lambda folder: search(asked, folder, how), write_optimum, out)
 
 
-def _scene(given: SceneOrPath) -> Scene:
+def _scene(source: SceneOrPath) -> Scene:
     """Scene itself, or the one that a file holds."""
-    return given if isinstance(given, Scene) else scene_in(Path(given))[0]
+    return source if isinstance(source, Scene) else scene_in(Path(source))[0]
 
 
 def _rows(compute: Callable[[Path], T], write: Callable[[T, Path], object], out: Path | str | None) -> T:
@@ -192,6 +192,6 @@ def _rows(compute: Callable[[Path], T], write: Callable[[T, Path], object], out:
     if out is None:
         with tempfile.TemporaryDirectory(prefix="flankfilm-") as folder:
             return compute(Path(folder))
-    found = compute(Path(out))
-    write(found, Path(out))
-    return found
+    results = compute(Path(out))
+    write(results, Path(out))
+    return results

@@ -55,9 +55,9 @@ def guarded(command: Callable[[], int]) -> int:
         sys.stderr.close()
         return 0
     except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
+        prefix = f"{error.filename}: " if error.filename else ""
         remedy = "; free some space, or name another folder with --out" if error.errno in FULL else ""
-        _tell(printable(f"flankfilm: {where}{error.strerror or error}{remedy}"))
+        _tell(printable(f"flankfilm: {prefix}{error.strerror or error}{remedy}"))
         return USER_FAULT
     except (KeyboardInterrupt, Ended) as stop:
         how = f"ended by {stop}" if isinstance(stop, Ended) else "interrupted"
@@ -90,9 +90,9 @@ def open_streams() -> None:
             os.open(os.devnull, os.O_RDWR)  # the lowest free number, which is this one
             stream = os.fdopen(number, "r" if number == 0 else "w", closefd=False, encoding="utf-8")
             setattr(sys, name, stream)
-    for one in (sys.stdout, sys.stderr):
-        if isinstance(one, io.TextIOWrapper):
-            one.reconfigure(errors="backslashreplace")
+    for text_stream in (sys.stdout, sys.stderr):
+        if isinstance(text_stream, io.TextIOWrapper):
+            text_stream.reconfigure(errors="backslashreplace")
 
 
 def say(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:

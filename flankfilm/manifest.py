@@ -92,12 +92,12 @@ def _inside(folder: Path, name: str) -> bool:
 
 def _with_references(files: Iterable[Path]) -> list[Path]:
     """Files, and those that a ``.pvd`` among them names."""
-    found = list(files)
-    for path in [one for one in found if one.suffix == ".pvd"]:
-        found += [
+    paths = list(files)
+    for path in [file for file in paths if file.suffix == ".pvd"]:
+        paths += [
             path.parent / name for name in re.findall(r'file="([^"]+)"', path.read_text(encoding="utf-8"))
         ]
-    return found
+    return paths
 
 
 def _name(folder: Path, path: Path) -> str:

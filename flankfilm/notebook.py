@@ -47,30 +47,32 @@ def _figures(result: object) -> Iterator[tuple[str, str, str]]:
     known = quantities(result)
     first = [name for name in getattr(type(result), "headline", ()) if name in known]
     for name in dict.fromkeys((*first, *known)):
-        one = known[name]
-        if name in ("error", "converged", "message") or one.figure.dims or _empty(one.value):
+        quantity = known[name]
+        if name in ("error", "converged", "message") or quantity.figure.dims or _empty(quantity.value):
             continue
-        yield one.figure.meaning, _shown(one), _error(result, name, one)
+        yield quantity.figure.meaning, _shown(quantity), _error(result, name, quantity)
 
 
 def _empty(value: Any) -> bool:
     return not isinstance(value, str | bool | int | float | np.generic) or value == ""
 
 
-def _shown(one: Quantity) -> str:
-    if isinstance(one.value, str | bool | np.bool_):
-        return str(one.value)
-    unit = unit_text(one.figure.read_in, "")
-    return f"{number(float(one.figure.in_shown(one.value)), 5)} {unit}".strip()
+def _shown(quantity: Quantity) -> str:
+    if isinstance(quantity.value, str | bool | np.bool_):
+        return str(quantity.value)
+    unit = unit_text(quantity.figure.read_in, "")
+    return f"{number(float(quantity.figure.in_shown(quantity.value)), 5)} {unit}".strip()
 
 
-def _error(result: object, name: str, one: Quantity) -> str:
+def _error(result: object, name: str, quantity: Quantity) -> str:
     """Relative error of a figure: its own, or for a headline that of the whole; empty where it is not known."""
-    error = getattr(result, one.figure.error, None) if one.figure.error else None
+    error = getattr(result, quantity.figure.error, None) if quantity.figure.error else None
     error = error.get(name) if isinstance(error, Mapping) else error
-    if error is None and name in getattr(type(result), "headline", ()) and one.figure.unit:
+    if error is None and name in getattr(type(result), "headline", ()) and quantity.figure.unit:
         error = getattr(result, "error", None)
-    known = isinstance(error, float | np.floating) and np.isfinite(error) and not isinstance(one.value, int)
+    known = (
+        isinstance(error, float | np.floating) and np.isfinite(error) and not isinstance(quantity.value, int)
+    )
     return f"± {percent(float(error))}" if known and error is not None else ""
 
 
@@ -125,25 +127,28 @@ def results_html(results: Results) -> str:
     return f"<p><b>{title}</b></p>{failed}{table((), rows)}<p>{escape(size)}</p>{picture(results)}"
 
 
-def study_html(found: StudyResults) -> str:
+def study_html(study_results: StudyResults) -> str:
     """First rows of a study: varied keys, outputs, and why rows failed."""
-    plan = found.plan
+    plan = study_results.plan
     rows = []
-    for row in found.rows[:MOST_ROWS]:
+    for row in study_results.rows[:MOST_ROWS]:
         keys = (value if isinstance(value, str) else number(value) for value in plan.rows[row.index])
         outputs = (number(value) for value in row.values)
         rows.append((str(row.index), *keys, *outputs, row.fault))
     head = ("row", *plan.keys, *plan.outputs, "fault")
-    size = f"{len(found.rows)} rows, {len(found.failures)} failed, {found.computed} computed in {found.seconds:.1f} s"
-    return f"<p><b>{escape(plan.title or 'Study')}</b>: {escape(size)}</p>{table(head, rows)}{picture(found)}"
+    size = (
+        f"{len(study_results.rows)} rows, {len(study_results.failures)} failed, "
+        f"{study_results.computed} computed in {study_results.seconds:.1f} s"
+    )
+    return f"<p><b>{escape(plan.title or 'Study')}</b>: {escape(size)}</p>{table(head, rows)}{picture(study_results)}"
 
 
-def optimum_html(found: Optimum) -> str:
+def optimum_html(optimum: Optimum) -> str:
     """Best points of an optimisation, and what may be said of them."""
     from flankfilm.optimisation.words import claims
 
-    task = found.task
-    chosen = [found.evaluations[place] for place in found.best[:MOST_ROWS]]
+    task = optimum.task
+    chosen = [optimum.evaluations[place] for place in optimum.best[:MOST_ROWS]]
     rows = [
         (
             str(point.result.index),
@@ -152,7 +157,7 @@ def optimum_html(found: Optimum) -> str:
         )
         for point in chosen
     ]
-    said = "".join(f"<p>{escape(line)}</p>" for line in claims(found))
-    size = f"{found.points} points, {found.computed} computed in {found.seconds:.1f} s"
+    said = "".join(f"<p>{escape(line)}</p>" for line in claims(optimum))
+    size = f"{optimum.points} points, {optimum.computed} computed in {optimum.seconds:.1f} s"
     head = f"<p><b>{escape(task.asked.title or 'Optimisation')}</b>: {escape(size)}</p>"
-    return f"{head}{table(('row', *task.keys, *task.outputs), rows)}{said}{picture(found)}"
+    return f"{head}{table(('row', *task.keys, *task.outputs), rows)}{said}{picture(optimum)}"

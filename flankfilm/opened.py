@@ -57,9 +57,9 @@ def open_results(path: Path | str) -> xr.Dataset:
 def _file(path: Path) -> Path:
     """The file itself, or the first of those that a folder may hold."""
     if path.is_dir():
-        found = [path / name for name in NAMES if (path / name).is_file()]
-        if not found:
+        files = [path / name for name in NAMES if (path / name).is_file()]
+        if not files:
             raise InputError.at(path, "", f"holds none of {', '.join(NAMES)}", REMEDY)
-        return found[0]
+        return files[0]
     refuse_missing(path, REMEDY)
     return path

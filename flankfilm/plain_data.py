@@ -119,20 +119,20 @@ class _Writer:
         if isinstance(value, (np.ndarray, np.generic)):
             return self._array(value)
         if name in SEQUENCES and type(value) in (tuple, list, set, frozenset):
-            return [name, [self.node(one) for one in value]]  # type: ignore[attr-defined]
+            return [name, [self.node(entry) for entry in value]]  # type: ignore[attr-defined]
         if type(value) in (dict, MappingProxyType):
             assert isinstance(value, Mapping)
-            return [name, [[self.node(key), self.node(one)] for key, one in value.items()]]
+            return [name, [[self.node(key), self.node(entry)] for key, entry in value.items()]]
         cls = type(value)
         _check_class(cls, self.packages)
         # a record without fields has no state at all
-        state = {} if (found := value.__getstate__()) is None else found
+        state = {} if (pickle_state := value.__getstate__()) is None else pickle_state
         if not isinstance(state, dict):
             raise NotPlainDataError(f"{cls.__qualname__} has no fields to keep")
         values: dict[str, Any] = {}
-        for key, one in state.items():
+        for key, entry in state.items():
             try:
-                values[key] = self.node(one)
+                values[key] = self.node(entry)
             except NotPlainDataError:
                 # a fit of a library, say, found again when it is asked for
                 if not isinstance(getattr(cls, key, None), cached_property):
@@ -175,9 +175,9 @@ class _Reader:
         if kind in ("array", "scalar"):
             return self._array(kind, *rest)
         if kind in SEQUENCES:
-            return SEQUENCES[kind]([self.value(one) for one in rest[0]])
+            return SEQUENCES[kind]([self.value(entry) for entry in rest[0]])
         if kind in MAPPINGS:
-            return MAPPINGS[kind]({self.value(key): self.value(one) for key, one in rest[0]})
+            return MAPPINGS[kind]({self.value(key): self.value(entry) for key, entry in rest[0]})
         if kind != "record":
             raise NotPlainDataError(f"a {kind!r} is none of ours")
         module, name, state = rest
@@ -193,8 +193,8 @@ class _Reader:
         flat = np.frombuffer(self.arrays[start : start + count * form.itemsize], form, count).copy()
         array: np.ndarray[Any, Any] = flat.reshape(shape, order=order)
         if kind == "scalar":
-            found: np.generic = form.type(array[()])
-            return found
+            scalar: np.generic = form.type(array[()])
+            return scalar
         array.flags.writeable = writable
         return array
 
@@ -206,10 +206,10 @@ class _Reader:
         if missing := {field.name for field in fields(cls)} - set(state):
             raise NotPlainDataError(f"{name} lacks {', '.join(sorted(missing))}")
         made = object.__new__(cls)
-        for key, one in state.items():
+        for key, entry in state.items():
             if not hasattr(cls, key) and key not in cls.__dataclass_fields__:
                 raise NotPlainDataError(f"{name} has no {key}")
-            made.__dict__[key] = self.value(one)
+            made.__dict__[key] = self.value(entry)
         return made
 
 

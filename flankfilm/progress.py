@@ -88,8 +88,8 @@ def rows_of(
         before = now
         if now - max(began, said) < PATIENCE:
             return
-        said, left = now, (now - began) / max(done, 1) * (total - done)
-        progress(f"{title}: {done} of {total} {what}, {left:.0f} s left", done, total)
+        said, remaining = now, (now - began) / max(done, 1) * (total - done)
+        progress(f"{title}: {done} of {total} {what}, {remaining:.0f} s left", done, total)
 
     return show
 

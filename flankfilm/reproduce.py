@@ -80,7 +80,7 @@ def _differences(held: Mapping[str, str]) -> tuple[str, ...]:
     from flankfilm.output.files import provenance
 
     here = provenance("")
-    found = []
+    differences = []
     try:
         theirs: dict[str, Any] = json.loads(held.get("versions_json", "{}"))
         own: dict[str, Any] = json.loads(here["versions_json"])
@@ -90,7 +90,7 @@ def _differences(held: Mapping[str, str]) -> tuple[str, ...]:
         theirs = {}
     changed = [f"{n} {theirs.get(n, '?')}, here {v}" for n, v in own.items() if theirs.get(n) != v]
     if changed:
-        found.append(f"made with {'; '.join(changed)}")
+        differences.append(f"made with {'; '.join(changed)}")
     if held.get("code_sha256") != here["code_sha256"]:
-        found.append("made by other source code of flankfilm: numbers may differ")
-    return tuple(found)
+        differences.append("made by other source code of flankfilm: numbers may differ")
+    return tuple(differences)

@@ -58,23 +58,25 @@ def run_scene(
         return _computed(scene, use_cache, progress)[0]
     claim(folder, "results.nc", files=("results.nc", "report.html", MANIFEST), folders=("csv", "vtk"))
     with locked(folder):
-        found, engine = _computed(scene, use_cache, progress)
+        results, engine = _computed(scene, use_cache, progress)
         progress("netCDF and CSV files", 1, 1)
-        files = engine.timed("data files", "netCDF and CSV files", lambda: write_data(folder, found.dataset))
+        files = engine.timed(
+            "data files", "netCDF and CSV files", lambda: write_data(folder, results.dataset)
+        )
         if "vtk" in scene.wants:
             files += _fields(folder, engine, progress)
-        if len(engine.failures) > len(found.failures):
-            found = replace(found, failures=tuple(engine.failures.values()))
-            found = replace(found, dataset=found.dataset.assign_attrs(not_computed(found.failures)))
-            write_data(folder, found.dataset)
-        found = replace(found, folder=folder, files=tuple(files), seconds=time.perf_counter() - start)
+        if len(engine.failures) > len(results.failures):
+            results = replace(results, failures=tuple(engine.failures.values()))
+            results = replace(results, dataset=results.dataset.assign_attrs(not_computed(results.failures)))
+            write_data(folder, results.dataset)
+        results = replace(results, folder=folder, files=tuple(files), seconds=time.perf_counter() - start)
         if "report" in scene.wants:
             from flankfilm.report.contents import write_report
 
             progress("writing the report", 1, 1)
-            files.append(write_report(found, folder))
+            files.append(write_report(results, folder))
         others = conclude(folder, files)
-    return replace(found, files=tuple(files), others=others, seconds=time.perf_counter() - start)
+    return replace(results, files=tuple(files), others=others, seconds=time.perf_counter() - start)
 
 
 def _fields(folder: Path, engine: Engine, progress: Progress) -> list[Path]:

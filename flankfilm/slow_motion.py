@@ -138,8 +138,8 @@ def _bounds(
     scene: Scene, section: DynamicsSection, pair: gears.GearPair | None, in_rpm: bool
 ) -> tuple[float, float]:
     """Starts of a range below which surely no motion is followed, and from which one surely is."""
-    given = scene.stiffness.amplitudes
-    sums = (0.0, MOST_HARMONICS) if given is None else (math.fsum(map(abs, given)),) * 2
+    amplitudes = scene.stiffness.amplitudes
+    sums = (0.0, MOST_HARMONICS) if amplitudes is None else (math.fsum(map(abs, amplitudes)),) * 2
     surely, safely = (least_frequency(section.known_damping, total) for total in sums)
     if not in_rpm or pair is None:
         return surely, safely
@@ -162,5 +162,5 @@ def _stiffness(scene: Scene, pair: gears.GearPair) -> tuple[float, float]:
         warnings.simplefilter("ignore")  # of the form's range, which the bounds allow for
         mean = 1e9 * pair.face_width * closed_form.iso6336(pair).c_gamma
     held = supports(scene) or ()
-    shafts = sum(one.compliance(radius) for one, radius in zip(held, pair.base_radii, strict=False))
+    shafts = sum(support.compliance(radius) for support, radius in zip(held, pair.base_radii, strict=False))
     return 1.0 / (1.0 / (SOFTEST * mean) + shafts), STIFFEST * mean

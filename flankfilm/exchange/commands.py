@@ -240,17 +240,17 @@ def export_traction(
     from flankfilm.scene import read_scene
 
     try:
-        places = [float(one) for one in ratios.split(",")]
+        places = [float(ratio) for ratio in ratios.split(",")]
     except ValueError:
         raise InputError.at(
             "--ratios", ratios, "must be numbers with commas between", "Such as 0,0.01,0.1"
         ) from None
-    given = (
+    conditions = (
         None if pressure_gpa is None else 1e9 * pressure_gpa,
         speed_m_per_s,
         None if temperature_C is None else temperature_C + 273.15,
     )
-    curve = traction_of(read_scene(scene), places, *given, tolerance=tolerance)
+    curve = traction_of(read_scene(scene), places, *conditions, tolerance=tolerance)
     target = out if out is not None else Path(f"{scene.stem}-traction.csv")
     write_traction(target, curve)
     print(f"{target} is written: {printable(repr(curve))}")

@@ -12,13 +12,13 @@ from flankfilm.scene.error_curve import POINTS
 __all__ = ["read_error"]
 
 
-def read_error(path: Path, where: str) -> dict[str, list[float]]:
+def read_error(path: Path, key: str) -> dict[str, list[float]]:
     """Read position [base pitches from A] and error [um] as the keys of a scene have them.
 
     Parameters
     ----------
     path : Path
-    where : str
+    key : str
         Key that names the file, for faults.
 
     Raises
@@ -26,23 +26,23 @@ def read_error(path: Path, where: str) -> dict[str, list[float]]:
     InputError
         For a file that cannot be read, other columns, or a row without two numbers.
     """
-    head, *rows = table_rows(path, where)
+    head, *rows = table_rows(path, key)
     names = [cell.strip().lower() for cell in head.cells]
     if sorted(names) != sorted(POINTS):
-        allowed, given = (
+        allowed, columns = (
             f"must have the columns {' and '.join(POINTS)}",
             f"{path.name}: {shorten(', '.join(names))}",
         )
         raise InputError.at(
-            where, given, allowed, "name each column so in the first row, and leave out others"
+            key, columns, allowed, "name each column so in the first row, and leave out others"
         )
-    found: dict[str, list[float]] = {name: [] for name in POINTS}
+    points: dict[str, list[float]] = {name: [] for name in POINTS}
     for row in rows:
         numbers = [row.number(place) for place in range(len(names))]
         if not all(map(math.isfinite, numbers)):
             raise InputError.at(
-                where, f"{path.name}, line {row.line}", "must hold two numbers", "leave the row out"
+                key, f"{path.name}, line {row.line}", "must hold two numbers", "leave the row out"
             )
         for name, number in zip(names, numbers, strict=True):
-            found[name].append(number)
-    return found
+            points[name].append(number)
+    return points

@@ -21,13 +21,13 @@ __all__ = ["read_map"]
 ALONG = "z_mm"
 
 
-def read_map(path: Path, where: str) -> dict[str, Any]:
+def read_map(path: Path, key: str) -> dict[str, Any]:
     """Read a map as the keys of a scene have it.
 
     Parameters
     ----------
     path : Path
-    where : str
+    key : str
         Key that names the file, for faults.
 
     Returns
@@ -40,17 +40,17 @@ def read_map(path: Path, where: str) -> dict[str, Any]:
     InputError
         With every fault of the file.
     """
-    rows = table_rows(path, where)
+    rows = table_rows(path, key)
     head = [cell.strip().lower() for cell in rows[0].cells]
     by = [column for column in head if column in POSITIONS]
     value = [column for column in head if column in VALUES["material_um"]]
     if len(by) != 1 or len(value) != 1 or head.count(ALONG) != 1 or len(head) != 3:
         allowed = f"must have the columns {ALONG}, {' or '.join(POSITIONS)}, and material_um"
         remedy = "name each column so in the first row, and leave out others"
-        raise InputError.at(where, f"{path.name}: {shorten(', '.join(head))}", allowed, remedy)
+        raise InputError.at(key, f"{path.name}: {shorten(', '.join(head))}", allowed, remedy)
     columns = [head.index(name) for name in (ALONG, by[0], value[0])]
-    with Faults() as found:
-        heights = _heights(found, where, path.name, rows[1:], columns)
+    with Faults() as faults:
+        heights = _heights(faults, key, path.name, rows[1:], columns)
         along, over = (sorted({place[k] for place in heights}) for k in (0, 1))
         # every combination is a place of the map, so that none is listed: scattered points have millions of them
         lacking = len(along) * len(over) - len(heights)
@@ -60,12 +60,12 @@ def read_map(path: Path, where: str) -> dict[str, Any]:
                 z, at = next((z, at) for z in along for at in over if (z, at) not in heights)
                 value_ = f"no value at {ALONG} = {z:g}, {by[0]} = {at:g}, and {lacking - 1} more"
             allowed = f"must have every {ALONG} with every {by[0]}, at least 2 of each"
-            found.add(where, f"{path.name}: {value_}", allowed, "Give a full grid")
+            faults.add(key, f"{path.name}: {value_}", allowed, "Give a full grid")
     return {ALONG: along, by[0]: over, "material_um": [[heights[z, at] for z in along] for at in over]}
 
 
 def _heights(
-    found: Faults, where: str, name: str, rows: Sequence[TableRow], columns: Sequence[int]
+    faults: Faults, key: str, name: str, rows: Sequence[TableRow], columns: Sequence[int]
 ) -> dict[tuple[float, float], float]:
     """Material at place along the face and position; rows without a number, and doubles, are noted."""
     heights: dict[tuple[float, float], float] = {}
@@ -84,5 +84,5 @@ def _heights(
     ):
         if lines:
             more = f" and {len(lines) - 1} more" if len(lines) > 1 else ""
-            found.add(where, f"{name}: line {lines[0]}{more}", allowed, remedy)
+            faults.add(key, f"{name}: line {lines[0]}{more}", allowed, remedy)
     return heights

@@ -58,7 +58,9 @@ def write_table(path: Path, table: MeshTable) -> None:
         write_csv(path, columns(of_record("mesh", table), "mesh", (*CURVES, *CONSTANTS)))
         return
     content = BytesIO()
-    arrays: dict[str, Any] = {name: np.asarray(one.value) for name, one in quantities(table).items()}
+    arrays: dict[str, Any] = {
+        name: np.asarray(quantity.value) for name, quantity in quantities(table).items()
+    }
     np.savez(content, **arrays)
     write_bytes(path, content.getvalue())
 

@@ -64,16 +64,16 @@ def unpacked(content: bytes, name: str) -> tuple[bytes, str]:
         with zipfile.ZipFile(BytesIO(content)) as archive:
             entry = _model_in(archive, name)
             with archive.open(entry) as packed:
-                found = packed.read(LARGEST_FILE + 1)
+                model_bytes = packed.read(LARGEST_FILE + 1)
     except DAMAGED as fault:
         if isinstance(fault, InputError):
             raise
         allowed = f"must be a ZIP archive: {shorten(str(fault))}"
         raise InputError.at(name, "", allowed, "Export the model again as REXS") from fault
-    if len(found) > LARGEST_FILE:
+    if len(model_bytes) > LARGEST_FILE:
         allowed = f"unpacks to more than {LARGEST_FILE:,} bytes"
         raise InputError.at(name, "", allowed, "Export the stage alone, without results")
-    return found, f"{name}: {shorten(entry.filename)}"
+    return model_bytes, f"{name}: {shorten(entry.filename)}"
 
 
 def _model_in(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
@@ -81,12 +81,12 @@ def _model_in(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
     entries = archive.infolist()
     if len(entries) > MOST_ENTRIES:
         raise InputError.at(name, f"{len(entries):,} files", f"must hold at most {MOST_ENTRIES:,}")
-    found = [one for one in entries if _is_model(one.filename)]
-    if len(found) != 1:
+    models = [member for member in entries if _is_model(member.filename)]
+    if len(models) != 1:
         allowed = f"must hold one REXS model, a file that ends in {' or '.join(ENDINGS)}"
-        listed = ", ".join(shorten(one.filename) for one in found[:3]) or "none"
+        listed = ", ".join(shorten(member.filename) for member in models[:3]) or "none"
         raise InputError.at(name, listed, allowed, "Unpack it and name the model")
-    entry = found[0]
+    entry = models[0]
     if entry.flag_bits & 1 or entry.compress_type not in METHODS:
         allowed = "must be packed without password, stored or deflated"
         raise InputError.at(name, shorten(entry.filename), allowed, "Unpack it and name the model")

@@ -30,31 +30,34 @@ def model_of_json(content: bytes, name: str) -> Model:
     """
     try:
         text = content.decode("utf-8-sig")
-        found = json.loads(text, parse_int=str, parse_float=str, parse_constant=str)
+        document = json.loads(text, parse_int=str, parse_float=str, parse_constant=str)
     except RecursionError as fault:
         raise InputError.at(name, "", "is nested too deeply", "Export the model again as REXS") from fault
     except ValueError as fault:
         allowed = f"must be JSON in UTF-8: {shorten(str(fault))}"
         raise InputError.at(name, "", allowed, "Export the model again as REXS") from fault
-    model = found.get("model") if isinstance(found, dict) else None
+    model = document.get("model") if isinstance(document, dict) else None
     if not isinstance(model, dict):
         allowed = "is JSON but no REXS model (it has no object named model)"
         raise InputError.at(name, "", allowed, "Export it as REXS, versions 1.0 to 2.0")
     head = {key: value for key, value in model.items() if isinstance(value, str)}
     relations = (
-        Relation(_text(one, "type"), {_text(ref, "role"): _text(ref, "id") for ref in _objects(one, "refs")})
-        for one in _objects(model, "relations")
+        Relation(
+            _text(relation, "type"),
+            {_text(ref, "role"): _text(ref, "id") for ref in _objects(relation, "refs")},
+        )
+        for relation in _objects(model, "relations")
     )
     return assembled(name, head, map(_component, _objects(model, "components")), relations)
 
 
-def _component(found: dict[str, Any]) -> Component:
+def _component(node: dict[str, Any]) -> Component:
     attributes = {
-        _text(one, "id"): (value[:LONGEST_VALUE], _text(one, "unit").strip())
-        for one in _objects(found, "attributes")
-        if (value := _scalar(one)) is not None
+        _text(attribute, "id"): (value[:LONGEST_VALUE], _text(attribute, "unit").strip())
+        for attribute in _objects(node, "attributes")
+        if (value := _scalar(attribute)) is not None
     }
-    return Component(_text(found, "id"), _text(found, "type"), _text(found, "name"), attributes)
+    return Component(_text(node, "id"), _text(node, "type"), _text(node, "name"), attributes)
 
 
 def _scalar(attribute: dict[str, Any]) -> str | None:
@@ -69,14 +72,14 @@ def _scalar(attribute: dict[str, Any]) -> str | None:
     return None
 
 
-def _objects(found: dict[str, Any], name: str) -> Iterator[dict[str, Any]]:
+def _objects(node: dict[str, Any], name: str) -> Iterator[dict[str, Any]]:
     """Objects in a list that an object has; none where it has no such list."""
-    listed = found.get(name)
-    return (one for one in (listed if isinstance(listed, list) else ()) if isinstance(one, dict))
+    listed = node.get(name)
+    return (entry for entry in (listed if isinstance(listed, list) else ()) if isinstance(entry, dict))
 
 
-def _text(found: dict[str, Any], name: str) -> str:
-    value = found.get(name)
+def _text(node: dict[str, Any], name: str) -> str:
+    value = node.get(name)
     return value if isinstance(value, str) else ""
 
 
@@ -93,7 +96,8 @@ def json_text(model: ET.Element) -> str:
         for relation in model.iterfind("relations/relation")
     ]
     components = [
-        _numbered(component) | {"attributes": [_attribute(one) for one in component if not len(one)]}
+        _numbered(component)
+        | {"attributes": [_attribute(attribute) for attribute in component if not len(attribute)]}
         for component in model.iterfind("components/component")
     ]
     parts = {**model.attrib, "relations": relations, "components": components}

@@ -72,8 +72,8 @@ class Model:
 
     def others(self, kind: str, role: str, component: str, *roles: str) -> list[Component]:
         """Components in other roles of the relations in which the component has one; each once, in their order."""
-        found = self.related(kind, role, component)
-        ids = dict.fromkeys(relation.roles.get(other, "") for relation in found for other in roles)
+        relations = self.related(kind, role, component)
+        ids = dict.fromkeys(relation.roles.get(other, "") for relation in relations for other in roles)
         return [self.components[i] for i in ids if i in self.components]
 
 
@@ -97,11 +97,11 @@ def assembled(
     if not version.startswith(VERSIONS):
         allowed = "is not a REXS version that is known here"
         raise InputError.at(f"{name}: version", shorten(version), allowed, "Versions 1.0 to 2.0")
-    found: dict[str, Component] = {}
-    for one in components:
-        if one.id in found:
-            value = f"component id {shorten(one.id)}"
+    by_id: dict[str, Component] = {}
+    for component in components:
+        if component.id in by_id:
+            value = f"component id {shorten(component.id)}"
             raise InputError.at(name, value, "stands twice; ids must differ", "Export it again")
-        found[one.id] = one
+        by_id[component.id] = component
     made_by = f"{head.get('applicationId', '')} {head.get('applicationVersion', '')}".strip()
-    return Model(version, made_by, found, tuple(relations))
+    return Model(version, made_by, by_id, tuple(relations))

@@ -34,12 +34,12 @@ MODIFICATIONS = re.compile(
 
 def stages(model: Model) -> dict[str, Relation]:
     """Stages of cylindrical gears by component id."""
-    found = {}
+    relations = {}
     for relation in model.relations:
         stage = model.components.get(relation.roles.get("stage", ""))
         if relation.type == "stage" and stage is not None and stage.type == "cylindrical_stage":
-            found[stage.id] = relation
-    return found
+            relations[stage.id] = relation
+    return relations
 
 
 def draft_of(model: Model, source: str, stage: str | None = None) -> Draft:
@@ -67,22 +67,22 @@ def draft_of(model: Model, source: str, stage: str | None = None) -> Draft:
 
 
 def _chosen(model: Model, source: str, stage: str | None) -> Relation:
-    found = stages(model)
+    relations = stages(model)
     listed = "; ".join(
-        f"--stage {key[:60]}: {shorten(model.components[key].name)}" for key in list(found)[:MOST_STAGES]
+        f"--stage {key[:60]}: {shorten(model.components[key].name)}" for key in list(relations)[:MOST_STAGES]
     )
-    if len(found) > MOST_STAGES:
-        listed += f"; and {len(found) - MOST_STAGES} more"
-    if not found:
+    if len(relations) > MOST_STAGES:
+        listed += f"; and {len(relations) - MOST_STAGES} more"
+    if not relations:
         kinds = sorted({c.type for c in model.components.values() if c.type.endswith("stage")})
         shown = ", ".join(kind[:60] for kind in kinds[:MOST_STAGES])
         allowed = "holds no stage of cylindrical gears" + (f", but {shown}" if kinds else "")
         raise InputError.at(source, "", allowed, "Pairs of external spur gears are read alone")
-    if stage is None and len(found) > 1:
-        raise InputError.at(source, f"{len(found)} stages", "choose one", listed)
-    if stage is not None and stage not in found:
+    if stage is None and len(relations) > 1:
+        raise InputError.at(source, f"{len(relations)} stages", "choose one", listed)
+    if stage is not None and stage not in relations:
         raise InputError.at("--stage", shorten(stage), f"is no stage of {source}", listed)
-    return found[stage] if stage is not None else next(iter(found.values()))
+    return relations[stage] if stage is not None else next(iter(relations.values()))
 
 
 @dataclass
@@ -151,8 +151,8 @@ class _StageReader:
     def _refuse(
         self, component: Component, attribute: Attribute, value: str, allowed: str, remedy: str = ""
     ) -> None:
-        where = f"{self.source}: {component}: {attribute.name}"
-        self.faults.add(where, shorten(value), allowed, remedy)
+        place = f"{self.source}: {component}: {attribute.name}"
+        self.faults.add(place, shorten(value), allowed, remedy)
 
     def _gears(self, stage: Component) -> tuple[Component, Component] | None:
         """Driving gear and driven gear; gear 1 drives where the file does not say."""
@@ -220,9 +220,9 @@ class _StageReader:
                     "machining allowance or tooth thickness is not taken over."
                 )
         for allowance in rexs.ALLOWANCES:
-            if left := [v for v in self._numbers(flanks, allowance).values() if v]:
+            if nonzero := [v for v in self._numbers(flanks, allowance).values() if v]:
                 self.notes.append(
-                    f"{gear}: {allowance.name} {left[0]:g} mm is not taken over: the tooth is as finished."
+                    f"{gear}: {allowance.name} {nonzero[0]:g} mm is not taken over: the tooth is as finished."
                 )
         return {
             "teeth": OPEN if teeth is None else int(teeth) if teeth.is_integer() else teeth,
@@ -238,13 +238,15 @@ class _StageReader:
         if self._tool(gear, flanks, silent=True) is None:
             return None
         settings = [
-            found
+            setting
             for flank in flanks
-            for found in self.model.others(
+            for setting in self.model.others(
                 "manufacturing_step", "workpiece", flank.id, "manufacturing_settings"
             )
         ]
-        cut = self._common(rexs.GENERATED_SHIFT, list({one.id: one for one in settings}.values()))
+        cut = self._common(
+            rexs.GENERATED_SHIFT, list({component.id: component for component in settings}.values())
+        )
         return None if math.isnan(cut) or abs(cut - shift) <= SAME else cut
 
     def _rack(
@@ -254,8 +256,8 @@ class _StageReader:
         module: float,
         alpha: float,
     ) -> dict[str, float]:
-        every = [f for pair in flanks for f in pair]
-        addendum = _or_default(self._common(rexs.RACK_ADDENDUM, every))
+        all_flanks = [f for pair in flanks for f in pair]
+        addendum = _or_default(self._common(rexs.RACK_ADDENDUM, all_flanks))
         rack = {
             "h_aP": 1.0 if addendum is None else addendum,  # with a tip diameter only h_aP + k counts
             "h_fP": OPEN,
@@ -289,12 +291,12 @@ class _StageReader:
 
     def _tool(self, gear: Component, flanks: list[Component], silent: bool = False) -> Component | None:
         """The rack-shaped tool that cut a gear, where it is the only tool."""
-        found = [
+        candidates = [
             t for f in flanks for t in self.model.others("manufacturing_step", "workpiece", f.id, "tool")
         ]
         for kind in ("ordered_reference", "reference"):
-            found += self.model.others(kind, "origin", gear.id, "referenced")
-        tools = list({tool.id: tool for tool in found if tool.type.endswith("_tool")}.values())
+            candidates += self.model.others(kind, "origin", gear.id, "referenced")
+        tools = list({tool.id: tool for tool in candidates if tool.type.endswith("_tool")}.values())
         if len(tools) == 1 and tools[0].type == "rack_shaped_tool":
             return tools[0]
         if tools and not silent:
@@ -315,7 +317,7 @@ class _StageReader:
 
     def _material(self, gears: tuple[Component, Component]) -> dict[str, Any]:
         """Keys of the scene's section: one material, or one each; none where the file does not give both."""
-        found = []
+        materials = []
         for gear in gears:
             named = self.model.others("reference", "origin", gear.id, "referenced")
             material = next((c for c in named if c.type == "material"), None)
@@ -323,10 +325,10 @@ class _StageReader:
                 continue
             own = {key: self._number(material, attribute) for key, attribute in rexs.MATERIAL.items()}
             if own["youngs_modulus_GPa"] is not None and own["poisson_ratio"] is not None:
-                found.append(own)
-        if len(found) < 2:
+                materials.append(own)
+        if len(materials) < 2:
             return {}
-        return found[0] if found[0] == found[1] else dict(zip(GEARS, found, strict=True))
+        return materials[0] if materials[0] == materials[1] else dict(zip(GEARS, materials, strict=True))
 
     def _modifications(self, gears: tuple[Component, Component], flanks: list[list[Component]]) -> None:
         own = {c.id for c in gears} | {f.id for pair in flanks for f in pair}

@@ -26,16 +26,21 @@ def model_of_xml(content: bytes, name: str) -> Model:
         allowed = "is XML but no REXS model (its outermost element is not model)"
         raise InputError.at(name, "", allowed, "Export it as REXS, versions 1.0 to 2.0")
     relations = (
-        Relation(found.get("type", ""), {r.get("role", ""): r.get("id", "") for r in found.iterfind("ref")})
-        for found in root.iterfind("relations/relation")
+        Relation(
+            relation.get("type", ""), {r.get("role", ""): r.get("id", "") for r in relation.iterfind("ref")}
+        )
+        for relation in root.iterfind("relations/relation")
     )
     return assembled(name, root.attrib, map(_component, root.iterfind("components/component")), relations)
 
 
 def _component(element: ET.Element) -> Component:
     attributes = {
-        found.get("id", ""): ((found.text or "").strip()[:LONGEST_VALUE], found.get("unit", "").strip())
-        for found in element.iterfind("attribute[@id]")
+        attribute.get("id", ""): (
+            (attribute.text or "").strip()[:LONGEST_VALUE],
+            attribute.get("unit", "").strip(),
+        )
+        for attribute in element.iterfind("attribute[@id]")
     }
     return Component(element.get("id", ""), element.get("type", ""), element.get("name", ""), attributes)
 

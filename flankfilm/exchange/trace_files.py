@@ -66,7 +66,7 @@ class _Points:
 
 
 def read_curves(
-    path: Path, name: str, where: str, positions: Sequence[str] = tuple(POSITIONS)
+    path: Path, name: str, key: str, positions: Sequence[str] = tuple(POSITIONS)
 ) -> Curve | list[Curve]:
     """Read curves as the keys of a scene have them.
 
@@ -75,7 +75,7 @@ def read_curves(
     path : Path
     name : {"material_um", "depth_um"}
         Which values.
-    where : str
+    key : str
         Key that names the file, for faults.
     positions : sequence of str
         Columns by one of which points are placed.
@@ -90,7 +90,7 @@ def read_curves(
     InputError
         With every fault of the file.
     """
-    rows = table_rows(path, where)
+    rows = table_rows(path, key)
     head = [cell.strip().lower() for cell in rows[0].cells]
     by = [column for column in head if column in positions]
     value = [column for column in head if column in VALUES[name]]
@@ -100,26 +100,26 @@ def read_curves(
     if len(by) != 1 or not one_kind or known != len(head) or head.count("tooth") > 1:
         allowed = f"must have the columns {' or '.join(positions)}, and {name}, tooth and {name}, or numbers of teeth"
         remedy = "name each column so in the first row, and leave out others"
-        raise InputError.at(where, f"{path.name}: {shorten(', '.join(head))}", allowed, remedy)
+        raise InputError.at(key, f"{path.name}: {shorten(', '.join(head))}", allowed, remedy)
     place = head.index(by[0])
-    with Faults() as found:
+    with Faults() as faults:
         if "tooth" in head:
             teeth = _one_below_the_other(rows[1:], head.index("tooth"), place, head.index(value[0]))
         else:
             teeth = _side_by_side(rows[1:], place, each or {0: head.index(value[0])})
-        _check(found, where, path.name, teeth)
+        _check(faults, key, path.name, teeth)
     curves = [dict(zip((by[0], name), teeth[number].rising(), strict=True)) for number in sorted(teeth)]
     return curves if each or "tooth" in head else curves[0]
 
 
-def mean_of(curves: Sequence[Curve], position: str, name: str, where: str) -> Curve:
+def mean_of(curves: Sequence[Curve], position: str, name: str, key: str) -> Curve:
     """Mean of the curves of teeth at common positions."""
     first = curves[0][position]
     apart = next((k for k, curve in enumerate(curves) if curve[position] != first), None)
     if apart is not None:
         allowed = f"must have the same {position} for every tooth, of which the mean is taken"
         raise InputError.at(
-            where, f"curve {apart + 1} of {len(curves)}", allowed, "give a column for each tooth"
+            key, f"curve {apart + 1} of {len(curves)}", allowed, "give a column for each tooth"
         )
     values = [sum(heights) / len(curves) for heights in zip(*(curve[name] for curve in curves), strict=True)]
     return {position: first, name: values}
@@ -139,7 +139,7 @@ class TableRow(NamedTuple):
             return math.nan
 
 
-def table_rows(path: Path, where: str) -> list[TableRow]:
+def table_rows(path: Path, key: str) -> list[TableRow]:
     """Rows of a file that are no remarks, at least one."""
     try:
         text = content_of(path, LARGEST, "name a CSV file beside the scene", "leave out points").decode(
@@ -151,13 +151,13 @@ def table_rows(path: Path, where: str) -> list[TableRow]:
         cells = csv.reader(
             [line if mark == "," else line.replace(",", ".") for _, line in lines], delimiter=mark
         )
-        rows = [TableRow(number, one) for (number, _), one in zip(lines, cells, strict=True)]
+        rows = [TableRow(number, row_cells) for (number, _), row_cells in zip(lines, cells, strict=True)]
     except InputError as error:
-        raise InputError(replace(fault, where=where, value=fault.where) for fault in error.faults) from error
+        raise InputError(replace(fault, where=key, value=fault.where) for fault in error.faults) from error
     except (UnicodeDecodeError, csv.Error, ValueError) as fault:
-        raise InputError.at(where, path.name, "must be a CSV file in UTF-8", "Export it as such") from fault
+        raise InputError.at(key, path.name, "must be a CSV file in UTF-8", "Export it as such") from fault
     if not rows:
-        raise InputError.at(where, path.name, "is empty", "Give the name of each column, and rows of numbers")
+        raise InputError.at(key, path.name, "is empty", "Give the name of each column, and rows of numbers")
     return rows
 
 
@@ -181,30 +181,30 @@ def _one_below_the_other(rows: Sequence[TableRow], tooth: int, place: int, value
     return teeth
 
 
-def _check(found: Faults, where: str, name: str, teeth: Mapping[int, _Points]) -> None:
+def _check(faults: Faults, key: str, name: str, teeth: Mapping[int, _Points]) -> None:
     """Note rows without a tooth, teeth that lack, and points without a value."""
     if -1 in teeth:
         remedy = "number teeth from 0 or from 1"
-        found.add(
-            where, f"{name}: a row without a tooth", "must have a whole number in the column tooth", remedy
+        faults.add(
+            key, f"{name}: a row without a tooth", "must have a whole number in the column tooth", remedy
         )
     numbers = sorted(number for number in teeth if number >= 0)
     start = 0 if numbers[:1] == [0] else 1
     lacking = sorted(set(range(start, max(numbers, default=0))) - set(numbers))
     if lacking:
         value = f"{name}: no tooth {_listed(lacking)}"
-        found.add(where, value, "must have every tooth, numbered from 0 or from 1", "Add the teeth that lack")
+        faults.add(key, value, "must have every tooth, numbered from 0 or from 1", "Add the teeth that lack")
     gaps = [number for number in numbers if teeth[number].gaps]
     for number in gaps[:MOST_NAMED]:
         lines = teeth[number].gaps
         more = f" and {len(lines) - 1} more" if len(lines) > 1 else ""
         value = f"{name}, tooth {number}: line {lines[0]}{more}"
         remedy = "measure the gap again, or leave out the rows of this tooth that have no value"
-        found.add(where, value, "must have a number for each position and value", remedy)
+        faults.add(key, value, "must have a number for each position and value", remedy)
     if len(gaps) > MOST_NAMED:
-        found.add(where, f"{name}: {len(gaps) - MOST_NAMED} more teeth", "have gaps too", "Fix these first")
+        faults.add(key, f"{name}: {len(gaps) - MOST_NAMED} more teeth", "have gaps too", "Fix these first")
     if not any(points.places or points.gaps for points in teeth.values()):
-        found.add(where, name, "must have points", "Give rows of numbers")
+        faults.add(key, name, "must have points", "Give rows of numbers")
 
 
 def _listed(numbers: Sequence[int]) -> str:

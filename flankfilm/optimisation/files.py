@@ -19,62 +19,62 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def summary(found: Optimum) -> list[str]:
+def summary(optimum: Optimum) -> list[str]:
     """Lines for the terminal."""
-    task = found.task
-    coarse_at, fine_at = (f"{100 * one:g} %" for one in task.tolerances)
+    task = optimum.task
+    coarse_at, fine_at = (f"{100 * tolerance:g} %" for tolerance in task.tolerances)
     lines = [
-        f"{found.points} of at most {task.asked.evaluations} points, {found.computed} of them computed in "
-        f"{found.seconds:.1f} s, at tolerances of {coarse_at} and then {fine_at}"
+        f"{optimum.points} of at most {task.asked.evaluations} points, {optimum.computed} of them computed in "
+        f"{optimum.seconds:.1f} s, at tolerances of {coarse_at} and then {fine_at}"
     ]
-    if (both := phases(found)) is not None:
-        coarse, fine, saved = both
+    if (phase_costs := phases(optimum)) is not None:
+        coarse, fine, saved = phase_costs
         lines.append(
             f"a point took {coarse:.3g} s at the first tolerance and {fine:.3g} s at the second: "
             f"{100 * abs(saved):.0f} % {'less' if saved >= 0 else 'more'} in all than with every point at the second"
         )
-    if len(found.best) > 1:
-        lines.append(f"{len(found.best)} points on the front, from the minimum {task.objectives[0]}:")
-    for place in found.best[:10]:
-        point = found.evaluations[place]
+    if len(optimum.best) > 1:
+        lines.append(f"{len(optimum.best)} points on the front, from the minimum {task.objectives[0]}:")
+    for place in optimum.best[:10]:
+        point = optimum.evaluations[place]
         keys = ", ".join(f"{k} = {v:.6g}" for k, v in zip(task.keys, point.values, strict=True))
         outputs = ", ".join(f"{n} = {v:.5g}" for n, v in zip(task.outputs, point.result.values, strict=True))
         lines.append(f"{keys}: {outputs}")
-    if len(found.best) > 10:
-        lines.append(f"{len(found.best) - 10} more in optimum.csv")
-    return [*lines, *claims(found)]
+    if len(optimum.best) > 10:
+        lines.append(f"{len(optimum.best) - 10} more in optimum.csv")
+    return [*lines, *claims(optimum)]
 
 
-def phases(found: Optimum) -> tuple[float, float, float] | None:
+def phases(optimum: Optimum) -> tuple[float, float, float] | None:
     """Mean cost of a point in either phase [s], and the part that the first one saved; None without both.
 
     Points that failed are left out: what ends early says nothing of tolerances.
     """
-    done = [(e.tolerance, e.result.seconds) for e in found.evaluations if not e.result.fault]
-    coarse, fine = (np.array([s for t, s in done if t == phase]) for phase in found.task.tolerances)
+    done = [(e.tolerance, e.result.seconds) for e in optimum.evaluations if not e.result.fault]
+    coarse, fine = (np.array([s for t, s in done if t == phase]) for phase in optimum.task.tolerances)
     if not coarse.size or not fine.size:
         return None
     whole = fine.mean() * (coarse.size + fine.size)
     return float(coarse.mean()), float(fine.mean()), float(1.0 - (coarse.sum() + fine.sum()) / whole)
 
 
-def dataset(found: Optimum) -> xr.Dataset:
+def dataset(optimum: Optimum) -> xr.Dataset:
     """Give every point of an optimisation along ``point``: keys as coordinates, outputs, and what may be claimed.
 
     The scene as it stands is held as ``start_`` with the names of keys and outputs.
     """
-    task, points = found.task, found.evaluations
+    task, points = optimum.task, optimum.evaluations
     fine = [point.tolerance == task.tolerances[1] for point in points]
     places = np.arange(len(points))
-    scene = json.dumps(task.raw_scene(points[found.best[0]].values, task.tolerances[1]))
+    scene = json.dumps(task.raw_scene(points[optimum.best[0]].values, task.tolerances[1]))
     attributes = {
         "title": task.asked.title,
         "objectives_json": json.dumps(task.objectives),
         "signs_json": json.dumps(task.signs),
         "limits_json": json.dumps(task.limits),
         "vary_json": json.dumps({key: [span.from_, span.to] for key, span in task.asked.vary.items()}),
-        "converged": int(found.converged),
-        "message": found.message,
+        "converged": int(optimum.converged),
+        "message": optimum.message,
         **provenance(scene),
     }
     values, results = [point.values for point in points], [point.result for point in points]
@@ -83,13 +83,13 @@ def dataset(found: Optimum) -> xr.Dataset:
         if (error := ERROR_OF.get(name)) is not None:
             data[name].attrs["error_variable"] = error
         else:
-            data[name].attrs["error"] = found.error_of(name, results[found.best[0]])
+            data[name].attrs["error"] = optimum.error_of(name, results[optimum.best[0]])
     flags = {
-        "best": (np.isin(places, found.best), "1 for the optimum, or for the front"),
+        "best": (np.isin(places, optimum.best), "1 for the optimum, or for the front"),
         "fine": (fine, "1 at the scene's own tolerance"),
-        "allowed": (found.allowed, "1 where the limits are kept"),
+        "allowed": (optimum.allowed, "1 where the limits are kept"),
         "tied": (
-            np.isin(places, found.tied),
+            np.isin(places, optimum.tied),
             "1 where no objective differs from the best by more than its error",
         ),
     }
@@ -100,16 +100,16 @@ def dataset(found: Optimum) -> xr.Dataset:
                 for name, (flag, meaning) in flags.items()
             }
         )
-        .assign(_start(found, data))
+        .assign(_start(optimum, data))
         .assign_attrs(attributes)
     )
 
 
-def _start(found: Optimum, data: xr.Dataset) -> dict[str, tuple[tuple[()], float, dict[str, str]]]:
+def _start(optimum: Optimum, data: xr.Dataset) -> dict[str, tuple[tuple[()], float, dict[str, str]]]:
     """The scene as it stands: its keys, nan where it has none, and its outputs."""
-    if found.start is None:
+    if optimum.start is None:
         return {}
-    names = (*found.task.keys, *found.task.outputs)
+    names = (*optimum.task.keys, *optimum.task.outputs)
     return {
         f"start_{name}": (
             (),
@@ -119,29 +119,29 @@ def _start(found: Optimum, data: xr.Dataset) -> dict[str, tuple[tuple[()], float
                 "long_name": f"{data[name].attrs['long_name']}: scene as it stands",
             },
         )
-        for name, value in zip(names, (*found.start.values, *found.start.result.values), strict=True)
+        for name, value in zip(names, (*optimum.start.values, *optimum.start.result.values), strict=True)
     }
 
 
-def write_optimum(found: Optimum, folder: Path) -> list[Path]:
+def write_optimum(optimisation: Optimum, folder: Path) -> list[Path]:
     """Write all points, the front, the first one's scene, the figures, and a page with all; return the files."""
     from flankfilm.figures import optimum, optimum_map
     from flankfilm.figures.optima import can_be_mapped
     from flankfilm.figures.style import save
     from flankfilm.report.other_pages import write_optimum_page
 
-    task = found.task
-    chosen = [found.evaluations[place] for place in found.best]
+    task = optimisation.task
+    chosen = [optimisation.evaluations[place] for place in optimisation.best]
     table, scene, points, picture = (folder / f"optimum.{suffix}" for suffix in ("csv", "toml", "nc", "svg"))
     rows = zip(*((*point.values, *point.result.values) for point in chosen), strict=True)
     write_csv(table, dict(zip((*task.keys, *task.outputs), rows, strict=True)))
     raw = task.raw_scene(chosen[0].values, task.tolerances[1])
     write_text(scene, "\n".join(toml_lines(raw)) + "\n")
-    held = dataset(found)
+    held = dataset(optimisation)
     write_netcdf(points, held)
     save(optimum(held), picture)
     drawn = [picture]
     if can_be_mapped(held):
         drawn.append(folder / "optimum_map.svg")
         save(optimum_map(held), drawn[-1])
-    return [table, scene, points, *drawn, write_optimum_page(found, held, folder)]
+    return [table, scene, points, *drawn, write_optimum_page(optimisation, held, folder)]

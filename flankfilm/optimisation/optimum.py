@@ -98,7 +98,7 @@ class Optimum:
     @property
     def points(self) -> int:
         """Points of the whole search, the scene as it stands among them."""
-        asked = {(one.tolerance, one.values) for one in self.evaluations}
+        asked = {(evaluation.tolerance, evaluation.values) for evaluation in self.evaluations}
         return len(asked | ({(self.start.tolerance, self.start.values)} if self.start is not None else set()))
 
     @property
@@ -151,13 +151,13 @@ class Optimum:
     def tied(self) -> NDArray[np.intp]:
         """Evaluations that differ from the best by no more than the objectives' errors, the best included."""
         objectives, allowed = self._judged()
-        found = np.zeros(len(self.evaluations), dtype=bool)
+        within_error = np.zeros(len(self.evaluations), dtype=bool)
         for place in self.best:
             result = self.evaluations[place].result
             errors = [self.error_of(name, result) for name in self.task.objectives]
             slack = np.abs(objectives[place]) * np.array(errors)
-            found |= np.all(objectives <= objectives[place] + slack, axis=1)
-        return np.flatnonzero(found & allowed)
+            within_error |= np.all(objectives <= objectives[place] + slack, axis=1)
+        return np.flatnonzero(within_error & allowed)
 
     def tied_ranges(self) -> dict[str, tuple[float, float]]:
         """Minimum and maximum value of every varied key among the designs that tie."""
@@ -170,7 +170,7 @@ class Optimum:
         """Every objective of the scene as it stands against the best one found; none where that has no value."""
         if self.start is None or self.start.result.fault:
             return ()
-        found = []
+        improvements = []
         for column, (name, sign) in enumerate(zip(self.task.objectives, self.task.signs, strict=True)):
             own = self.start.result.values[column]
             values = [self.evaluations[i].result.values[column] for i in self.best]
@@ -179,8 +179,8 @@ class Optimum:
             ends = ((own, self.start), (least, self.evaluations[self.best[place]]))
             slack = max(abs(value) * self.error_of(name, at.result) for value, at in ends)
             share = sign * (own - least) / (abs(own) or 1.0)
-            found.append(Gain(name, own, least, share, abs(own - least) > slack))
-        return tuple(found)
+            improvements.append(Gain(name, own, least, share, abs(own - least) > slack))
+        return tuple(improvements)
 
     @property
     def start_keeps(self) -> bool:

@@ -37,7 +37,7 @@ class Evaluate(Protocol):
         """Objectives (points, m) and limits (points, k; allowed where <= 0) at a tolerance."""
 
     @property
-    def left(self) -> int:
+    def remaining(self) -> int:
         """Points that may still be asked for."""
 
     def error(self, unit: Array, /) -> float:
@@ -82,11 +82,11 @@ def polish(task: Task, evaluate: Evaluate, best: Array) -> Polish:
     while True:
         around = neighbours(task, at)
         if free.size:
-            if evaluate.left < (need := 2 * free.size + 2 + len(around)):
-                why = f"{evaluate.left} points were left for a polish, which takes {need} or more"
+            if evaluate.remaining < (need := 2 * free.size + 2 + len(around)):
+                why = f"{evaluate.remaining} points were left for a polish, which takes {need} or more"
                 return Polish(False, rounds, why)
             rounds += 1
-            at, ended = _trust_region(task, evaluate, at, free, evaluate.left - len(around))
+            at, ended = _trust_region(task, evaluate, at, free, evaluate.remaining - len(around))
             if not ended:
                 return Polish(
                     False,
@@ -94,7 +94,7 @@ def polish(task: Task, evaluate: Evaluate, best: Array) -> Polish:
                     f"the points were used up before the polish's step fell below {SMALLEST_STEP:.1%} of each range",
                 )
             around = neighbours(task, at)
-        if evaluate.left < len(around):
+        if evaluate.remaining < len(around):
             return Polish(False, rounds, "the points were used up before all neighbours were tried")
         better = _better(task, evaluate, at, around)
         if better is None:
@@ -125,7 +125,7 @@ def neighbours(task: Task, at: Array) -> Array:
     else:
         ways = np.concatenate([np.eye(len(spans), dtype=int), -np.eye(len(spans), dtype=int)])
     around = np.array(
-        [[moved(*one) for one in zip(spans, at.tolist(), way, strict=True)] for way in ways.tolist()]
+        [[moved(*move) for move in zip(spans, at.tolist(), way, strict=True)] for way in ways.tolist()]
     )
     inside = np.all((around >= -1e-9) & (around <= 1.0 + 1e-9), axis=1)
     return np.asarray(np.clip(around[inside], 0.0, 1.0))
@@ -135,9 +135,9 @@ def _better(task: Task, evaluate: Evaluate, at: Array, around: Array) -> Array |
     """Best allowed neighbour, where it is better by more than the objective's error."""
     own, _ = evaluate(at[None], task.tolerances[1])
     objectives, limits = evaluate(around, task.tolerances[1])
-    found = np.where(np.all(limits <= 0, axis=1), objectives[:, 0], np.inf)
-    least = int(np.argmin(found))
-    return around[least] if found[least] < own[0, 0] - evaluate.error(at) else None
+    feasible_objective = np.where(np.all(limits <= 0, axis=1), objectives[:, 0], np.inf)
+    least = int(np.argmin(feasible_objective))
+    return around[least] if feasible_objective[least] < own[0, 0] - evaluate.error(at) else None
 
 
 def _trust_region(task: Task, evaluate: Evaluate, start: Array, free: Any, points: int) -> tuple[Array, bool]:
@@ -155,7 +155,7 @@ def _trust_region(task: Task, evaluate: Evaluate, start: Array, free: Any, point
         whole[free] = np.clip(x, 0.0, 1.0)
         return whole
 
-    def both(x: Array) -> tuple[float, Array]:
+    def objective_and_limits(x: Array) -> tuple[float, Array]:
         objectives, limits = evaluate(at(x)[None], fine)
         value, kept = (objectives[0, 0] - first) / scale, limits[0]
         if value < 1e6 and np.all(kept <= 0):
@@ -164,13 +164,15 @@ def _trust_region(task: Task, evaluate: Evaluate, start: Array, free: Any, point
         return min(value, 1.0), np.minimum(kept, 1.0)
 
     solve: Any = minimize
-    found = solve(
-        lambda x: both(x)[0],
+    solution = solve(
+        lambda x: objective_and_limits(x)[0],
         start[free],
         method="COBYQA",
         bounds=[(0.0, 1.0)] * free.size,
-        constraints=[NonlinearConstraint(lambda x: both(x)[1], -np.inf, -MARGIN)] if task.limits else [],
+        constraints=[NonlinearConstraint(lambda x: objective_and_limits(x)[1], -np.inf, -MARGIN)]
+        if task.limits
+        else [],
         options={"maxfev": points, "initial_tr_radius": WIDEST_STEP, "final_tr_radius": SMALLEST_STEP},
     )
     best = min(seen, key=lambda point: seen[point], default=None)
-    return (start if best is None else np.array(best)), bool(found.status == 0)
+    return (start if best is None else np.array(best)), bool(solution.status == 0)

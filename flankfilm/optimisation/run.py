@@ -50,7 +50,7 @@ class _Evaluator:
         return judged(self.task, results)
 
     @property
-    def left(self) -> int:
+    def remaining(self) -> int:
         """Points that may still be asked for; the scene as it stands is one."""
         return self.task.asked.evaluations - len(self.asked) - 1
 
@@ -134,8 +134,8 @@ def _best(task: Task, evaluations: tuple[Evaluation, ...]) -> NDArray[np.intp]:
     fine = np.array([e.tolerance == task.tolerances[1] for e in evaluations])
     objectives, limits = judged(task, results)
     good = np.all(limits <= 0, axis=1) & np.array([not r.fault for r in results])
-    found = front(objectives, fine & good)
-    return found[:1] if len(task.objectives) == 1 else found
+    best = front(objectives, fine & good)
+    return best[:1] if len(task.objectives) == 1 else best
 
 
 def _plain(task: Task) -> list[object]:
@@ -161,5 +161,5 @@ def _points(task: Task, lines: Iterable[Line]) -> Iterator[tuple[Point, RowResul
             )
             yield (float(tolerance), values), line.result
         except ValueError as fault:
-            where = f"{ROWS}, row {line.result.index}"
-            raise InputError.at(where, "", "holds a text where a number belongs", WITHOUT_IT) from fault
+            place = f"{ROWS}, row {line.result.index}"
+            raise InputError.at(place, "", "holds a text where a number belongs", WITHOUT_IT) from fault

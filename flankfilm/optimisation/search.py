@@ -32,13 +32,13 @@ def search(task: Task, evaluate: Evaluate) -> Polish | None:
     Polish or None
         How the local end came out; None for several objectives, whose front has none.
     """
-    one = len(task.objectives) == 1
-    find = _one if one else _several
+    single = len(task.objectives) == 1
+    find = _one if single else _several
     coarse, fine = task.tolerances
-    first, second = (round(part[one] * task.asked.evaluations) for part in (FIRST_PHASE, SECOND_PHASE))
+    first, second = (round(part[single] * task.asked.evaluations) for part in (FIRST_PHASE, SECOND_PHASE))
     led_to = find(task, evaluate, coarse, first, None)
     last = find(task, evaluate, fine, second, led_to)
-    return polish(task, evaluate, last[0]) if one else None
+    return polish(task, evaluate, last[0]) if single else None
 
 
 def _generations(task: Task, evaluations: int) -> int:
@@ -55,7 +55,7 @@ def _one(task: Task, evaluate: Evaluate, tolerance: float, evaluations: int, sta
 
     # the stubs know neither objectives of many points at once nor plain lists of bounds
     evolve: Any = differential_evolution
-    found = evolve(
+    solution = evolve(
         lambda x: evaluate(np.atleast_2d(x.T), tolerance)[0][:, 0],
         [(0.0, 1.0)] * len(task.asked.vary),
         maxiter=_generations(task, evaluations),
@@ -67,7 +67,7 @@ def _one(task: Task, evaluate: Evaluate, tolerance: float, evaluations: int, sta
         updating="deferred",
         vectorized=True,
     )
-    population: Array = np.clip(found.population, 0.0, 1.0)
+    population: Array = np.clip(solution.population, 0.0, 1.0)
     return population
 
 
@@ -75,10 +75,12 @@ def _latin(task: Task) -> Array:
     """First population: spread over the ranges, with the scene as it stands where that lies in them."""
     from scipy.stats import qmc
 
-    found = np.asarray(qmc.LatinHypercube(len(task.asked.vary), rng=task.asked.seed).random(task.population))
+    population = np.asarray(
+        qmc.LatinHypercube(len(task.asked.vary), rng=task.asked.seed).random(task.population)
+    )
     if (start := task.places(task.start.values)) is not None:
-        found[0] = start
-    return found
+        population[0] = start
+    return population
 
 
 def _several(
@@ -106,13 +108,13 @@ def _several(
         def _evaluate(self, x: Array, out: dict[str, Any], *args: Any, **kwargs: Any) -> None:
             out["F"], out["G"] = evaluate(x, tolerance)
 
-    found = minimize(
+    solution = minimize(
         Pair(),
         NSGA2(pop_size=task.population, sampling=_latin(task) if start is None else start),
         ("n_gen", _generations(task, evaluations) + 1),
         seed=task.asked.seed,
     )
-    return np.asarray(found.pop.get("X"))
+    return np.asarray(solution.pop.get("X"))
 
 
 def front(objectives: Array, allowed: NDArray[np.bool_]) -> NDArray[np.intp]:

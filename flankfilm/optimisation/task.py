@@ -45,7 +45,7 @@ class Limit(Section):
             raise refused("has no bound", "give at_least or at_most, or both")
         if self.at_least is not None and self.at_most is not None and self.at_least > self.at_most:
             allowed = f"must not lie above at_most = {self.at_most:g}"
-            raise refused(allowed, "lower it, or raise at_most", where="at_least", value=f"{self.at_least:g}")
+            raise refused(allowed, "lower it, or raise at_most", key="at_least", value=f"{self.at_least:g}")
         return self
 
 
@@ -75,10 +75,10 @@ class OptimisationFile(RowsFile):
     @model_validator(mode="after")
     def _something_to_want(self) -> OptimisationFile:
         if not self.minimise and not self.maximise:
-            raise refused("needs an output", 'such as ["transmission_error_um"]', where="minimise")
-        if both := set(self.minimise) & set(self.maximise):
+            raise refused("needs an output", 'such as ["transmission_error_um"]', key="minimise")
+        if overlap := set(self.minimise) & set(self.maximise):
             allowed = "is to be minimised and maximised at once"
-            raise refused(allowed, "take it out of one", where="maximise", value=", ".join(sorted(both)))
+            raise refused(allowed, "take it out of one", key="maximise", value=", ".join(sorted(overlap)))
         return self
 
 

@@ -59,7 +59,7 @@ def _not_weighed(scene: Scene, solved: bool) -> str:
         return "films by formula are isothermal"
     if scene.roughness is not None or scene.film.grid != "graded":
         return "heat is weighed for smooth films on a graded grid"
-    warm = scene.heat is not None and scene.heat.given("pinion_temperature_C", "wheel_temperature_C")
+    warm = scene.heat is not None and scene.heat.given_keys("pinion_temperature_C", "wheel_temperature_C")
     if scene.lubricant is None or (scene.lubricant.temperature_C is None and not warm):
         return "the temperature of the oil, or of the gears, is not given"
     return ""

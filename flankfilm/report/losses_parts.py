@@ -161,7 +161,9 @@ def _warm(mesh_losses: MeshLosses, scene: Scene) -> str:
     """Temperatures of the flanks and where they come from."""
     known = warmth(scene)
     if known.transfer is None:
-        stated = scene.heat is not None and scene.heat.given("pinion_temperature_C", "wheel_temperature_C")
+        stated = scene.heat is not None and scene.heat.given_keys(
+            "pinion_temperature_C", "wheel_temperature_C"
+        )
         source = "as [heat] gives them" if stated else "as warm as the oil"
     else:
         first, second = (number(flow, 3) for flow in mesh_losses.heat)

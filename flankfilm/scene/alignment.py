@@ -73,7 +73,7 @@ class AlignmentSection(Section):
             raise refused(
                 "must be even: mid-face lies between two cells",
                 f"Take {self.cells + 1}",
-                where="cells",
+                key="cells",
                 value=f"{self.cells}",
             )
         return self

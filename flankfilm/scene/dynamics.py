@@ -70,7 +70,7 @@ class SpeedRange(Section):
 
     @model_validator(mode="after")
     def _one_range(self) -> SpeedRange:
-        if len(self.given("speed_rpm", "frequency")) != 1:
+        if len(self.given_keys("speed_rpm", "frequency")) != 1:
             raise refused("must have either speed_rpm = [from, to] or frequency = [from, to]")
         low, high = self.ends
         if not 0 < low < high <= FASTEST:
@@ -113,7 +113,7 @@ class RunUpSection(SpeedRange):
 
     @model_validator(mode="after")
     def _one_time(self) -> RunUpSection:
-        if len(self.given("seconds", "periods")) == 2:
+        if len(self.given_keys("seconds", "periods")) == 2:
             raise refused("must have seconds or periods, not both")
         if self.seconds is not None and self.frequency is not None:
             raise refused("must have periods with frequency = [from, to], which knows no seconds")
@@ -225,8 +225,8 @@ class DynamicsSection(Section):
     def _one_error(self) -> DynamicsSection:
         amplitudes = self.error_amplitude or self.error_amplitude_um or (0.0,)
         if self.error_curve is not None:
-            if given := self.given("error_amplitude", "error_amplitude_um"):
-                raise refused(f"must not have {given[0]} beside error_curve; leave one of them out")
+            if amplitude_keys := self.given_keys("error_amplitude", "error_amplitude_um"):
+                raise refused(f"must not have {amplitude_keys[0]} beside error_curve; leave one of them out")
             if any(self.error_phase_deg):
                 raise refused("must not have error_phase_deg beside error_curve, which has separate phases")
         elif len(self.error_phase_deg) != len(amplitudes) and self.error_phase_deg != (0.0,):
@@ -236,12 +236,12 @@ class DynamicsSection(Section):
 
     @model_validator(mode="after")
     def _one_set_of_units(self) -> DynamicsSection:
-        own = self.given(*DIMENSIONLESS)
+        own = self.given_keys(*DIMENSIONLESS)
         if not own:
             return self
         if missing := [name for name in DIMENSIONLESS if name not in own]:
             raise refused(f"must have {', '.join(missing)} too in the dimensionless form")
-        if physical := self.given(*PHYSICAL):
+        if physical := self.given_keys(*PHYSICAL):
             raise refused(f"must not have {', '.join(physical)} beside the dimensionless {', '.join(own)}")
         for name, ranged in (("sweep", self.sweep), ("diagram", self.diagram), ("run_up", self.run_up)):
             if ranged is not None and ranged.speed_rpm is not None:

@@ -101,14 +101,14 @@ class ErrorCurveSection(Section):
     def _points_that_rise(self) -> ErrorCurveSection:
         at, heights = self.position, self.error_um
         if at is None or heights is None or len(at) != len(heights):
-            counts = " and ".join(str(0 if one is None else len(one)) for one in (at, heights))
+            counts = " and ".join(str(0 if numbers is None else len(numbers)) for numbers in (at, heights))
             raise refused(f"must have as many position as error_um, not {counts}", "Give pairs, or a file")
         for name, values, limit in (("position", at, POSITION), ("error_um", heights, ERROR_UM)):
             for number, value in enumerate(values, start=1):
                 if not limit.holds(value):
-                    raise refused(str(limit), limit.remedy, where=name, value=f"{value:g} (point {number})")
+                    raise refused(str(limit), limit.remedy, key=name, value=f"{value:g} (point {number})")
         if any(after <= before for before, after in itertools.pairwise(at)):
-            raise refused("must rise from point to point", "Sort them; leave out doubles", where="position")
+            raise refused("must rise from point to point", "Sort them; leave out doubles", key="position")
         if at[-1] - at[0] > 1.0 + 1e-9:
-            raise refused("must cover one base pitch at most", where="position", value=f"{at[-1] - at[0]:g}")
+            raise refused("must cover one base pitch at most", key="position", value=f"{at[-1] - at[0]:g}")
         return self

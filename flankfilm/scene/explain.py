@@ -65,14 +65,14 @@ LONGEST_PATH = 200
 def explain_all(items: Iterable[Mapping[str, Any]], model: type[Section]) -> list[Fault]:
     """Faults for all findings, those of one key (a union's members) joined by "or"."""
     joined: dict[str, Fault] = {}
-    found = _once(list(items))
+    findings = _once(list(items))
     inches = {
         (*item["loc"][:-1], name)
-        for item in found
+        for item in findings
         if item["type"] == "extra_forbidden" and str(item["loc"][-1]).endswith(INCHES)
         for name in _in_metric(str(item["loc"][-1]))
     }
-    shown = (item for item in found if item["type"] != "missing" or tuple(item["loc"]) not in inches)
+    shown = (item for item in findings if item["type"] != "missing" or tuple(item["loc"]) not in inches)
     for fault in (fault for item in shown for fault in explain(item, model)):
         if len(joined) >= MOST_FAULTS:
             joined["more"] = Fault("the rest", "", "has more faults", "Fix these first")
@@ -104,15 +104,15 @@ def explain(item: Mapping[str, Any], model: type[Section]) -> Iterator[Fault]:
     """
     location = tuple(item["loc"])
     path = _path(item)
-    where = ".".join(path)[:LONGEST_PATH] or model.called
+    dotted_key = ".".join(path)[:LONGEST_PATH] or model.called
     refused = item.get("ctx", {}).get("error")
     if isinstance(refused, InputError):
         for fault in refused.faults:
             yield replace(
-                fault, where=".".join([*path, *filter(None, [fault.where])])[:LONGEST_PATH] or where
+                fault, where=".".join([*path, *filter(None, [fault.where])])[:LONGEST_PATH] or dotted_key
             )
     elif item["type"] == "extra_forbidden":
-        yield _unknown_key(where, location, model, item.get("input"))
+        yield _unknown_key(dotted_key, location, model, item.get("input"))
     else:
         field = _field_at(location, model)
         about = Key("") if field is None else key_of(field)
@@ -121,7 +121,7 @@ def explain(item: Mapping[str, Any], model: type[Section]) -> Iterator[Fault]:
         if item["type"] in SHAPES and isinstance(about.example, SHAPES[item["type"]]):
             allowed = f"{allowed.partition(', such as ')[0]}, such as {toml(about.example)}"
         value = "" if item["type"] in ("missing", "value_error") else shorten(item["input"])
-        yield Fault(where, value, allowed, _remedy(item, about))
+        yield Fault(dotted_key, value, allowed, _remedy(item, about))
 
 
 def _path(item: Mapping[str, Any]) -> tuple[str, ...]:
@@ -137,24 +137,29 @@ def _names_a_type(part: object) -> bool:
     return isinstance(part, str) and (part.endswith("Section") or part.startswith("literal["))
 
 
-def _unknown_key(where: str, location: tuple[Any, ...], model: type[Section], value: object) -> Fault:
+def _unknown_key(dotted_key: str, location: tuple[Any, ...], model: type[Section], value: object) -> Fault:
     key = str(location[-1])
     fields = _model_at(location[:-1], model).model_fields
     keys = [field.alias or name for name, field in fields.items()]
     if key.startswith(HELICAL):
         allowed = "is not supported yet: gears are spur gears"
         return Fault(
-            where, shorten(value), allowed, "Leave it out for spur gears; helical gears cannot be computed"
+            dotted_key,
+            shorten(value),
+            allowed,
+            "Leave it out for spur gears; helical gears cannot be computed",
         )
     if key.endswith(INCHES) and (lengths := [k for k in keys if k in _in_metric(key)]):
-        return Fault(where, shorten(value), "is in inches, which are not read", _converted(value, lengths[0]))
+        return Fault(
+            dotted_key, shorten(value), "is in inches, which are not read", _converted(value, lengths[0])
+        )
     near = difflib.get_close_matches(key, keys, n=1, cutoff=0.75) or [
         k for k in keys if k.split("_")[0] == key.split("_")[0] and len(key) > 2
     ]
     remedy = f"Did you mean {near[0]}?" if near else f"Allowed: {', '.join(keys)}"
     if near and unit_of(near[0]) != unit_of(key):
         remedy += " The unit is part of the key"
-    return Fault(where, "", f"is not a key of {model.called}", remedy)
+    return Fault(dotted_key, "", f"is not a key of {model.called}", remedy)
 
 
 def _in_metric(key: str) -> list[str]:

@@ -136,13 +136,13 @@ class LubricantSection(Section):
 
     @model_validator(mode="after")
     def _by_numbers_or_by_grade(self) -> LubricantSection:
-        numbers, grade = self.given(*BY_NUMBERS), self.given(*BY_GRADE)
+        numbers, grade = self.given_keys(*BY_NUMBERS), self.given_keys(*BY_GRADE)
         if numbers and grade:
             raise refused(
                 f"must be given by numbers ({', '.join(numbers)}) or by its grade ({', '.join(grade)}), "
                 "not both ways at once"
             )
-        if grade and len(self.given("iso_vg", "temperature_C")) < 2:
+        if grade and len(self.given_keys("iso_vg", "temperature_C")) < 2:
             raise refused("must have iso_vg and temperature_C for an oil by its grade")
         known = self.pressure_viscosity_per_GPa is not None or self.viscosity_law == "constant"
         if not grade and (self.viscosity_Pa_s is None or not known):
@@ -232,16 +232,18 @@ class RoughnessSection(Section):
                 f"boundary_friction = {self.boundary_friction:g} between them"
             )
             band = f"[{low:g}, {high:g}]"
-            raise refused(allowed, "[0.08, 0.12] is usual", where="boundary_friction_band", value=band)
+            raise refused(allowed, "[0.08, 0.12] is usual", key="boundary_friction_band", value=band)
         return self
 
     @model_validator(mode="after")
     def _one_measure_of_height(self) -> RoughnessSection:
-        given = self.given("Ra_um", "Rz_um", "sigma_um")
-        if len(given) != 1:
-            raise refused(f"must have one of Ra_um, Rz_um and sigma_um, not {' and '.join(given) or 'none'}")
+        measures = self.given_keys("Ra_um", "Rz_um", "sigma_um")
+        if len(measures) != 1:
+            raise refused(
+                f"must have one of Ra_um, Rz_um and sigma_um, not {' and '.join(measures) or 'none'}"
+            )
         for name in ("Ra_um", "Rz_um"):
-            if self.given(f"wheel_{name}") and not self.given(name):
+            if self.given_keys(f"wheel_{name}") and not self.given_keys(name):
                 raise refused(f"must have {name} of the pinion beside wheel_{name}")
         return self
 
@@ -321,9 +323,12 @@ class FilmSection(Section):
 
     @model_validator(mode="after")
     def _a_supply_with_its_value(self) -> FilmSection:
-        given, wanted = self.given(*itertools.chain(*SUPPLIES.values())), SUPPLIES.get(self.supply, ())
-        if astray := [name for name in given if name not in wanted]:
+        supply_keys, wanted = (
+            self.given_keys(*itertools.chain(*SUPPLIES.values())),
+            SUPPLIES.get(self.supply, ()),
+        )
+        if astray := [name for name in supply_keys if name not in wanted]:
             raise refused(f'supply = "{self.supply}" has no {" or ".join(astray)}; leave it out')
-        if wanted and len(given) != 1:
+        if wanted and len(supply_keys) != 1:
             raise refused(f'supply = "{self.supply}" needs {" or ".join(wanted)}, one of them')
         return self

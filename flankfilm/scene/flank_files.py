@@ -41,15 +41,15 @@ def read_flank_files(raw: dict[str, Any], folder: Path, keys: Sequence[str] = ()
     keys : sequence of str
         Dotted keys that alone are looked at, where others have been read; all unless given.
     """
-    found = read_error_file(raw, folder, keys)
+    faults = read_error_file(raw, folder, keys)
     for path, table, parent, (kind, positions) in _tables(raw):
-        where = f"pair.{path}.file"
-        if keys and where not in keys:
+        key = f"pair.{path}.file"
+        if keys and key not in keys:
             continue
         clash = sorted(table.keys() & set(CURVES))
         if clash:
-            found.append(
-                Fault(where, table["file"], f"excludes {' and '.join(clash)}", "Leave one of them out")
+            faults.append(
+                Fault(key, table["file"], f"excludes {' and '.join(clash)}", "Leave one of them out")
             )
             continue
         from flankfilm.exchange.map_files import read_map
@@ -58,20 +58,20 @@ def read_flank_files(raw: dict[str, Any], folder: Path, keys: Sequence[str] = ()
         try:
             curves: Any
             if path.endswith(".map"):
-                curves = read_map(folder / table["file"], where)
+                curves = read_map(folder / table["file"], key)
             else:
-                curves = read_curves(folder / table["file"], kind, where, tuple(positions))
+                curves = read_curves(folder / table["file"], kind, key, tuple(positions))
             if isinstance(curves, list) and path.endswith(".lead"):
-                curves = mean_of(curves, "z_mm", kind, where)
+                curves = mean_of(curves, "z_mm", kind, key)
         except InputError as error:
-            found += error.faults
+            faults += error.faults
             del parent[path.rpartition(".")[2]]
             continue
         if isinstance(curves, dict) and not path.endswith(".traces"):
             table.update(curves)
         else:
             table["teeth"] = [curves] if isinstance(curves, dict) else curves
-    return found
+    return faults
 
 
 def names_a_file(key: str) -> bool:

@@ -149,7 +149,7 @@ class WearSection(DepthSection):
     def _faults(self) -> Iterator[Fault]:
         if self.teeth is None:
             yield from super()._faults()
-        elif clash := self.given(*POSITIONS, "depth_um"):
+        elif clash := self.given_keys(*POSITIONS, "depth_um"):
             yield Fault("teeth", "", f"excludes {' and '.join(clash)}", "Leave one of them out")
 
 
@@ -192,11 +192,11 @@ class DeviationsSection(Section):
 
     @model_validator(mode="after")
     def _one_of_a_kind(self) -> DeviationsSection:
-        if len(self.given("single_pitch_um", "cumulative_pitch_um")) > 1:
+        if len(self.given_keys("single_pitch_um", "cumulative_pitch_um")) > 1:
             raise refused("must have single_pitch_um or cumulative_pitch_um, not both", "Leave one out")
-        if len(self.given("profile", "traces")) > 1:
+        if len(self.given_keys("profile", "traces")) > 1:
             raise refused("must have profile or traces, not both", "Leave one out")
-        if self.map is not None and (clash := self.given("profile", "traces", "lead")):
+        if self.map is not None and (clash := self.given_keys("profile", "traces", "lead")):
             raise refused(f"must have map, or {' and '.join(clash)}, not both", "Leave one out")
         return self
 
@@ -231,7 +231,7 @@ class MapSection(CurveSection):
 
     def _faults(self) -> Iterator[Fault]:
         """What is wrong with the places, and rows that do not fit them."""
-        by, rows, places = self.given(*POSITIONS), self.material_um, self.z_mm
+        by, rows, places = self.given_keys(*POSITIONS), self.material_um, self.z_mm
         if len(by) != 1 or rows is None or places is None:
             keys = ", ".join(POSITIONS)
             yield Fault(

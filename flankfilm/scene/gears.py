@@ -191,7 +191,7 @@ class GearSection(Section):
         if self.tip_diameter_mm is not None and self.tip_alteration:
             value = f"{self.tip_alteration:g}"
             raise refused(
-                "follows from tip_diameter_mm", "Give one of them", where="tip_alteration", value=value
+                "follows from tip_diameter_mm", "Give one of them", key="tip_alteration", value=value
             )
         if faults := list(wrong_counts(self.teeth, self.deviations, self.wear)):
             raise InputError(faults)

@@ -39,23 +39,23 @@ def in_keys(fault: Fault, section: Section | None, path: str) -> Fault:
     path : str
         Its path in the scene.
     """
-    names, about, given = _key_at(fault.where.split("."), section)
-    where = ".".join(filter(None, [path, *names]))
+    names, about, user_value = _key_at(fault.where.split("."), section)
+    key = ".".join(filter(None, [path, *names]))
     if about is None:
         value, allowed = fault.value, _in_unit(fault.allowed, _LENGTH, "m")
         if allowed != fault.allowed:
             value = _in_unit(f"{value} m", _LENGTH, "m")
         return replace(
-            fault, where=where, value=value, allowed=allowed, remedy=_in_unit(fault.remedy, _LENGTH, "m")
+            fault, where=key, value=value, allowed=allowed, remedy=_in_unit(fault.remedy, _LENGTH, "m")
         )
     limit = about.limit
     if limit is not None and fault.allowed == str(limit):
-        return Fault(where, _shown(given, fault.value, about), about.allowed)
+        return Fault(key, _shown(user_value, fault.value, about), about.allowed)
     unit = "" if limit is None else limit.unit
     allowed = _in_unit(fault.allowed, about, unit)
     if allowed != fault.allowed:
         allowed += about.remark
-    return Fault(where, _shown(given, fault.value, about), allowed, _in_unit(fault.remedy, _LENGTH, "m"))
+    return Fault(key, _shown(user_value, fault.value, about), allowed, _in_unit(fault.remedy, _LENGTH, "m"))
 
 
 def _key_at(attributes: Sequence[str], section: Section | None) -> tuple[list[str], Key | None, object]:
@@ -78,11 +78,11 @@ def _key_at(attributes: Sequence[str], section: Section | None) -> tuple[list[st
     return list(attributes), None, None
 
 
-def _shown(given: object, text: str, about: Key) -> str:
+def _shown(user_value: object, text: str, about: Key) -> str:
     """Value as the user wrote it; one that follows from others, in the key's unit."""
-    if isinstance(given, int | float):
-        return f"{given:.12g}"
-    return f"{about.user(float(text)):.6g}" if given is None and re.fullmatch(_NUMBER, text) else text
+    if isinstance(user_value, int | float):
+        return f"{user_value:.12g}"
+    return f"{about.user(float(text)):.6g}" if user_value is None and re.fullmatch(_NUMBER, text) else text
 
 
 def _in_unit(text: str, about: Key, unit: str) -> str:
@@ -91,6 +91,6 @@ def _in_unit(text: str, about: Key, unit: str) -> str:
         return text
     return re.sub(
         rf"({_NUMBER}) {re.escape(unit)}(?![\w/])",
-        lambda found: f"{about.user(float(found[1])):.7g} {about.unit}",
+        lambda match: f"{about.user(float(match[1])):.7g} {about.unit}",
         text,
     )

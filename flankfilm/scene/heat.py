@@ -80,10 +80,11 @@ class HeatSection(Section):
 
     @model_validator(mode="after")
     def _temperatures_given_or_balanced(self) -> HeatSection:
-        given = self.given("pinion_temperature_C", "wheel_temperature_C")
-        if given and self.heat_transfer_W_per_K is not None:
+        temperature_keys = self.given_keys("pinion_temperature_C", "wheel_temperature_C")
+        if temperature_keys and self.heat_transfer_W_per_K is not None:
             raise refused(
-                f"must have {' and '.join(given)}, or heat_transfer_W_per_K", "Leave one of them out"
+                f"must have {' and '.join(temperature_keys)}, or heat_transfer_W_per_K",
+                "Leave one of them out",
             )
         if self.heat_transfer_W_per_K is None and self.ambient_temperature_C is not None:
             raise refused(

@@ -166,8 +166,8 @@ ZERO_CELSIUS = 273.15
 
 def within(limit: Limit) -> FieldInfo:
     """Bounds of the entries of a list, for ``Annotated``; `limit` is in the user's unit."""
-    found: FieldInfo = Field(**_bounds(limit))
-    return found
+    bounds: FieldInfo = Field(**_bounds(limit))
+    return bounds
 
 
 def key_of(field: FieldInfo) -> Key:

@@ -44,7 +44,7 @@ class ElasticSection(Section):
     @model_validator(mode="after")
     def _by_name_or_by_constants(self) -> ElasticSection:
         _refuse_unknown(self.name)
-        if self.name is None and len(self.given("youngs_modulus_GPa", "poisson_ratio")) < 2:
+        if self.name is None and len(self.given_keys("youngs_modulus_GPa", "poisson_ratio")) < 2:
             raise refused("must have youngs_modulus_GPa and poisson_ratio, or a name")
         return self
 
@@ -60,7 +60,7 @@ def _refuse_unknown(name: str | None) -> None:
     if name is not None and name not in MATERIALS:
         listed = ", ".join(MATERIALS)
         raise refused(
-            "must be a name of the list of materials", f"One of {listed}", where="name", value=repr(name)
+            "must be a name of the list of materials", f"One of {listed}", key="name", value=repr(name)
         )
 
 
@@ -93,13 +93,13 @@ class MaterialSection(Section):
     @model_validator(mode="after")
     def _one_material_or_two(self) -> MaterialSection:
         _refuse_unknown(self.name)
-        common = self.name is not None or len(self.given("youngs_modulus_GPa", "poisson_ratio")) == 2
-        if not common and len(self.given("pinion", "wheel")) < 2:
+        common = self.name is not None or len(self.given_keys("youngs_modulus_GPa", "poisson_ratio")) == 2
+        if not common and len(self.given_keys("pinion", "wheel")) < 2:
             raise refused(
                 "must have a name, or youngs_modulus_GPa and poisson_ratio, for both gears, "
                 "or both [material.pinion] and [material.wheel]"
             )
-        if (self.si() or self.name) and self.given("pinion", "wheel"):
+        if (self.si() or self.name) and self.given_keys("pinion", "wheel"):
             raise refused(
                 "must be one material for both gears or one each, not both at once", "Leave one out"
             )

@@ -117,8 +117,8 @@ def _missing_keys(raw: Raw, listed: set[str]) -> Iterator[Fault]:
     if "dynamic-map" in listed and "dynamics" in raw and "speed_rpm" not in _table(dynamics, "sweep"):
         remedy = "Add sweep = { speed_rpm = [500, 30000], points = 60 }"
         yield _required("dynamics.sweep.speed_rpm", "the wanted dynamic-map", remedy)
-    given = stiffness.get("model") == "given" and "mean_N_per_m" not in stiffness
-    if listed & set(MOTIONS) and given and "mean_force" not in dynamics:
+    without_mean = stiffness.get("model") == "given" and "mean_N_per_m" not in stiffness
+    if listed & set(MOTIONS) and without_mean and "mean_force" not in dynamics:
         yield _required("stiffness.mean_N_per_m", "a [dynamics] in physical units", "Give the mean")
 
 
@@ -196,8 +196,8 @@ def _known_temperature(raw: Raw) -> bool:
     )
 
 
-def _required(where: str, by: str, remedy: str) -> Fault:
-    return Fault(where, "", f"is required by {by}", remedy)
+def _required(key: str, by: str, remedy: str) -> Fault:
+    return Fault(key, "", f"is required by {by}", remedy)
 
 
 def _table(raw: Raw, name: str) -> Raw:

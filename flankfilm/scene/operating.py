@@ -101,23 +101,23 @@ class OperatingSection(Section):
         if self.power_kW is None:
             return self
         if self.pinion_speed_rpm is None:
-            raise refused("is required by power_kW", "Give the pinion's speed", where="pinion_speed_rpm")
+            raise refused("is required by power_kW", "Give the pinion's speed", key="pinion_speed_rpm")
         follows, value = _torque(self.power_kW, self.pinion_speed_rpm), self.pinion_torque_Nm
         if not math.isclose(value, follows, rel_tol=SAME):
             allowed = f"must be {follows:.6g} by power_kW and pinion_speed_rpm"
-            raise refused(allowed, "Give torque or power", where="pinion_torque_Nm", value=f"{value:g}")
+            raise refused(allowed, "Give torque or power", key="pinion_torque_Nm", value=f"{value:g}")
         return self
 
     @model_validator(mode="after")
     def _some_torque(self) -> OperatingSection:
-        for where, value in (
+        for path, value in (
             ("pinion_torque_Nm", self.pinion_torque_Nm),
             *((f"torques_Nm[{k}]", torque) for k, torque in enumerate(self.torques_Nm)),
         ):
             if abs(value) < LEAST:
                 allowed = f"must be at least {LEAST:g} N m, or at most {-LEAST:g} N m where the wheel drives"
                 remedy = "Without torque no flank bears but those of pressed teeth: fem.mesh_cycle(pair, 0.0)"
-                raise refused(allowed, remedy, where=where, value=f"{value:g}")
+                raise refused(allowed, remedy, key=path, value=f"{value:g}")
         return self
 
 
@@ -161,7 +161,7 @@ class StiffnessSection(Section):
 
     @model_validator(mode="after")
     def _numbers_of_a_given_stiffness(self) -> StiffnessSection:
-        if self.model != "given" and (listed := self.given(*GIVEN)):
+        if self.model != "given" and (listed := self.given_keys(*GIVEN)):
             raise refused(f'must not have {", ".join(listed)}, of model = "given" alone; leave them out')
         if self.model == "given":
             if self.amplitudes is None:

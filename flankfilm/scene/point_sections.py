@@ -54,7 +54,7 @@ class PointsSection(Section):
     @property
     def measured_by(self) -> str:
         """Key that says where the points are; empty where there are none."""
-        return next(iter(self.given(*self.positions)), "")
+        return next(iter(self.given_keys(*self.positions)), "")
 
     @model_validator(mode="after")
     def _points_that_rise(self) -> PointsSection:
@@ -65,11 +65,11 @@ class PointsSection(Section):
     def _faults(self) -> Iterator[Fault]:
         """What is wrong with the points; those of a file without any are looked at where it is read."""
         name, limit = self.values
-        heights, by = getattr(self, name), self.given(*self.positions)
+        heights, by = getattr(self, name), self.given_keys(*self.positions)
         if len(by) != 1:
             keys = ", ".join(self.positions)
-            one = "one of " if len(self.positions) > 1 else ""
-            yield Fault("", " and ".join(by), f"must have {one}{keys}, and {name}", "Give one of them")
+            prefix = "one of " if len(self.positions) > 1 else ""
+            yield Fault("", " and ".join(by), f"must have {prefix}{keys}, and {name}", "Give one of them")
             return
         places = getattr(self, by[0])
         if heights is None or len(heights) != len(places):

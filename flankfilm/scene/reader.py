@@ -133,11 +133,11 @@ def validated(raw: dict[str, Any], faults: Sequence[Fault] = ()) -> Scene:
     return scene
 
 
-def refuse_long_lists(raw: Any, where: str = "") -> None:
+def refuse_long_lists(raw: Any, path: str = "") -> None:
     """Refuse lists of thousands before each of their entries is judged."""
     if isinstance(raw, list) and len(raw) > LONGEST_LIST:
         allowed = f"must have at most {LONGEST_LIST} entries"
-        raise InputError.at(where or "the scene", f"{len(raw):,} entries", allowed, "Shorten it")
+        raise InputError.at(path or "the scene", f"{len(raw):,} entries", allowed, "Shorten it")
     if isinstance(raw, dict):
         for key, value in raw.items():
-            refuse_long_lists(value, f"{where}.{key}"[:200] if where else str(key)[:200])
+            refuse_long_lists(value, f"{path}.{key}"[:200] if path else str(key)[:200])

@@ -46,14 +46,14 @@ Want = Literal[
 TOLERANCE = Limit(1e-5, 0.4)
 
 
-def parse_tolerance(value: Any, where: str = "") -> Any:
+def parse_tolerance(value: Any, name: str = "") -> Any:
     """Read a tolerance such as ``"0.5%"``, ``"0.005"`` or 0.005.
 
     Parameters
     ----------
     value : Any
         A text or a number; anything else is handed back for the scene to refuse.
-    where : str
+    name : str
         What a fault calls it.
 
     Raises
@@ -75,7 +75,7 @@ def parse_tolerance(value: Any, where: str = "") -> Any:
         share = float("nan")
     if rest or not TOLERANCE.holds(share):
         allowed = f"must be from {TOLERANCE.low:g} to {TOLERANCE.high:g}, or the same in per cent"
-        raise InputError.at(where, value, allowed, "Such as 0.5%")
+        raise InputError.at(name, value, allowed, "Such as 0.5%")
     return share
 
 
@@ -143,8 +143,8 @@ class Scene(Section):
         """What decides how the load varies along the face beside the gears, as plain values; None where nothing."""
         if self.alignment is None:
             return None
-        given = self.alignment.model_dump(exclude={"in_plane_tolerance_um"})
+        alignment = self.alignment.model_dump(exclude={"in_plane_tolerance_um"})
         under = self.shafts_under_face
         if under is None:
-            return given
-        return given | {"shafts": [None if one is None else one.bent for one in under.each]}
+            return alignment
+        return alignment | {"shafts": [None if shaft is None else shaft.bent for shaft in under.each]}

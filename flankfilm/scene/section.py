@@ -28,7 +28,7 @@ class Section(BaseModel):
     ground: ClassVar[Limits] = {}
     """What the ground allows for the quantities that the section's keys give, in SI."""
 
-    def given(self, *names: str) -> list[str]:
+    def given_keys(self, *names: str) -> list[str]:
         """Those of the keys that were given."""
         return [name for name in names if getattr(self, name) is not None]
 
@@ -41,12 +41,12 @@ class Section(BaseModel):
             Keys to give, all if there are none; keys that the ground does not know, those of a part (`si_of`) and
             sections are left out.
         """
-        found = {}
+        arguments = {}
         for name in names or type(self).model_fields:
             attribute, value = key_of(type(self).model_fields[name]).of, self.value(name)
             if attribute and "." not in attribute and value is not None and not isinstance(value, Section):
-                found[attribute] = value
-        return found
+                arguments[attribute] = value
+        return arguments
 
     def si_of(self, part: str) -> dict[str, Any]:
         """Keyword arguments for a part of the ground's object whose quantities are keys of this section.
@@ -56,40 +56,40 @@ class Section(BaseModel):
         part : str
             The ground's name of it: ``lead`` of keys that are of ``lead.crowning`` and the like.
         """
-        found = {}
+        arguments = {}
         for name, field in type(self).model_fields.items():
             whole, _, attribute = (key_of(field).of or "").partition(".")
             if whole == part and attribute and (value := self.value(name)) is not None:
-                found[attribute] = value
-        return found
+                arguments[attribute] = value
+        return arguments
 
     def value(self, name: str) -> Any:
         """Value of a key in SI; None where it was not given."""
-        given = getattr(self, name)
-        convert = not (given is None or isinstance(given, Section))
-        return key_of(type(self).model_fields[name]).si(given) if convert else given
+        user_value = getattr(self, name)
+        convert = not (user_value is None or isinstance(user_value, Section))
+        return key_of(type(self).model_fields[name]).si(user_value) if convert else user_value
 
 
-def refused(allowed: str, remedy: str = "", *, where: str = "", value: str = "") -> InputError:
+def refused(allowed: str, remedy: str = "", *, key: str = "", value: str = "") -> InputError:
     """Error of a single fault, such as of keys that do not go together.
 
     Parameters
     ----------
     allowed, remedy, value : str
         See `base.Fault`.
-    where : str
+    key : str
         The key or file at fault; empty for the section whose validator raises it.
     """
-    return InputError.at(where, value, allowed, remedy)
+    return InputError.at(key, value, allowed, remedy)
 
 
-def required(value: T | None, where: str, by: str = "", remedy: str = "") -> T:
+def required(value: T | None, key: str, by: str = "", remedy: str = "") -> T:
     """Value that a scene must have given.
 
     Parameters
     ----------
     value : any or None
-    where : str
+    key : str
         Its section or key: ``[pair]``.
     by : str
         What needs it.
@@ -103,5 +103,5 @@ def required(value: T | None, where: str, by: str = "", remedy: str = "") -> T:
     """
     if value is None:
         allowed = f"is required by {by}" if by else "is required"
-        raise InputError.at(where, "", allowed, remedy or f"Add the section {where}")
+        raise InputError.at(key, "", allowed, remedy or f"Add the section {key}")
     return value

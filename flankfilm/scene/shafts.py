@@ -124,26 +124,26 @@ class ShaftSection(Section):
 
     @model_validator(mode="after")
     def _a_whole_shaft(self) -> ShaftSection:
-        found = []
+        faults = []
         if self.coupling_stiffness_Nm_per_rad is not None and not self.inertia_kg_m2 > 0.0:
             allowed = "must be more than 0 kg m2 behind a coupling"
             remedy = "Give that of motor or load, or leave the coupling out"
-            found.append(Fault("inertia_kg_m2", f"{self.inertia_kg_m2:g}", allowed, remedy))
+            faults.append(Fault("inertia_kg_m2", f"{self.inertia_kg_m2:g}", allowed, remedy))
         if self.rigid:
             needless = [name for name in ("bearings", "material") if getattr(self, name)]
-            needless += self.given("gear_position_mm")
+            needless += self.given_keys("gear_position_mm")
             needless += ["torque_position_mm"] if self.torque_position_mm else []
             allowed = "must have segments beside it: a rigid shaft has none"
-            found += [Fault(name, "", allowed, "Give the steps, or leave it out") for name in needless]
+            faults += [Fault(name, "", allowed, "Give the steps, or leave it out") for name in needless]
         elif self.gear_position_mm is None:
             remedy = "Give the middle of the gear's face, from the left end of the shaft"
-            found.append(Fault("gear_position_mm", "", "is required by the segments", remedy))
+            faults.append(Fault("gear_position_mm", "", "is required by the segments", remedy))
         try:
             self.shaft()
         except InputError as error:
-            found += [in_keys(fault, self, "") for fault in error.faults]
-        if found:
-            raise InputError(found)
+            faults += [in_keys(fault, self, "") for fault in error.faults]
+        if faults:
+            raise InputError(faults)
         return self
 
 
@@ -218,14 +218,14 @@ class ShaftsSection(Section):
     @property
     def bends(self) -> bool:
         """Whether one of the shafts has steps, which bend and twist."""
-        return any(one is not None and not one.rigid for one in self.each)
+        return any(shaft is not None and not shaft.rigid for shaft in self.each)
 
     @model_validator(mode="before")
     @classmethod
-    def _one_ratio_as_a_list(cls, given: object) -> object:
-        if isinstance(given, dict) and isinstance(given.get("damping_ratio"), int | float):
-            return given | {"damping_ratio": [given["damping_ratio"]]}
-        return given
+    def _one_ratio_as_a_list(cls, raw: object) -> object:
+        if isinstance(raw, dict) and isinstance(raw.get("damping_ratio"), int | float):
+            return raw | {"damping_ratio": [raw["damping_ratio"]]}
+        return raw
 
     @model_validator(mode="after")
     def _shafts_and_one_damping(self) -> ShaftsSection:
@@ -238,7 +238,7 @@ class ShaftsSection(Section):
             raise refused(
                 "must hold 1, the damping that is given",
                 "Give the smallest and the largest, 0.5 and 2",
-                where="damping_band",
+                key="damping_band",
                 value=f"{low:g} to {high:g}",
             )
         if self.rayleigh is not None and "damping_ratio" in self.model_fields_set:

@@ -97,7 +97,7 @@ def BODIES(run: Engine) -> fem.PairCompliance:
     scene = run.scene
     pair, tolerance = gear_pair(plain_flanks(scene)), run[PLAN].resolution.compliance
     with under_keys(scene.pair, "pair"):
-        found = fem.compliance(
+        compliance = fem.compliance(
             pair,
             tolerance=tolerance,
             plane=scene.stiffness.plane,
@@ -106,7 +106,7 @@ def BODIES(run: Engine) -> fem.PairCompliance:
             motion=contacts_move(pair, scene.stiffness.moving_contact),
             kept=run.parts,
         )
-    return believed(found, "tooth compliance")
+    return believed(compliance, "tooth compliance")
 
 
 @stage("compliance", "compliance with relief", "", PAIR, BODIES)
@@ -146,8 +146,8 @@ def loaded_teeth(
     compliance = run[COMPLIANCE] if model == "fem" else None
     if compliance is not None and varies_by(scene):
         _ = run[FACE_GEARS]  # contacts find them in the process
-    given = pair, pinion_torque(scene), model, scene.stiffness.pairs, compliance, flanks
-    return coupling.LoadedTeeth(*given, scene.reference, scene.bore_inertia)
+    arguments = pair, pinion_torque(scene), model, scene.stiffness.pairs, compliance, flanks
+    return coupling.LoadedTeeth(*arguments, scene.reference, scene.bore_inertia)
 
 
 @stage(
@@ -265,8 +265,8 @@ def FILM(run: Engine) -> coupling.LubricatedCycle:
     model = film_model(scene, plan.film.choice)
     oil, speed = lubricant(scene), pinion_speed(scene)
     with under_keys(scene.film, "film"):
-        found = coupling.lubricate(teeth, dry, speed, oil, plan.resolution, model)
-    return with_arcs(found)
+        cycle = coupling.lubricate(teeth, dry, speed, oil, plan.resolution, model)
+    return with_arcs(cycle)
 
 
 @stage(

@@ -24,9 +24,9 @@ def _asked(run: Engine) -> Mapping[str, Any]:
     if section is None or section.damping_ratio != BY_FILM:
         return {}
     each = {name: getattr(scene, name) for name in _SECTIONS}
-    given = {name: one.model_dump() for name, one in each.items() if one is not None}
+    sections = {name: part.model_dump() for name, part in each.items() if part is not None}
     own = section.extra_inertia_kg_m2.each, scene.reference
-    return {**given, "dynamics": own, "tolerance": scene.tolerance}
+    return {**sections, "dynamics": own, "tolerance": scene.tolerance}
 
 
 @stage(
@@ -45,7 +45,7 @@ def FILM_DAMPING(run: Engine) -> coupling.FilmDamping | None:
     if section.damping_ratio != BY_FILM:
         return None
     with under_keys(scene.film, "film"):
-        found = coupling.film_damping(
+        damping = coupling.film_damping(
             run[MESH],
             run[PAIR],
             pinion_torque(scene),
@@ -56,21 +56,21 @@ def FILM_DAMPING(run: Engine) -> coupling.FilmDamping | None:
             reference=scene.reference or "body",
             tolerance=scene.tolerance,
         )
-    if found.damping_ratio <= 0.0 or found.error >= 1.0:
-        off = abs(found.damping_ratio) * found.error
+    if damping.damping_ratio <= 0.0 or damping.error >= 1.0:
+        off = abs(damping.damping_ratio) * damping.error
         allowed = (
-            f"gives {found.damping_ratio:.2g} ± {off:.2g} at the natural frequency: loaded so, the films damp as good "
-            "as nothing"
+            f"gives {damping.damping_ratio:.2g} ± {off:.2g} at the natural frequency: loaded so, the films damp as "
+            "good as nothing"
         )
         raise InputError.at("dynamics.damping_ratio", f'"{BY_FILM}"', allowed, "give a number, such as 0.05")
-    return found
+    return damping
 
 
 def damping_ratio(run: Engine) -> float:
     """Damping ratio of the motion."""
-    given = required(run.scene.dynamics, "[dynamics]", "the motion").damping_ratio
-    if not isinstance(given, str):
-        return given
-    found = run[FILM_DAMPING]
-    assert found is not None
-    return found.damping_ratio
+    ratio = required(run.scene.dynamics, "[dynamics]", "the motion").damping_ratio
+    if not isinstance(ratio, str):
+        return ratio
+    damping = run[FILM_DAMPING]
+    assert damping is not None
+    return damping.damping_ratio

@@ -30,10 +30,10 @@ from flankfilm.stages.ranges import speeds_looked_at
 def DRIVE(run: Engine) -> coupling.PairDrive:
     """The pair with its shafts, bearings, motor and load."""
     series = run[FOURIER]
-    speed, given = of_the_pair(run, series)
-    given["speeds"] = speeds_looked_at(run, series, speed)
-    given |= drive_arguments(run.scene) | coupling.tilting_mesh(series.cycle)
-    return coupling.pair_drive(run[PAIR], series, pinion_torque(run.scene), speed, **given)
+    speed, arguments = of_the_pair(run, series)
+    arguments["speeds"] = speeds_looked_at(run, series, speed)
+    arguments |= drive_arguments(run.scene) | coupling.tilting_mesh(series.cycle)
+    return coupling.pair_drive(run[PAIR], series, pinion_torque(run.scene), speed, **arguments)
 
 
 def moving(run: Engine) -> coupling.PairOscillator | coupling.PairDrive:

@@ -130,14 +130,14 @@ class KeptPart:
         Whose code decides the parts.
     on_start : callable
         Called before the first part that has to be computed.
-    found : list of bool
+    hits : list of bool
         Grows by one with each part asked for.
     """
 
     cache: Cache
     packages: tuple[str, ...]
     on_start: Callable[[], None]
-    found: list[bool] = field(default_factory=list)
+    hits: list[bool] = field(default_factory=list)
 
     def __call__(self, name: str, inputs: Mapping[str, Any], compute: Callable[[], T]) -> T:
         """Part of a name with plain inputs, from the cache or computed."""
@@ -145,9 +145,9 @@ class KeptPart:
         value: T | None = self.cache.get(key)
         if not _record_of(value, self.packages):  # somebody put it there
             value = None
-        if value is None and all(self.found):
+        if value is None and all(self.hits):
             self.on_start()
-        self.found.append(value is not None)
+        self.hits.append(value is not None)
         if value is None:
             value = compute()
             self.cache.put(key, value)
@@ -175,8 +175,8 @@ class Engine:
         if stage.name not in self._values:
             with self._noting(stage.name, stage.title):
                 self._values[stage.name] = self._obtain(stage)
-        found: T = self._values[stage.name]
-        return found
+        stage_result: T = self._values[stage.name]
+        return stage_result
 
     def inputs(self, stage: Stage[Any]) -> dict[str, Any]:
         """Everything that decides a stage's result, down to the scene's keys."""
@@ -221,15 +221,15 @@ class Engine:
         self._elsewhere.append(0.0)
         self._parts.append(part)
         try:
-            (found, heard), cached = self._found(stage, packages)
-            value: T = stage.finish(self, found)
+            (computed, heard), cached = self._found(stage, packages)
+            value: T = stage.finish(self, computed)
         finally:  # a stage that fails leaves the clocks of the others right
             self._parts.pop()
             whole = time.perf_counter() - start
             own = whole - self._elsewhere.pop()
             if self._elsewhere:
                 self._elsewhere[-1] += whole
-        cached = cached or (bool(part.found) and all(part.found))
+        cached = cached or (bool(part.hits) and all(part.hits))
         self.runs[stage.name] = StageRun(stage.name, stage.title, own, cached, heard)
         return value
 

@@ -24,12 +24,12 @@ def EXCITATION(run: Engine) -> coupling.ErrorSeries | None:
     curve = section.error_curve
     if curve is None:
         return None
-    given = scene.stiffness.model == "given"
+    given_stiffness = scene.stiffness.model == "given"
     asked: dict[str, Any] = {
         "order": None if section.error_order == "auto" else section.error_order,
         "share": scene.tolerance,
-        "deflection": 0.0 if given else deflection(run, section),
-        "bounds": None if given else frequency_range(run, section),
+        "deflection": 0.0 if given_stiffness else deflection(run, section),
+        "bounds": None if given_stiffness else frequency_range(run, section),
         "damping_ratio": damping_ratio(run),
     }
     if curve != "unloaded":
@@ -54,7 +54,7 @@ def REVOLUTION_ERROR(run: Engine) -> coupling.ErrorSeries | None:
     if scene.pair is None:
         return None
     each = deviations(scene, run[PAIR], every_tooth=True)
-    if each is None or all(one is None or one.every_tooth_alike for one in each):
+    if each is None or all(gear is None or gear.every_tooth_alike for gear in each):
         return None
     return coupling.revolution_error(
         run[PAIR],

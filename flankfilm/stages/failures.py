@@ -49,16 +49,18 @@ class Failure:
 def failure_of(name: str, title: str, error: PartError, known: Mapping[str, Failure]) -> Failure:
     """Failure of a part: its own, or that of a part which it needs, where that is `known` to have raised the error."""
     raised = (error, error.__cause__)
-    first = next((one for one in known.values() if not one.because and one.error in raised), None)
+    first = next(
+        (failure for failure in known.values() if not failure.because and failure.error in raised), None
+    )
     return Failure(name, title, error, "" if first is None else first.title)
 
 
 def lines(failures: Iterable[Failure]) -> list[str]:
     """A line for each part that failed by itself, each followed by the parts that need it."""
     known = list(failures)
-    found = []
-    for first in (one for one in known if not one.because):
-        found.append(first.line)
-        if needed := [one.title for one in known if one.because == first.title]:
-            found.append(f"not computed because of it: {', '.join(needed)}")
-    return found
+    texts = []
+    for first in (failure for failure in known if not failure.because):
+        texts.append(first.line)
+        if needed := [failure.title for failure in known if failure.because == first.title]:
+            texts.append(f"not computed because of it: {', '.join(needed)}")
+    return texts

@@ -23,14 +23,14 @@ def goals(scene: Scene) -> tuple[Stage[Any], ...]:
     return tuple(dict.fromkeys(_goals(scene, set(scene.wants), scene.stiffness.model == "given")))
 
 
-def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
+def _goals(scene: Scene, wants: set[str], given_stiffness: bool) -> Iterator[Stage[Any]]:
     if "geometry" in wants:
         yield of.PAIR
     if scene.heat is not None and scene.pair is not None:
         yield of.HEAT
-    if "closed-forms" in wants or ({"report", "stiffness"} <= wants and not given):
+    if "closed-forms" in wants or ({"report", "stiffness"} <= wants and not given_stiffness):
         yield of.CLOSED_FORMS
-    if wants & {"stiffness", "film"} and not given:
+    if wants & {"stiffness", "film"} and not given_stiffness:
         over_face = bool(varies_by(scene))
         yield from (of.PLAN, *((of.FACE_GEARS,) if over_face else ()), of.DRY_CYCLE, of.REFERENCES)
         if over_face:
@@ -39,7 +39,7 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
             yield of.OTHER_CYCLES
         if scene.film.model != "none" or "film" in wants:
             yield of.MESH
-    if "film" in wants and not given and scene.film.asked_heat != "off":
+    if "film" in wants and not given_stiffness and scene.film.asked_heat != "off":
         yield losses.HOT_FILM
     if "losses" in wants:
         yield from (of.PAIR, losses.LOSSES, losses.HOT_CONTACT)
@@ -47,7 +47,7 @@ def _goals(scene: Scene, wants: set[str], given: bool) -> Iterator[Stage[Any]]:
     if "root-stress" in wants:
         yield of.ROOT_STRESS
     if wants & {"fourier", *needs.MOTIONS}:
-        if "report" in wants and not given and scene.pair is not None:
+        if "report" in wants and not given_stiffness and scene.pair is not None:
             yield of.DRY_CYCLE  # a film from the cache asks for none, and stands beside it in the report
         yield motion.FOURIER
     if scene.dynamics is not None and scene.dynamics.damping_ratio == BY_FILM and wants & {*needs.MOTIONS}:

@@ -97,5 +97,7 @@ def HOT_FILM(run: Engine) -> coupling.MeshLosses | None:
 )
 def HOT_CONTACT(run: Engine) -> ehl.ThermalFilm:
     """Whole film of the contact whose oil is hottest, for pictures."""
-    pair, found = run[PAIR], run[LOSSES]
-    return coupling.hottest_film(pair, found, shearing_oil(run.scene), solids(pair), supply=supply(run.scene))
+    pair, losses = run[PAIR], run[LOSSES]
+    return coupling.hottest_film(
+        pair, losses, shearing_oil(run.scene), solids(pair), supply=supply(run.scene)
+    )

@@ -80,11 +80,11 @@ def FOURIER(run: Engine) -> coupling.MeshSeries:
     """Series of the mesh stiffness, or the given one; with a wanted diagram of the order that its jumps need."""
     if not by_jumps(run):
         return _series(run)  # no separate stage, which a run would list beside this one
-    series, found = run[CURVE_SERIES], run[BRANCHES]
-    if found.order == series.order or series.cycle is None:
+    series, jumps = run[CURVE_SERIES], run[BRANCHES]
+    if jumps.order == series.order or series.cycle is None:
         return series
-    more = coupling.mesh_series(series.cycle, series.kind, found.order)
-    return replace(more, left_out=series.left_out, share=series.share, tried=found.tried)
+    more = coupling.mesh_series(series.cycle, series.kind, jumps.order)
+    return replace(more, left_out=series.left_out, share=series.share, tried=jumps.tried)
 
 
 def by_jumps(run: Engine) -> bool:
@@ -117,34 +117,34 @@ def _oscillator(run: Engine, series: coupling.MeshSeries) -> coupling.PairOscill
     """Oscillator of the scene with a series of its stiffness."""
     section = dynamics_of(run)
     if section.dimensionless:
-        ranged, given = section.sweep or section.diagram, _given(run)
+        ranged, arguments = section.sweep or section.diagram, _given(run)
         start = ranged.frequency[0] if ranged and ranged.frequency else 1.0
         oscillator = dynamics.GearOscillator(
-            stiffness=series.stiffness.normalised(), frequency=start, **given
+            stiffness=series.stiffness.normalised(), frequency=start, **arguments
         )
         return coupling.PairOscillator(oscillator, None, series)
-    speed, given = of_the_pair(run, series)
-    return coupling.pair_oscillator(run[PAIR], series, pinion_torque(run.scene), speed, **given)
+    speed, arguments = of_the_pair(run, series)
+    return coupling.pair_oscillator(run[PAIR], series, pinion_torque(run.scene), speed, **arguments)
 
 
 def of_the_pair(run: Engine, series: coupling.MeshSeries) -> tuple[float, dict[str, Any]]:
     """Speed of the pinion [rad/s] and what the scene says of its pair's oscillator, as arguments."""
-    section, given = dynamics_of(run), _given(run)
+    section, arguments = dynamics_of(run), _given(run)
     rpm = followed_speed(run.scene, run[PAIR], series)
     if section.error_curve is not None and (error := run[EXCITATION]) is not None:
-        given["error_amplitude"], given["error_phase"] = error.amplitude, error.phase
-    given["extra_inertia"] = section.extra_inertia_kg_m2.each
-    given["reference"] = run.scene.reference or "body"
-    return rpm * math.pi / 30.0, given
+        arguments["error_amplitude"], arguments["error_phase"] = error.amplitude, error.phase
+    arguments["extra_inertia"] = section.extra_inertia_kg_m2.each
+    arguments["reference"] = run.scene.reference or "body"
+    return rpm * math.pi / 30.0, arguments
 
 
 def _given(run: Engine) -> dict[str, Any]:
     """What the oscillator takes of the section as it is."""
-    given = dynamics_of(run).si(*OSCILLATOR)
-    given["damping_ratio"] = damping_ratio(run)
-    if given["error_phase"] == (0.0,):
-        given["error_phase"] = 0.0  # of all harmonics
-    return given
+    arguments = dynamics_of(run).si(*OSCILLATOR)
+    arguments["damping_ratio"] = damping_ratio(run)
+    if arguments["error_phase"] == (0.0,):
+        arguments["error_phase"] = 0.0  # of all harmonics
+    return arguments
 
 
 def dynamics_of(run: Engine) -> DynamicsSection:

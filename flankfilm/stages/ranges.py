@@ -29,14 +29,14 @@ def frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, float
 def speeds_looked_at(run: Engine, series: coupling.MeshSeries, speed: float) -> tuple[float, float] | None:
     """Lowest and highest pinion speed of sweep, diagram, run-up and operation [rad/s]; None without a range."""
     section = required(run.scene.dynamics, "[dynamics]", "a range of speed")
-    asked = [one for one in (section.sweep, section.diagram, section.run_up) if one is not None]
+    asked = [span for span in (section.sweep, section.diagram, section.run_up) if span is not None]
     if not asked:
         return None
     extra, length = section.extra_inertia_kg_m2.each, section.value("length_scale_um")
     mean = series.stiffness.mean
     scales = coupling.pair_scales(run[PAIR], pinion_torque(run.scene), mean, extra, length)
-    ends = [scales.speed(end) for one in asked for end in one.frequency or ()]
-    ends += [end * math.pi / 30.0 for one in asked for end in one.speed_rpm or ()]
+    ends = [scales.speed(end) for span in asked for end in span.frequency or ()]
+    ends += [end * math.pi / 30.0 for span in asked for end in span.speed_rpm or ()]
     return min(*ends, speed), max(*ends, speed)
 
 

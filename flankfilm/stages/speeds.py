@@ -92,12 +92,12 @@ def DYNAMIC_MAP(run: Engine) -> coupling.DynamicMap:
     section = required(scene.dynamics, "[dynamics]", "the dynamic map")
     operating = required(scene.operating, "[operating]", "the dynamic map")
     asked = required(section.sweep, "dynamics.sweep", "the dynamic map", "add the range")
-    given = section.si(*OSCILLATOR) | {"damping_ratio": damping_ratio(run)}
-    if given["error_phase"] == (0.0,):
-        given["error_phase"] = 0.0
+    arguments = section.si(*OSCILLATOR) | {"damping_ratio": damping_ratio(run)}
+    if arguments["error_phase"] == (0.0,):
+        arguments["error_phase"] = 0.0
     if section.error_curve is not None and (error := run[EXCITATION]) is not None:
-        given["error_amplitude"], given["error_phase"] = error.amplitude, error.phase
-    given |= {
+        arguments["error_amplitude"], arguments["error_phase"] = error.amplitude, error.phase
+    arguments |= {
         "extra_inertia": section.extra_inertia_kg_m2.each,
         "reference": scene.reference or "body",
     }
@@ -113,9 +113,9 @@ def DYNAMIC_MAP(run: Engine) -> coupling.DynamicMap:
         if shafts is not None:
             tilting = coupling.tilting_mesh(cycle)
             return coupling.pair_drive(
-                run[PAIR], series, torque, float(speeds[0]), **shafts, **given, **tilting
+                run[PAIR], series, torque, float(speeds[0]), **shafts, **arguments, **tilting
             )
-        return coupling.pair_oscillator(run[PAIR], series, torque, float(speeds[0]), **given)
+        return coupling.pair_oscillator(run[PAIR], series, torque, float(speeds[0]), **arguments)
 
     return coupling.dynamic_map(at, operating.torques_Nm, speeds, progress=run.rows(DYNAMIC_MAP))
 

@@ -30,8 +30,8 @@ def _of_face(name: str, figure: str, take: Take = float, said: str = EVEN) -> Na
 
     def value(engine: Engine) -> Any:
         contact = engine[DRY_CYCLE].contact
-        found = None if contact is None or contact.face is None else getattr(contact.face, figure)
-        return None if found is None else take(found)
+        quantity = None if contact is None or contact.face is None else getattr(contact.face, figure)
+        return None if quantity is None else take(quantity)
 
     return output_of(name, figures(fem.FaceLoads)[figure], "stiffness", value, said)
 
@@ -47,7 +47,7 @@ def _by_model(name: str, about: Figure, value: Take) -> Named:
 
 def _factor_of(model: str) -> Take:
     """Factor at the pitch point by a model."""
-    return lambda found: dict(zip(found.model, found.pitch_point_factor, strict=True))[model]
+    return lambda models: dict(zip(models.model, models.pitch_point_factor, strict=True))[model]
 
 
 def _over_tolerance(name: str, about: Figure, figure: str) -> Named:
@@ -90,7 +90,11 @@ def _of_roots() -> Iterator[Named]:
             f"maximum tension at the root of the {gear} over that of the same forces spread evenly; nan where even",
         )
     about = figures(Iso6336FaceLoad)["K_Fbeta"]
-    yield _of_root("iso_root_face_factor", about, lambda found: found.iso_face and found.iso_face.K_Fbeta)
+    yield _of_root(
+        "iso_root_face_factor",
+        about,
+        lambda root_stress: root_stress.iso_face and root_stress.iso_face.K_Fbeta,
+    )
 
 
 STRAIGHT = "{}; nan where the load is even along the face, or shafts are rigid"
@@ -147,7 +151,7 @@ FACE_OUTPUTS: tuple[Named, ...] = (
     _by_model(
         "face_load_factor_at_C",
         Figure("1", f"{_AT_C}, nan where even"),
-        lambda found: found.pitch_point_factor[0],
+        lambda face_models: face_models.pitch_point_factor[0],
     ),
     _by_model(
         "slices_face_load_factor",
@@ -157,7 +161,7 @@ FACE_OUTPUTS: tuple[Named, ...] = (
     _by_model(
         "iso_face_load_factor",
         Figure("1", "face-load factor by ISO 6336-1, method C, nan where even"),
-        lambda found: found.pitch_point_factor[-1],
+        lambda face_models: face_models.pitch_point_factor[-1],
     ),
     *_of_roots(),
     *_of_shafts(),

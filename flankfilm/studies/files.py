@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def dataset(found: StudyResults) -> xr.Dataset:
+def dataset(study_results: StudyResults) -> xr.Dataset:
     """Give a study as a dataset along ``row``: varied keys as coordinates, outputs, cost and faults."""
-    plan, rows = found.plan, found.rows
+    plan, rows = study_results.plan, study_results.rows
     attributes = {"title": plan.title, "design": plan.design, **provenance(json.dumps(plan.scene))}
     data = of_rows("row", plan.keys, plan.rows, plan.outputs, rows)
     about = {"units": "", "long_name": "why a row failed; empty where it did not"}
@@ -56,16 +56,16 @@ def of_rows(
         for key, values in zip(keys, zip(*points, strict=True), strict=True)
     }
     columns = zip(*(row.values for row in results), strict=True)
-    found = {
+    variables = {
         name: (axis, np.array(values), {"units": OUTPUTS[name].unit, "long_name": OUTPUTS[name].meaning})
         for name, values in zip(outputs, columns, strict=True)
     }
     seconds = np.array([row.seconds for row in results])
     cost = (axis, seconds, {"units": "s", "long_name": f"cost of the {axis}"})
-    return xr.Dataset({**found, "seconds": cost}, varied)
+    return xr.Dataset({**variables, "seconds": cost}, varied)
 
 
-def write_study(found: StudyResults, folder: Path) -> list[Path]:
+def write_study(study_results: StudyResults, folder: Path) -> list[Path]:
     """Write ``study.nc``, ``study.svg`` where numbers vary, and a page with all; return the files."""
     from flankfilm.figures import study
     from flankfilm.figures.studies import varied_numbers
@@ -73,20 +73,25 @@ def write_study(found: StudyResults, folder: Path) -> list[Path]:
     from flankfilm.report.other_pages import write_study_page
 
     files = [folder / "study.nc"]
-    content = dataset(found)
+    content = dataset(study_results)
     write_netcdf(files[0], content)
-    keys = found.plan.keys[: found.plan.varied]
+    keys = study_results.plan.keys[: study_results.plan.varied]
     if varied_numbers(content, keys):
         files.append(folder / "study.svg")
-        save(study(content, keys, found.plan.outputs), files[-1])
-    return [*files, write_study_page(found, content, folder)]
+        save(study(content, keys, study_results.plan.outputs), files[-1])
+    return [*files, write_study_page(study_results, content, folder)]
 
 
-def summary(found: StudyResults) -> list[str]:
+def summary(study_results: StudyResults) -> list[str]:
     """Lines for the terminal: rows, rate, and the first faults."""
-    rate = f", {found.computed / found.seconds:.2g} rows/s" if found.computed else ""
-    lines = [f"{len(found.rows)} rows, {found.computed} of them computed in {found.seconds:.1f} s{rate}"]
-    lines += [f"row {row.index} failed: {row.fault}" for row in found.failures[:5]]
-    if len(found.failures) > 5:
-        lines.append(f"{len(found.failures)} rows failed in all; the column fault of rows.csv says why")
+    rate = f", {study_results.computed / study_results.seconds:.2g} rows/s" if study_results.computed else ""
+    lines = [
+        f"{len(study_results.rows)} rows, {study_results.computed} of them computed in "
+        f"{study_results.seconds:.1f} s{rate}"
+    ]
+    lines += [f"row {row.index} failed: {row.fault}" for row in study_results.failures[:5]]
+    if len(study_results.failures) > 5:
+        lines.append(
+            f"{len(study_results.failures)} rows failed in all; the column fault of rows.csv says why"
+        )
     return lines

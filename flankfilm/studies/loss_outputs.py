@@ -21,7 +21,7 @@ _path = outputs_from(lambda engine: engine[LOSSES].path, LossesAlongPath, "losse
 
 def _at_end(figure: str, end: int) -> Take:
     """Mean at the lower or the upper end of the band of Eyring's stress."""
-    return lambda found: getattr(found.band, figure)[end]
+    return lambda losses: getattr(losses.band, figure)[end]
 
 
 def _band(figure: str) -> list[Named]:
@@ -55,14 +55,14 @@ def _gears() -> list[Named]:
 
 def _of_gear(figure: str, gear: int) -> Take:
     """Maximum value of one gear."""
-    return lambda found: np.max(attrgetter(figure)(found)[gear])
+    return lambda losses: np.max(attrgetter(figure)(losses)[gear])
 
 
 def _boundary() -> Iterator[Named]:
     """Regime of the films with heat, and what the asperities' friction makes and leaves open."""
 
     def of(value: Take) -> Take:
-        return lambda found: None if found.boundary is None else value(found.boundary)
+        return lambda losses: None if losses.boundary is None else value(losses.boundary)
 
     def at(end: int) -> Take:
         return lambda band: np.sort(band.mesh_loss)[end]
@@ -76,8 +76,8 @@ def _boundary() -> Iterator[Named]:
     part = Figure("1", "part of the losses that the asperities' friction makes; nan if smooth", shown="%")
     yield output_of("boundary_friction_part", part, "losses", in_result(LOSSES, of(attrgetter("loss_part"))))
 
-    def regime_of(found: MeshLosses) -> float | None:
-        ratio = found.path.least_film_ratio
+    def regime_of(losses: MeshLosses) -> float | None:
+        ratio = losses.path.least_film_ratio
         return None if ratio is None else regime_number(ratio)
 
     about = Figure("1", f"regime at the minimum film ratio with heat: {NUMBERS}; nan if smooth")
@@ -126,7 +126,7 @@ LOSS_OUTPUTS: tuple[Named, ...] = (
     _error(
         "temperature_rise_error",
         "larger estimated relative error of the maximum rises of oil and flanks",
-        lambda found: max(found.path.greatest_oil_rise_error, found.path.greatest_flank_rise_error.max()),
+        lambda losses: max(losses.path.greatest_oil_rise_error, losses.path.greatest_flank_rise_error.max()),
     ),
     _error(
         "flank_temperature_error",

@@ -57,7 +57,7 @@ def _resonance(motion: PairOscillator) -> float | None:
 
 def _greatest(values: Mapping[str, Array] | None) -> float | None:
     """Largest of both directions of a sweep, of the motions that are known; None without any."""
-    known = [one[~np.isnan(one)] for one in (values or {}).values()]
+    known = [curve[~np.isnan(curve)] for curve in (values or {}).values()]
     joined = np.concatenate(known) if known else np.zeros(0)
     return float(joined.max()) if joined.size else None
 
@@ -84,28 +84,28 @@ def _moved(name: str, figure: Figure, value: Callable[[SpeedSweep | DriveSweep],
     )
 
 
-def _force_error(found: SpeedSweep | DriveSweep) -> float | None:
+def _force_error(sweep: SpeedSweep | DriveSweep) -> float | None:
     """Sampling, and what more harmonics change; None where that is not known."""
-    if not isinstance(found, DriveSweep):
-        return found.greatest_factor_error
-    truncation = _greatest(found.force_change)
-    return None if truncation is None else truncation + found.sampling_error
+    if not isinstance(sweep, DriveSweep):
+        return sweep.greatest_factor_error
+    truncation = _greatest(sweep.force_change)
+    return None if truncation is None else truncation + sweep.sampling_error
 
 
-def _loss_speed(found: SpeedSweep) -> float | None:
+def _loss_speed(sweep: SpeedSweep) -> float | None:
     """Lowest pinion speed at which contact is lost, by the sweep's own speed over frequency."""
-    least = found.least_grazing
-    if least is None or found.speed is None:
+    least = sweep.least_grazing
+    if least is None or sweep.speed is None:
         return None
-    return float(found.speed[0] / found.frequency[0]) * least
+    return float(sweep.speed[0] / sweep.frequency[0]) * least
 
 
 def _first(rising: bool, curve: str) -> Callable[[SpeedDiagram], float | None]:
     """Figure of the first jump that a rising, or a falling, speed reaches; None where no motion ends."""
 
-    def of(found: SpeedDiagram) -> float | None:
-        values = getattr(found, curve)
-        met = [at for at, jump in enumerate(found.jumps) if jump.rising is rising]
+    def of(diagram: SpeedDiagram) -> float | None:
+        values = getattr(diagram, curve)
+        met = [at for at, jump in enumerate(diagram.jumps) if jump.rising is rising]
         return None if values is None or not met else float(values[met[0] if rising else met[-1]])
 
     return of
@@ -159,7 +159,7 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
     _moved(
         "greatest_force_factor",
         Figure("1", "maximum force over the mean force, of all motions of the sweep"),
-        lambda found: _greatest(found.force_factor),
+        lambda sweep: _greatest(sweep.force_factor),
     ),
     _moved(
         "greatest_force_factor_error",
@@ -169,7 +169,7 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
     _moved(
         "separated",
         Figure("1", "largest part of the time without contact, of all motions of the sweep", shown="%"),
-        lambda found: _greatest(found.separated),
+        lambda sweep: _greatest(sweep.separated),
     ),
     _swept(
         "contact_loss_speed",
@@ -191,7 +191,7 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
             "nan for a given series",
         ),
         "sweep",
-        in_result(DRIVE, lambda found: max(found.lowest_frequency_error, found.mesh_frequency_error)),
+        in_result(DRIVE, lambda drive: max(drive.lowest_frequency_error, drive.mesh_frequency_error)),
     ),
     _drive("valid_to", name="drive_valid_to"),
     _drive("tilt_stiffness", name="drive_tilt_stiffness"),
@@ -248,7 +248,7 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
         "greatest_run_up_factor",
         Figure("1", "maximum force over the mean force of run-up and coast-down"),
         "run-up",
-        in_result(RUN_UP, lambda found: _greatest(found.force_factor)),
+        in_result(RUN_UP, lambda run_up: _greatest(run_up.force_factor)),
     ),
     output_of(
         "greatest_map_factor",
@@ -283,9 +283,9 @@ MOTION_OUTPUTS: tuple[Named, ...] = (
         "diagram",
         in_result(
             DIAGRAM,
-            lambda found: (
-                np.nanmax(found.force_factor_iso6336)
-                if np.isfinite(found.force_factor_iso6336).any()
+            lambda diagram: (
+                np.nanmax(diagram.force_factor_iso6336)
+                if np.isfinite(diagram.force_factor_iso6336).any()
                 else None
             ),
         ),

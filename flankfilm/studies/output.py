@@ -45,8 +45,8 @@ def output_of(
     """An output by its name, from a function that gives its value in SI; None stands for nan."""
 
     def of(engine: Engine) -> float:
-        found = value(engine)
-        return float("nan") if found is None else float(found) / factor(figure.read_in)
+        in_si = value(engine)
+        return float("nan") if in_si is None else float(in_si) / factor(figure.read_in)
 
     meaning = sentence(figure.meaning)
     if said != "{}":
@@ -61,8 +61,8 @@ def outputs_from(stage: Callable[[Engine], Any], kind: type, want: str) -> Calla
         about = figures(kind)[figure]
 
         def value(engine: Engine) -> Any:
-            found = getattr(stage(engine), figure)
-            return None if found is None else take(found)
+            quantity = getattr(stage(engine), figure)
+            return None if quantity is None else take(quantity)
 
         return output_of(name or figure, about, want, value, said)
 
@@ -73,8 +73,8 @@ def model_error_of(name: str, said: str, want: str, record: Callable[[Engine], A
     """Output of what the model leaves open of a figure of a record, relative; nan where it is not estimated."""
 
     def of(engine: Engine) -> float | None:
-        found = record(engine)
-        return None if found is None else uncertainty(found, figure).model
+        stage_record = record(engine)
+        return None if stage_record is None else uncertainty(stage_record, figure).model
 
     about = Figure("1", f"what the model leaves open of {said}, relative; nan where it is not estimated")
     return output_of(name, about, want, of)

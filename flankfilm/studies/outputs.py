@@ -106,9 +106,9 @@ def _of_spike(value: Callable[[Any, Any], float]) -> Take:
     return of
 
 
-def _regime(found: LubricatedCycle) -> float | None:
+def _regime(cycle: LubricatedCycle) -> float | None:
     """Regime of the minimum film; None for smooth flanks."""
-    ratio = found.film.least_film_ratio
+    ratio = cycle.film.least_film_ratio
     return None if ratio is None else regime_number(ratio)
 
 

@@ -89,12 +89,12 @@ def read_plan(path: Path) -> Plan:
 
 def refuse_unknown_outputs(wanted: Mapping[str, Iterable[str]]) -> None:
     """Refuse outputs that no row has, given by the key of the file that names them, all at once."""
-    with Faults() as found:
+    with Faults() as faults:
         for key, name in ((key, name) for key, names in wanted.items() for name in names):
             if name not in OUTPUTS:
                 near = difflib.get_close_matches(name, OUTPUTS, n=1)
                 remedy = f"Did you mean {near[0]}?" if near else f"Allowed: {', '.join(OUTPUTS)}"
-                found.add(key, repr(name), "is not an output", remedy)
+                faults.add(key, repr(name), "is not an output", remedy)
 
 
 def plan_of(study: StudyFile, folder: Path) -> Plan:

@@ -100,8 +100,8 @@ def compute_row(row: Row) -> RowResult:
         return failed(row, what, time.perf_counter() - start)
     except Exception as fault:  # noqa: BLE001 - one row must not end a study of thousands; its fault is kept
         place = traceback.extract_tb(fault.__traceback__)[-1]
-        where = f"{type(fault).__name__}: {fault} ({place.name}, line {place.lineno})"
-        return failed(row, where, time.perf_counter() - start)
+        cause = f"{type(fault).__name__}: {fault} ({place.name}, line {place.lineno})"
+        return failed(row, cause, time.perf_counter() - start)
     return RowResult(row.index, tuple(values), time.perf_counter() - start, _joined(faults, len(values)))
 
 

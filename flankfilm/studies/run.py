@@ -23,11 +23,11 @@ def refuse_unknown(folder: Path, lines: Iterable[Line], plan: Plan) -> None:
     with Faults() as faults:
         for line in lines:
             index = line.result.index
-            where = f"{folder / ROWS}, row {index}"
+            place = f"{folder / ROWS}, row {index}"
             if not 0 <= index < len(rows):
-                faults.add(where, "", f"must be one of 0 to {len(rows) - 1}", WITHOUT_IT)
+                faults.add(place, "", f"must be one of 0 to {len(rows) - 1}", WITHOUT_IT)
             elif line.values != tuple(str(cell(value)) for value in rows[index]):
-                faults.add(where, "", "has other values of the keys than the study", WITHOUT_IT)
+                faults.add(place, "", "has other values of the keys than the study", WITHOUT_IT)
 
 
 @dataclass(frozen=True)

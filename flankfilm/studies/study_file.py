@@ -41,10 +41,10 @@ class Range(Section):
     def _a_range(self) -> Range:
         if not self.from_ < self.to:
             allowed = f"must lie below to = {self.to:g}"
-            raise refused(allowed, "give the smaller number first", where="from", value=f"{self.from_:g}")
+            raise refused(allowed, "give the smaller number first", key="from", value=f"{self.from_:g}")
         if self.log and self.from_ <= 0:
             allowed = "must be more than 0 with log = true"
-            raise refused(allowed, "raise it, or leave log out", where="from", value=f"{self.from_:g}")
+            raise refused(allowed, "raise it, or leave log out", key="from", value=f"{self.from_:g}")
         return self
 
     def at(self, unit: float) -> Value:
@@ -113,17 +113,17 @@ class RowsFile(Section):
 
     @model_validator(mode="after")
     def _leaders_and_places(self) -> RowsFile:
-        with Faults() as found:
+        with Faults() as faults:
             if not self.vary:
-                found.add("vary", "", "needs a key of the scene", 'such as "pair.pinion.profile_shift"')
+                faults.add("vary", "", "needs a key of the scene", 'such as "pair.pinion.profile_shift"')
             for key, rule in self.follow.items():
                 if rule.of not in self.vary:
                     remedy = f"follow one that is: {', '.join(self.vary)}"
-                    found.add(f"follow.{key}.of", rule.of, "is not varied", remedy)
+                    faults.add(f"follow.{key}.of", rule.of, "is not varied", remedy)
             fixed = self.set.keys() & (self.vary.keys() | self.follow.keys())
             for key in sorted(fixed | (self.vary.keys() & self.follow.keys())):
                 allowed = "stands in more than one of vary, follow and set"
-                found.add(key, "", allowed, f"take it out of {'set' if key in fixed else 'follow'}")
+                faults.add(key, "", allowed, f"take it out of {'set' if key in fixed else 'follow'}")
         return self
 
 
@@ -151,15 +151,17 @@ class StudyFile(RowsFile):
     @model_validator(mode="after")
     def _one_design(self) -> StudyFile:
         sampled = self.design in ("latin-hypercube", "sobol")
-        with Faults() as found:
+        with Faults() as faults:
             if sampled and self.samples is None:
-                found.add("samples", "", f'is required by design = "{self.design}"', "such as samples = 64")
+                faults.add("samples", "", f'is required by design = "{self.design}"', "such as samples = 64")
             if not sampled and self.samples is not None:
                 allowed = f'belongs to sampled designs, not to "{self.design}"'
-                found.add("samples", self.samples, allowed, 'leave it out, or take design = "sobol"')
+                faults.add("samples", self.samples, allowed, 'leave it out, or take design = "sobol"')
             for key, values in self.vary.items():
                 if isinstance(values, Range) and not sampled and values.steps is None:
-                    found.add(f"vary.{key}.steps", "", f"is required by a {self.design}", "such as steps = 5")
+                    faults.add(
+                        f"vary.{key}.steps", "", f"is required by a {self.design}", "such as steps = 5"
+                    )
         return self
 
 

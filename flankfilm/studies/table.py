@@ -79,7 +79,7 @@ def read_lines(path: Path, columns: Columns) -> list[Line]:
             if len(line) != len(columns.header) or _checksum(line[:-1]) != line[-1]:
                 faults.add(f"{path}, line {number}", "", "was changed since it was written", WITHOUT_IT)
     first, last = 1 + len(columns.keys), 1 + len(columns.keys) + len(columns.outputs)
-    found: list[Line] = []
+    rows: list[Line] = []
     seen: set[int] = set()
     with Faults() as faults:
         for number, line in enumerate(lines[1:], start=2):
@@ -92,10 +92,10 @@ def read_lines(path: Path, columns: Columns) -> list[Line]:
             if index < 0 or index in seen or not 0.0 <= spent < math.inf:
                 faults.add(f"{path}, line {number}", "", "holds a row that no run wrote", WITHOUT_IT)
             seen.add(index)
-            found.append(
+            rows.append(
                 Line(RowResult(index, values, spent, printable(line[last + 1])), tuple(line[1:first]))
             )
-    return found
+    return rows
 
 
 def _written(rows: Sequence[Sequence[object]]) -> str:

@@ -48,13 +48,13 @@ class Workers:
         Where a process dies, the rows that it may have had are computed again, each in a separate process;
         one whose process dies again has failed.
         """
-        left = list(rows)
-        while left:
+        remaining = list(rows)
+        while remaining:
             arrived: set[int] = set()
             suspects: list[Row] = []
             waiting: dict[Future[RowResult], Row] = {}
             try:
-                for result in self._in_pool(left, waiting):
+                for result in self._in_pool(remaining, waiting):
                     arrived.add(result.index)
                     yield result
             except BrokenExecutor:
@@ -64,7 +64,7 @@ class Workers:
             for row in suspects:
                 arrived.add(row.index)
                 yield _alone(row)
-            left = [row for row in left if row.index not in arrived]
+            remaining = [row for row in remaining if row.index not in arrived]
 
     def _in_pool(self, rows: list[Row], waiting: dict[Future[RowResult], Row]) -> Iterator[RowResult]:
         if self._pool is None:

@@ -48,7 +48,7 @@ def verify_scene(
     SolverError
         Where the compliance misses its share of the tolerance.
     """
-    lacking = [f"[{name}]" for name in ("pair", "material", "operating") if not scene.given(name)]
+    lacking = [f"[{name}]" for name in ("pair", "material", "operating") if not scene.given_keys(name)]
     if lacking:
         raise InputError(
             Fault(name, "", "is required to verify", f"Add the section {name}") for name in lacking
@@ -57,16 +57,16 @@ def verify_scene(
         claim(folder, "verify.nc")
     announce, cache = in_steps(progress, 3), results_cache(use_cache)
     engine = Engine(scene, cache, lambda stage: announce(stage.title))
-    found = engine[VERIFICATION]
+    verification = engine[VERIFICATION]
     if not varies_by(scene):
-        return found
+        return verification
     unknown = unknown_over_face(scene, engine[PAIR])
     if unknown:
-        return replace(found, message=f"Load over the face left out: {unknown}")
+        return replace(verification, message=f"Load over the face left out: {unknown}")
     elements = scene.stiffness.model_copy(update={"model": "fem", "pairs": "coupled"})
     by_elements = scene.model_copy(update={"stiffness": elements})
     whole = Engine(by_elements, cache, lambda stage: announce(stage.title))
-    return replace(found, over_face=whole[FACE_MODELS])
+    return replace(verification, over_face=whole[FACE_MODELS])
 
 
 def unknown_over_face(scene: Scene, pair: gears.GearPair) -> str:

@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from flankfilm.scene import Scene
 
 
-def table(found: Verification, reference: Curves) -> Table:
+def table(verification: Verification, reference: Curves) -> Table:
     """Tabulate every model against one reference: a row for each figure."""
     from flankfilm.figures.reading import unit_text
     from flankfilm.report.other_pages import compared, compared_with
 
     name = reference.label
-    heads = "figure", "unit", "finite elements", *(model.label for model in found.models)
-    rows = ((figure, unit_text(unit), *cells) for figure, unit, *cells in compared(found, name))
-    return _laid_out(f"against {compared_with(found, name)}", heads, rows)
+    heads = "figure", "unit", "finite elements", *(model.label for model in verification.models)
+    rows = ((figure, unit_text(unit), *cells) for figure, unit, *cells in compared(verification, name))
+    return _laid_out(f"against {compared_with(verification, name)}", heads, rows)
 
 
 def face_table(models: FaceLoadModels) -> Table:
@@ -55,75 +55,87 @@ def _laid_out(title: str, heads: Iterable[str], rows: Iterable[Sequence[str]]) -
     return shown
 
 
-def costs(found: Verification) -> str:
+def costs(verification: Verification) -> str:
     """What each model cost."""
-    each = ", ".join(f"{c.label} {1e3 * c.cost.seconds:.1f} ms" for c in (*found.references, *found.models))
-    return f"finite elements {found.cost.seconds:.2f} s once, then {each}"
+    each = ", ".join(
+        f"{c.label} {1e3 * c.cost.seconds:.1f} ms" for c in (*verification.references, *verification.models)
+    )
+    return f"finite elements {verification.cost.seconds:.2f} s once, then {each}"
 
 
-def dataset(found: Verification, scene: Scene) -> xr.Dataset:
+def dataset(verification: Verification, scene: Scene) -> xr.Dataset:
     """Curves of every closed form and of finite elements as one dataset.
 
     Parameters
     ----------
-    found : Verification
+    verification : Verification
     scene : Scene
         That was verified.
     """
     import xarray as xr
 
-    models = {model.label: model for model in found.models if model.single_stiffness.size}
+    models = {model.label: model for model in verification.models if model.single_stiffness.size}
     like = {"units": "1", "long_name": "reference without what closed forms lack", "error_note": EXACT}
     parts = (
-        of_record("pair", found.pair),
-        of_quantities("outline", outlines(found.pair)),
-        of_quantities("path", points(found.pair)),
-        of_record("path", found, ("rho1",)),
-        of_record("mesh", found, ("position",)),
+        of_record("pair", verification.pair),
+        of_quantities("outline", outlines(verification.pair)),
+        of_quantities("path", points(verification.pair)),
+        of_record("path", verification, ("rho1",)),
+        of_record("mesh", verification, ("position",)),
         of_models(
-            "reference", {curves.label: curves for curves in found.references}, "reference", "reference"
+            "reference",
+            {curves.label: curves for curves in verification.references},
+            "reference",
+            "reference",
         ),
         of_models("model", models, "model"),
-        *([] if found.over_face is None else [of_record("face_models", found.over_face)]),
-        xr.Dataset({"like_for_like": ((), found.references.index(found.like_for_like), like)}),
+        *([] if verification.over_face is None else [of_record("face_models", verification.over_face)]),
+        xr.Dataset({"like_for_like": ((), verification.references.index(verification.like_for_like), like)}),
     )
     return merged(parts, {"title": scene.title, **provenance(scene.model_dump_json())})
 
 
-def write_verification(found: Verification, scene: Scene, folder: Path) -> list[Path]:
+def write_verification(comparison: Verification, scene: Scene, folder: Path) -> list[Path]:
     """Write curves and differences as netCDF and CSV, the figure, and a page with all; return the files."""
     from flankfilm.figures import verification
     from flankfilm.figures.style import save
     from flankfilm.report.other_pages import write_verification_page
 
-    held, files = dataset(found, scene), [folder / f"verify.{suffix}" for suffix in ("nc", "svg")]
+    held, files = dataset(comparison, scene), [folder / f"verify.{suffix}" for suffix in ("nc", "svg")]
     write_netcdf(files[0], held)
     save(verification(held), files[1])
-    return [*_write_tables(found, folder), *files, write_verification_page(found, held, folder)]
+    return [*_write_tables(comparison, folder), *files, write_verification_page(comparison, held, folder)]
 
 
-def _column(name: str, found: Verification) -> list[Any]:
+def _column(name: str, verification: Verification) -> list[Any]:
     """One figure of all differences, in per cent where its name says so."""
-    values = [getattr(difference, name.removesuffix("_percent")) for difference in found.differences]
+    values = [getattr(difference, name.removesuffix("_percent")) for difference in verification.differences]
     return [100 * value for value in values] if name.endswith("_percent") else values
 
 
-def _write_tables(found: Verification, folder: Path) -> list[Path]:
+def _write_tables(verification: Verification, folder: Path) -> list[Path]:
     names = "figure unit reference reference_value reference_error_percent model value difference_percent"
-    curves = {identifier(c.label): c for c in (*found.references, *found.models) if c.single_stiffness.size}
+    curves = {
+        identifier(c.label): c
+        for c in (*verification.references, *verification.models)
+        if c.single_stiffness.size
+    }
     files: dict[str, dict[str, Any]] = {
-        "verify": {name: _column(name, found) for name in names.split()},
+        "verify": {name: _column(name, verification) for name in names.split()},
         "verify_one_pair": {
-            "travel_from_A_mm": 1e3 * (found.rho1 - found.pair.points.A),
-            **{f"{name}_N_per_m": one.single_stiffness for name, one in curves.items()},
+            "travel_from_A_mm": 1e3 * (verification.rho1 - verification.pair.points.A),
+            **{f"{name}_N_per_m": curve.single_stiffness for name, curve in curves.items()},
         },
         "verify_mesh": {
-            "position": found.position,
-            **{f"{name}_N_per_m": one.secant_stiffness for name, one in curves.items()},
-            **{f"{name}_transmission_error_um": 1e6 * one.transmission_error for name, one in curves.items()},
+            "position": verification.position,
+            **{f"{name}_N_per_m": curve.secant_stiffness for name, curve in curves.items()},
+            **{
+                f"{name}_transmission_error_um": 1e6 * curve.transmission_error
+                for name, curve in curves.items()
+            },
         },
     }
-    if (over := found.over_face) is not None:
+    if (over := verification.over_face) is not None:
         files["verify_face"] = {
             "model": list(over.model),
             "face_load_factor": over.face_load_factor,

@@ -216,7 +216,7 @@ def test_an_entry_of_another_type_is_computed_again(tmp_path, odd):
     part = KeptPart(Cache(tmp_path), ("flankfilm",), lambda: None)
     assert part("part", {}, lambda: record) == record
     assert part("part", {}, lambda: None) == record  # which is kept now
-    assert part.found == [False, True]
+    assert part.hits == [False, True]
 
 
 def test_the_cost_of_a_run_is_told_by_its_stages():
