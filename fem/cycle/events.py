@@ -158,27 +158,31 @@ class ContactProblem:
         """
         if not self.force:
             return None
-        forces = found.share.forces[0, 0] / found.kappa
+        forces = found.share.forces[0, 0] / found.lever_ratios
         rho = found.flank_rho(self.given.pair, 0)[:, 0]
         whole = np.stack([found.torques(0)[0] / abs(self.force), forces, *rho], axis=-1)
         if found.face is None:
             return whole
-        cells = found.face.forces[0, 0] / found.kappa[..., None]
+        cells = found.face.forces[0, 0] / found.lever_ratios[..., None]
         return np.concatenate([whole, cells * cells.shape[-1] / self.given.pair.face_width], axis=-1)
 
     def _curves(self, found: ContactState) -> Array:
         """Transmission error, tangent and secant stiffness, moments and their slopes (7, positions)."""
-        share, where, turned = found.share, found.where, found.share.forces[0, 0]
+        share, where, turned = found.share, found.candidates, found.share.forces[0, 0]
         size, deflection = abs(self.force), found.deflection(0)[0]
         moved, tangent = found.turn(0)[0], share.stiffness[0, 0]
         secant = size / deflection if size else tangent
         if self.film is not None and self.film_yields:
             rho1 = np.where(where.touchable & ~where.edge, np.clip(where.place, *self.given.ends), np.nan)
-            shares = turned * found.levers / size if size else turned / turned.sum(axis=-1, keepdims=True)
+            shares = (
+                turned * found.tilted_lever_ratios / size
+                if size
+                else turned / turned.sum(axis=-1, keepdims=True)
+            )
             if found.face is None:
-                added = film_yielding(self.film, rho1, turned / found.kappa, shares)
+                added = film_yielding(self.film, rho1, turned / found.lever_ratios, shares)
             else:
-                forces = found.face.forces[0, 0] / found.kappa[..., None]
+                forces = found.face.forces[0, 0] / found.lever_ratios[..., None]
                 added = yielding_over_face(self.film, rho1, forces, shares)
             secant = size / (size / secant + added) if size else secant
         if self.given.back:
@@ -244,7 +248,7 @@ def _reserve(found: ContactState, force: float, given: MeshSetup) -> Array:
     """
     size = float(np.mean(found.share.transmission_error))
     loads, left = found.share.forces[0, 0], found.open[0, 0]
-    if given.both and found.opposite is not None:
+    if given.two_sided and found.opposite is not None:
         # both sides may be pressed together without a torque, or with next to none
         loads = np.concatenate([loads, found.opposite.forces[0, 0]], axis=-1)
         left = np.concatenate([left, found.opposite.open[0, 0]], axis=-1)
@@ -256,7 +260,7 @@ def _reserve(found: ContactState, force: float, given: MeshSetup) -> Array:
     if given.even:
         return np.asarray(bears)
     # flanks that both fit touch together: what is less than rounding is no difference
-    return np.concatenate([bears, _nearest(found.where.gap[0]) / size + 1e-10], axis=1)
+    return np.concatenate([bears, _nearest(found.candidates.gap[0]) / size + 1e-10], axis=1)
 
 
 def _nearest(gap: Array) -> Array:

@@ -159,9 +159,9 @@ def face_loads(given: MeshSetup, contact: ContactState, number: int, plane: str)
     if over is None or given.face is None:
         return None
     pair, cells = given.pair, given.face.cells
-    forces = (over.forces[number] / contact.kappa[..., None]).reshape(-1, *over.forces.shape[-2:])
+    forces = (over.forces[number] / contact.lever_ratios[..., None]).reshape(-1, *over.forces.shape[-2:])
     factors = face_load_factors(forces)
-    where, (rho1, rho2) = contact.where, contact.where.rho
+    where, (rho1, rho2) = contact.candidates, contact.candidates.rho
     radius = np.where(where.touchable & ~where.edge, rho1 * rho2 / (rho1 + rho2), np.nan)
     travel = np.where(where.touchable, where.place - pair.points.A, np.nan)
     return FaceLoads(
@@ -173,7 +173,7 @@ def face_loads(given: MeshSetup, contact: ContactState, number: int, plane: str)
         setting=given.face,
         plane=plane,
         curvature_radius=np.tile(radius, (given.pitches, 1)),
-        gap=np.maximum(over.left[number], 0.0).reshape(forces.shape),
+        gap=np.maximum(over.remaining_gaps[number], 0.0).reshape(forces.shape),
         error=float(over.errors.factor[number]),
         line_load_error=float(over.errors.line_load[number]),
         **_shafts(given, over, number),

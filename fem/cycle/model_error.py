@@ -89,7 +89,7 @@ class LoadedContacts:
             return 0.0
         force, found = np.array([abs(self.load)]), []
         for moving in (False, True):
-            given = replace(self.given, moving_contact=moving, pitches=1, both=both)
+            given = replace(self.given, moving_contact=moving, pitches=1, two_sided=both)
             tables = EdgeTables(given, self.bodies)
             if both:
                 solution = solve_contact(given, self.bodies, force, None, tables)
