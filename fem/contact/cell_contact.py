@@ -37,7 +37,7 @@ class CellShare:
     ----------
     share : LoadShare
         (torques, pitches, positions, pairs cells).
-    bends, left : (torques, pitches, positions, pairs, cells) arrays
+    bends, remaining_gaps : (torques, pitches, positions, pairs, cells) arrays
         How far bodies bend, and the gap that is so left under load [m]; where a cell bears, minus what the contact's
         own law yields.
     strips : (torques,) array
@@ -50,7 +50,7 @@ class CellShare:
 
     share: LoadShare
     bends: Array
-    left: Array
+    remaining_gaps: Array
     strips: Array
     rise: Array
     shafts: HeldShafts | None = None
@@ -58,23 +58,23 @@ class CellShare:
     @property
     def forces(self) -> Array:
         """On cells (torques, pitches, positions, pairs, cells) [N]."""
-        return _by_cells(self.share.forces, self.left.shape[-1])
+        return _by_cells(self.share.forces, self.remaining_gaps.shape[-1])
 
 
 @record
 class CellContact:
     """What is shared over the face of whole pairs, arguments as of ``gears.share_load``."""
 
-    given: MeshSetup
+    setup: MeshSetup
     bodies: PairCompliance
     whole: Array
-    where: ContactCandidates
-    kappa: Array
+    candidates: ContactCandidates
+    lever_ratios: Array
     matrix: Array
     laws: PairLaws
     gaps: Array
     oil: FilmLaw | None
-    levers: Array | None
+    tilted_lever_ratios: Array | None
 
     def shared(
         self, face: FaceSetting, near: Array, rise: Array | None = None, *, held: bool = True
@@ -94,119 +94,152 @@ class CellContact:
         """
         from gears.sharing.load_sharing import share_load
 
-        cells, unit = face.cells, self.given.pair.face_width / face.cells
+        cells, unit = face.cells, self.setup.pair.face_width / face.cells
         apart, film = self._apart(face), None if self.oil is None else CellLaws(self.oil, cells)
-        arms = None if self.levers is None else np.repeat(self.levers, cells, axis=-1)
+        cell_lever_ratios = (
+            None if self.tilted_lever_ratios is None else np.repeat(self.tilted_lever_ratios, cells, axis=-1)
+        )
         start, laws = (
             _flat(between_middles(near, cells) * (near.shape[-1] / cells)),
             CellLaws(self.laws, cells),
         )
 
-        shafts = shafts_under_face(face, self.given.pair)
+        shafts = shafts_under_face(face, self.setup.pair)
 
         @lru_cache(maxsize=1)  # large ones are kept nowhere else
         def coupling(strip: float) -> tuple[CellCoupling, CellCoupling]:
             """Of the bodies, and with the shafts."""
-            own = cell_coupling(replace(face, strip=strip), self.bodies, self.where, self.kappa, self.matrix)
-            return own, own if shafts is None else own.plus(shafts.compliance, self.kappa)
+            own = cell_coupling(
+                replace(face, strip=strip), self.bodies, self.candidates, self.lever_ratios, self.matrix
+            )
+            return own, own if shafts is None else own.plus(shafts.compliance, self.lever_ratios)
 
         @lru_cache(maxsize=1)
-        def law(strip: float, some: tuple[int, ...]) -> DeflectionLaw:
-            return laws if rise is None else partial_cells(laws, coupling(strip)[0], _flat(rise)[list(some)])
+        def law(strip: float, torques: tuple[int, ...]) -> DeflectionLaw:
+            return (
+                laws if rise is None else partial_cells(laws, coupling(strip)[0], _flat(rise)[list(torques)])
+            )
 
-        def share(strip: float, some: Integers) -> LoadShare:
+        def share(strip: float, torques: Integers) -> LoadShare:
             alone, stiff = coupling(strip)
             own, first = (
-                law(strip, tuple(some.tolist())),
-                apart if rise is None else apart - _flat(rise)[some],
+                law(strip, tuple(torques.tolist())),
+                apart if rise is None else apart - _flat(rise)[torques],
             )
             least = first.min(axis=-1)
-            found = share_load(
-                self.whole[some], stiff, own, first - least[..., None], film, arms, start[some]
+            load_share = share_load(
+                self.whole[torques],
+                stiff,
+                own,
+                first - least[..., None],
+                film,
+                cell_lever_ratios,
+                start[torques],
             )
-            found = replace(found, transmission_error=found.transmission_error + least)
-            return _unique(found, alone, own, film)
+            load_share = replace(load_share, transmission_error=load_share.transmission_error + least)
+            return _unique(load_share, alone, own, film)
 
-        def widest(found: LoadShare) -> Array:
-            return self._half_widths(_by_cells(found.forces, cells).max(axis=-1) / unit)
+        def widest(load_share: LoadShare) -> Array:
+            return self._half_widths(_by_cells(load_share.forces, cells).max(axis=-1) / unit)
 
-        mean = self._half_widths(near.sum(axis=-1) / self.given.pair.face_width)
-        found, strips = shared_by_width(share, widest, unit, mean)
-        bends = np.zeros_like(found.forces)
+        mean = self._half_widths(near.sum(axis=-1) / self.setup.pair.face_width)
+        load_share, strips = shared_by_width(share, widest, unit, mean)
+        bends = np.zeros_like(load_share.forces)
         slopes = np.zeros_like(bends), np.zeros_like(bends)
         for strip in np.unique(strips).tolist():
-            some = np.flatnonzero(strips == strip)
-            forces = found.forces[some]
-            every, nothing = np.ones(forces.shape[:-1], dtype=bool), np.zeros_like(forces)
+            torques = np.flatnonzero(strips == strip)
+            forces = load_share.forces[torques]
+            wanted, nothing = np.ones(forces.shape[:-1], dtype=bool), np.zeros_like(forces)
             alone, stiff = coupling(strip)
-            bends[some] = stiff.applied(forces, every, nothing)
+            bends[torques] = stiff.applied(forces, wanted, nothing)
             if held and shafts is not None:
-                slope = law(strip, tuple(some.tolist())).slope(forces)
+                slope = law(strip, tuple(torques.tolist())).slope(forces)
                 slope = slope if film is None else slope - film.slope(forces)
-                by_tilt = nothing + shafts.levers(self.kappa)
-                slopes[0][some], slopes[1][some], _ = alone.solved(slope, by_tilt, forces > 0.0, every)
-        left = bends + apart - found.transmission_error[..., None]
+                by_tilt = nothing + shafts.levers(self.lever_ratios)
+                slopes[0][torques], slopes[1][torques], _ = alone.solved(slope, by_tilt, forces > 0.0, wanted)
+        remaining_gaps = bends + apart - load_share.transmission_error[..., None]
         if film is not None:
-            left = left - film.approach(np.zeros_like(found.forces))
-        bends, left = _by_cells(bends, cells), _by_cells(left, cells)
+            remaining_gaps = remaining_gaps - film.approach(np.zeros_like(load_share.forces))
+        bends, remaining_gaps = _by_cells(bends, cells), _by_cells(remaining_gaps, cells)
         reached = None
         if held and shafts is not None:
-            found, reached = shafts.held(found, self.kappa, self.gaps, slopes, 1.0 if arms is None else arms)
-        return CellShare(found, bends, left, strips, np.zeros_like(left) if rise is None else rise, reached)
+            load_share, reached = shafts.held(
+                load_share,
+                self.lever_ratios,
+                self.gaps,
+                slopes,
+                1.0 if cell_lever_ratios is None else cell_lever_ratios,
+            )
+        return CellShare(
+            load_share,
+            bends,
+            remaining_gaps,
+            strips,
+            np.zeros_like(remaining_gaps) if rise is None else rise,
+            reached,
+        )
 
     def gap_drops(self, face: FaceSetting, coarse: CellShare) -> Array:
         """By how much the minimum gap of cells falls short of their mean (torques, ..., pairs, cells) [m].
 
         By a solution with as many cells, or fewer.
         """
-        return gap_drops(face.gaps_within(self.given.pair, self._radius, WITHIN), coarse.bends)
+        return gap_drops(face.gaps_within(self.setup.pair, self._radius, WITHIN), coarse.bends)
 
     def _apart(self, face: FaceSetting) -> Array:
         """Gaps without load, beyond where the first place of the face touches (pitches, positions, pairs cells) [m]."""
-        apart = self.gaps[..., None] + along_cells(face, self.given.pair, self.where)
-        return _flat(np.where(self.where.touchable[..., None], apart, np.inf))
+        apart = self.gaps[..., None] + along_cells(face, self.setup.pair, self.candidates)
+        return _flat(np.where(self.candidates.touchable[..., None], apart, np.inf))
 
     @property
     def _radius(self) -> Array:
-        return _radius(self.where)
+        return _radius(self.candidates)
 
     def _half_widths(self, line_load: Array) -> Array:
         """Largest half-widths of contacts of two flanks (torques,) [m] by line loads (torques, ..., pairs)."""
-        flanks, modulus = self.where.touchable & ~self.where.edge, self.bodies.pinion.law.plane_modulus
+        flanks, modulus = (
+            self.candidates.touchable & ~self.candidates.edge,
+            self.bodies.pinion.law.plane_modulus,
+        )
         other = self.bodies.wheel.law.plane_modulus
-        load = np.where(flanks, line_load / self.kappa, 0.0)
+        load = np.where(flanks, line_load / self.lever_ratios, 0.0)
         radius = np.where(flanks, self._radius, 1.0)
         wide = hertz_half_width(load, radius, 2.0 / (1.0 / modulus + 1.0 / other))
         return np.asarray(wide.max(axis=(1, 2, 3)))
 
     def at(self, torque: int, pitch: int, position: int) -> CellContact:
         """The same at a single torque and position."""
-        one, where = slice(position, position + 1), self.where
+        row, candidates = slice(position, position + 1), self.candidates
         return replace(
             self,
             whole=self.whole[torque : torque + 1],
-            where=replace(where, rho=where.rho[:, one], touchable=where.touchable[one], edge=where.edge[one]),
-            kappa=self.kappa[one],
-            matrix=self.matrix[one],
+            candidates=replace(
+                candidates,
+                rho=candidates.rho[:, row],
+                touchable=candidates.touchable[row],
+                edge=candidates.edge[row],
+            ),
+            lever_ratios=self.lever_ratios[row],
+            matrix=self.matrix[row],
             laws=self.laws.at(position),
-            gaps=self.gaps[pitch : pitch + 1, one],
-            oil=None if self.oil is None else FilmLaw(self.oil.film, self.oil.rho1[one]),
-            levers=None if self.levers is None else self.levers[one],
+            gaps=self.gaps[pitch : pitch + 1, row],
+            oil=None if self.oil is None else FilmLaw(self.oil.film, self.oil.rho1[row]),
+            tilted_lever_ratios=None if self.tilted_lever_ratios is None else self.tilted_lever_ratios[row],
         )
 
 
-def along_cells(face: FaceSetting, pair: GearPair, where: ContactCandidates) -> Array:
+def along_cells(face: FaceSetting, pair: GearPair, candidates: ContactCandidates) -> Array:
     """Gaps of cells beyond where the first place of the face touches (positions, pairs, cells) [m]."""
-    return np.maximum(face.gaps(pair, _radius(where)) - face.least_gap(pair), 0.0)
+    return np.maximum(face.gaps(pair, _radius(candidates)) - face.least_gap(pair), 0.0)
 
 
-def _radius(where: ContactCandidates) -> Array:
-    rho1, rho2 = where.rho
+def _radius(candidates: ContactCandidates) -> Array:
+    rho1, rho2 = candidates.rho
     return np.asarray(rho1 * rho2 / (rho1 + rho2))
 
 
 def _unique(
-    found: LoadShare, coupling: CellCoupling, laws: DeflectionLaw, film: DeflectionLaw | None
+    load_share: LoadShare, coupling: CellCoupling, laws: DeflectionLaw, film: DeflectionLaw | None
 ) -> LoadShare:
     """Return a share of cells that no other one stands beside, which wider strips else have.
 
@@ -215,15 +248,15 @@ def _unique(
     """
     from gears.tooth.errors import LoadSharingError
 
-    slope, bears = laws.slope(found.forces), found.forces > 0.0
+    slope, bears = laws.slope(load_share.forces), load_share.forces > 0.0
     if film is not None:
-        slope = slope - film.slope(found.forces)
+        slope = slope - film.slope(load_share.forces)
     if not coupling.definite(slope, bears, np.any(bears & (slope < 0.0), axis=-1)):
         allowed = "must yield to short waves of load beside a tip corner, which these do not"
         raise LoadSharingError.at(
             "cells", coupling.unknowns, allowed, "reduce the torque, or give fewer cells"
         )
-    return found
+    return load_share
 
 
 def _by_cells(values: Array, cells: int) -> Array:

@@ -48,29 +48,29 @@ class CellCoupling(Coupling):
     @property
     def diagonal(self) -> Array:
         """Deflection of each cell by its own unit force (positions, n) [m/N]; 1 where it cannot touch."""
-        found = np.ones((len(self.blocks), self.unknowns))
-        for row, cells, block in zip(found, self.cells, self.blocks, strict=True):
+        deflections = np.ones((len(self.blocks), self.unknowns))
+        for row, cells, block in zip(deflections, self.cells, self.blocks, strict=True):
             row[cells] = np.diagonal(block)
-        return found
+        return deflections
 
     @cached_property
     def shortest(self) -> Array:
         """What each cell yields by its own unit force more than its neighbour does (positions, n) [m/N]."""
-        found = np.ones((len(self.blocks), self.unknowns))
-        for row, cells, block in zip(found, self.cells, self.blocks, strict=True):
+        differences = np.ones((len(self.blocks), self.unknowns))
+        for row, cells, block in zip(differences, self.cells, self.blocks, strict=True):
             by_next = np.diagonal(block, 1)
             less = np.maximum(np.append(by_next, by_next[-1]), np.append(by_next[0], by_next))
             row[cells] = np.diagonal(block) - less
-        return found
+        return differences
 
     def applied(self, forces: Array, wanted: Booleans, known: Array) -> Array:
         """As of ``gears.sharing.load_coupling.Coupling``; 0 where cells cannot touch."""
-        found, positions = known.copy(), len(self.blocks)
-        flat, pressed = found.reshape(-1, self.unknowns), forces.reshape(-1, self.unknowns)
+        deflections, positions = known.copy(), len(self.blocks)
+        flat, pressed = deflections.reshape(-1, self.unknowns), forces.reshape(-1, self.unknowns)
         for at in np.flatnonzero(wanted).tolist():
             cells, block = self.cells[at % positions], self.blocks[at % positions]
             flat[at, cells] = block @ pressed[at].take(cells)
-        return found
+        return deflections
 
     def solved(
         self, slope: Array, residual: Array, active: Booleans, wanted: Booleans
@@ -78,7 +78,7 @@ class CellCoupling(Coupling):
         """As of ``gears.sharing.load_coupling.Coupling``."""
         unit, response = np.zeros((2, *residual.shape))
         positions, size = len(self.blocks), self.unknowns
-        one, other, stiff, rest, bearing = (
+        flat_unit, flat_response, stiff, rest, bearing = (
             whole.reshape(-1, size) for whole in (unit, response, slope, residual, active)
         )
         for at in np.flatnonzero(wanted).tolist():
@@ -90,25 +90,25 @@ class CellCoupling(Coupling):
             jacobian.ravel()[:: len(bears) + 1] += stiff[at].take(chosen)
             sides = np.empty((2, len(bears)))
             sides[0], sides[1] = 1.0, rest[at].take(chosen)
-            one[at, chosen], other[at, chosen] = solve_symmetric(jacobian, sides)
+            flat_unit[at, chosen], flat_response[at, chosen] = solve_symmetric(jacobian, sides)
         return unit, response, 1.0
 
-    def plus(self, more: Array, levers: Array) -> CellCoupling:
+    def plus(self, more: Array, lever_ratios: Array) -> CellCoupling:
         """With a further compliance that couples cells by their place on the face, whatever their pair.
 
         Parameters
         ----------
         more : (cells, cells) array
             Displacement along the line of action by forces [m/N].
-        levers : (positions, pairs) array
+        lever_ratios : (positions, pairs) array
             kappa of the forces kappa F that are asked for.
         """
         n, blocks = len(more), []
-        for chosen, block, lever in zip(self.cells, self.blocks, levers, strict=True):
-            each = lever[chosen[::n] // n]
+        for chosen, block, ratios in zip(self.cells, self.blocks, lever_ratios, strict=True):
+            each = ratios[chosen[::n] // n]
             k = len(each)
-            found = block.reshape(k, n, k, n) + more[:, None] / (each[:, None] * each)[:, None, :, None]
-            blocks.append(found.reshape(k * n, k * n))
+            coupled = block.reshape(k, n, k, n) + more[:, None] / (each[:, None] * each)[:, None, :, None]
+            blocks.append(coupled.reshape(k * n, k * n))
         return CellCoupling(self.cells, tuple(blocks), self.unknowns)
 
     def definite(self, slope: Array, active: Booleans, wanted: Booleans) -> bool:
@@ -132,5 +132,5 @@ def solve_symmetric(matrix: Array, sides: Array) -> Array:
     """Solve for rows of sides by Cholesky's method; where cells are narrow the matrix may be indefinite."""
     from scipy.linalg.lapack import dposv
 
-    _, found, failed = dposv(matrix.T, sides.T, lower=True)
-    return np.asarray(np.linalg.solve(matrix, sides.T).T if failed else found.T)
+    _, solution, failed = dposv(matrix.T, sides.T, lower=True)
+    return np.asarray(np.linalg.solve(matrix, sides.T).T if failed else solution.T)

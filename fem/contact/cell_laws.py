@@ -35,9 +35,9 @@ class CellLaws:
         first = force.reshape(-1, self.cells).T
         return self.cells * first.reshape(self.cells, *force.shape[:-1], -1)
 
-    def _apart(self, found: Array) -> Array:
-        last = found.reshape(self.cells, -1).T
-        return last.reshape(*found.shape[1:-1], -1)
+    def _apart(self, values: Array) -> Array:
+        last = values.reshape(self.cells, -1).T
+        return last.reshape(*values.shape[1:-1], -1)
 
 
 def between_middles(values: Array, cells: int) -> Array:

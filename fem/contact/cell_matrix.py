@@ -28,33 +28,37 @@ MOST_AT_ONCE = 4_000_000
 
 
 def cell_coupling(
-    face: FaceSetting, bodies: PairCompliance, where: ContactCandidates, kappa: Array, matrix: Array
+    face: FaceSetting,
+    bodies: PairCompliance,
+    candidates: ContactCandidates,
+    lever_ratios: Array,
+    matrix: Array,
 ) -> CellCoupling:
     """Compliance of the bodies between cells of pairs that may touch, arguments as of ``cell_matrix``."""
-    size = int(np.sum((where.touchable.sum(axis=-1) * face.cells) ** 2))
+    size = int(np.sum((candidates.touchable.sum(axis=-1) * face.cells) ** 2))
 
     def cut() -> CellCoupling:
-        def some(of: slice) -> Array:
-            return cell_matrix(face, bodies, where.rho[:, of], kappa[of], matrix[of])
+        def matrices(of: slice) -> Array:
+            return cell_matrix(face, bodies, candidates.rho[:, of], lever_ratios[of], matrix[of])
 
-        return in_blocks(some, where.touchable, face.cells)
+        return in_blocks(matrices, candidates.touchable, face.cells)
 
     if size > MOST_KEPT:
         return cut()
     laws = (bodies.pinion.law.plane_modulus, bodies.wheel.law.plane_modulus)
-    arrays = (where.rho, where.touchable, kappa, matrix)
+    arrays = (candidates.rho, candidates.touchable, lever_ratios, matrix)
     pair = bodies.pair
     size_of = (pair.module, pair.face_width, pair.face_widths, pair.face_offsets, bodies.reach)
-    key = (bodies.meshed, laws, size_of, face.coupled, *(one.tobytes() for one in arrays))
+    key = (bodies.meshed, laws, size_of, face.coupled, *(array.tobytes() for array in arrays))
     return GearStore().over_face("cells", key, cut)
 
 
-def in_blocks(some: Callable[[slice], Array], touchable: Booleans, cells: int) -> CellCoupling:
+def in_blocks(matrices: Callable[[slice], Array], touchable: Booleans, cells: int) -> CellCoupling:
     """What stands between the cells of pairs that may touch.
 
     Parameters
     ----------
-    some : callable
+    matrices : callable
         Matrices (k, n, n) between the cells of all pairs at k of the positions, as a slice.
     touchable : (positions, pairs) boolean array
     cells : int
@@ -66,7 +70,8 @@ def in_blocks(some: Callable[[slice], Array], touchable: Booleans, cells: int) -
     for first in range(0, positions, step):
         of = slice(first, first + step)
         blocks += (
-            one.take(at, axis=0).take(at, axis=1) for one, at in zip(some(of), chosen[of], strict=True)
+            matrix.take(at, axis=0).take(at, axis=1)
+            for matrix, at in zip(matrices(of), chosen[of], strict=True)
         )
     return CellCoupling(chosen, tuple(blocks), pairs * cells)
 
@@ -75,7 +80,7 @@ def cell_matrix(
     face: FaceSetting,
     bodies: PairCompliance,
     rho: Array,
-    kappa: Array,
+    lever_ratios: Array,
     matrix: Array,
     gears: Sequence[int] = (0, 1),
 ) -> Array:
@@ -87,28 +92,29 @@ def cell_matrix(
     bodies : PairCompliance
     rho : (2, positions, pairs) array
         Curvature radii [m].
-    kappa : (positions, pairs) array
-        Levers of the normals about the pinion's axis over its base radius.
+    lever_ratios : (positions, pairs) array
+        kappa: levers of the normals about the pinion's axis over its base radius.
     matrix : (positions, pairs, pairs) array
         The plane's compliance of forces kappa F [m/N].
     gears : sequence of int
         That yield beside that: 0 is the pinion, 1 the wheel.
     """
-    cells, (positions, pairs), pair = face.cells, kappa.shape, bodies.pair
-    modes, levers = cosines(cells), kappa[..., :, None] * kappa[..., None, :]
+    cells, (positions, pairs), pair = face.cells, lever_ratios.shape, bodies.pair
+    modes, ratio_products = cosines(cells), lever_ratios[..., :, None] * lever_ratios[..., None, :]
     by_mode = np.repeat(matrix[..., None], cells, axis=-1)
     if face.model != SLICES:
-        by_mode[..., 1:] += pair_waves(bodies, rho, cells, face.strip, gears) / levers[..., None]
-    found = np.einsum("mc,pijm,md->picjd", modes, cells * by_mode, modes, optimize=True)
+        by_mode[..., 1:] += pair_waves(bodies, rho, cells, face.strip, gears) / ratio_products[..., None]
+    compliance = np.einsum("mc,pijm,md->picjd", modes, cells * by_mode, modes, optimize=True)
     if face.model != SLICES:
         for gear in gears:
             if pair.face_widths[gear] != pair.face_width:
-                found += overhang(bodies, gear, rho[gear], face) / levers[:, :, None, :, None]
+                compliance += overhang(bodies, gear, rho[gear], face) / ratio_products[:, :, None, :, None]
     if face.model == FREE_ENDS:
         edges = face.edges(pair)
         first, second = (edges - offset for offset in pair.face_offsets)
-        found += (
-            pair_ends(bodies, rho, (first, second), pair.face_widths, gears) / levers[:, :, None, :, None]
+        compliance += (
+            pair_ends(bodies, rho, (first, second), pair.face_widths, gears)
+            / ratio_products[:, :, None, :, None]
         )
     size = pairs * cells
-    return np.asarray(found.reshape(positions, size, size))
+    return np.asarray(compliance.reshape(positions, size, size))

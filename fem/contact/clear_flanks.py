@@ -32,7 +32,7 @@ ROLLED = 0.2
 
 
 def stays_clear(
-    given: MeshSetup,
+    setup: MeshSetup,
     bodies: PairCompliance,
     force: Array,
     film: Film | None,
@@ -45,38 +45,38 @@ def stays_clear(
 
     Parameters
     ----------
-    given, bodies, force, film, flanks, apart, reach
+    setup, bodies, force, film, flanks, apart, reach
         As for ``share_with_opposite``.
     alone : LoadShare
         Solution without the other side.
     """
-    other = flanks_in_place(given.opposite, film, reach)
-    touch = flanks.where.gap.min(axis=-1, keepdims=True)
-    behind = _less_film(given.pair.backlash + other.where.gap + touch, other)
-    if np.any(_less_film(flanks.where.gap - touch, flanks).min(axis=-1) + behind.min(axis=-1) < 0.0):
+    other = flanks_in_place(setup.opposite, film, reach)
+    touch = flanks.candidates.gap.min(axis=-1, keepdims=True)
+    behind = _less_film(setup.pair.backlash + other.candidates.gap + touch, other)
+    if np.any(_less_film(flanks.candidates.gap - touch, flanks).min(axis=-1) + behind.min(axis=-1) < 0.0):
         return None  # both sides are pressed without a torque
-    matrix = np.swapaxes(between(given, bodies, flanks, other, before=True), 1, 2)
+    matrix = np.swapaxes(between(setup, bodies, flanks, other, before=True), 1, 2)
     moved, sizes = ((part @ alone.forces[..., None])[..., 0] for part in (matrix, np.abs(matrix)))
     doubt = np.full(sizes.shape, DOUBT)
-    if given.moving_contact:  # both sides roll on, by D and by D + j
-        turn = alone.transmission_error + max(given.pair.backlash, 0.0)
-        doubt += (ROLLED / given.pair.module * turn)[..., None]
-    left = behind + alone.transmission_error[..., None] + moved - doubt * sizes
-    if not np.all((left > 0.0) | apart[:, None, None, None]):
+    if setup.moving_contact:  # both sides roll on, by D and by D + j
+        turn = alone.transmission_error + max(setup.pair.backlash, 0.0)
+        doubt += (ROLLED / setup.pair.module * turn)[..., None]
+    clearance = behind + alone.transmission_error[..., None] + moved - doubt * sizes
+    if not np.all((clearance > 0.0) | apart[:, None, None, None]):
         return None
-    nothing, edges = np.zeros_like(left), np.zeros(int(other.where.edge.sum()))
+    nothing, edges = np.zeros_like(clearance), np.zeros(int(other.candidates.edge.sum()))
     closing = bodies.turning * force[:, None, None] - alone.transmission_error - touch[..., 0]
     return OppositeShare(
-        other.where,
-        other.kappa,
-        other.levers,
+        other.candidates,
+        other.lever_ratios,
+        other.tilted_lever_ratios,
         edges,
         nothing,
         nothing,
-        left,
+        clearance,
         np.zeros(touch.shape[:-1]),
-        given.face is not None,
-        (closing - given.pair.backlash).max(axis=(1, 2)),
+        setup.face is not None,
+        (closing - setup.pair.backlash).max(axis=(1, 2)),
     )
 
 

@@ -84,9 +84,9 @@ def cell_errors(over: CellContact, face: FaceSetting, fine: CellShare, coarse: C
     """Estimate errors of cycles with cells by those with half as many."""
     _, rest = half_as_many(face)
     scatter, relative = {}, np.zeros(len(over.whole))
-    both = [_curves(over.whole, one.share) for one in (fine, coarse)]
-    for name, curve in both[0].items():
-        change = rest * (both[1][name] - curve)
+    curves = [_curves(over.whole, cell_share.share) for cell_share in (fine, coarse)]
+    for name, curve in curves[0].items():
+        change = rest * (curves[1][name] - curve)
         if name != "secant_stiffness":
             relative = np.maximum(relative, _size(change / curve))
         if name == "transmission_error" and fine.shafts is not None and coarse.shafts is not None:
@@ -103,8 +103,8 @@ def _shaft_errors(fine: CellShare, coarse: CellShare, rest: float) -> Array:
     """Errors of what shafts do, of their tilt and of the mesh on them (3, torques), of the largest over positions."""
     if fine.shafts is None or coarse.shafts is None:
         return np.zeros((3, len(fine.forces)))
-    one, other = fine.shafts, coarse.shafts
-    size = np.sqrt(_greatest(one.mesh[..., 0, 0]) * _greatest(one.mesh[..., 1, 1]))
+    fine_shafts, coarse_shafts = fine.shafts, coarse.shafts
+    size = np.sqrt(_greatest(fine_shafts.mesh[..., 0, 0]) * _greatest(fine_shafts.mesh[..., 1, 1]))
 
     def error(first: Array, second: Array, over: Array | None = None) -> Array:
         change, most = rest * _greatest(second - first), _greatest(first) if over is None else over
@@ -112,13 +112,16 @@ def _shaft_errors(fine: CellShare, coarse: CellShare, rest: float) -> Array:
 
     return np.array(
         [
-            error(one.deflection, other.deflection),
-            np.maximum(error(one.tilt, other.tilt), error(one.tilt_touch, other.tilt_touch)),
+            error(fine_shafts.deflection, coarse_shafts.deflection),
+            np.maximum(
+                error(fine_shafts.tilt, coarse_shafts.tilt),
+                error(fine_shafts.tilt_touch, coarse_shafts.tilt_touch),
+            ),
             np.max(
                 [
-                    error(one.mesh[..., 0, 0], other.mesh[..., 0, 0]),
-                    error(one.mesh[..., 1, 0], other.mesh[..., 1, 0], size),
-                    error(one.mesh[..., 1, 1], other.mesh[..., 1, 1]),
+                    error(fine_shafts.mesh[..., 0, 0], coarse_shafts.mesh[..., 0, 0]),
+                    error(fine_shafts.mesh[..., 1, 0], coarse_shafts.mesh[..., 1, 0], size),
+                    error(fine_shafts.mesh[..., 1, 1], coarse_shafts.mesh[..., 1, 1]),
                 ],
                 axis=0,
             ),
@@ -155,24 +158,27 @@ def _load_errors(
     over: CellContact, face: FaceSetting, fine: CellShare, coarse: CellShare, torque: int
 ) -> tuple[float, float, float]:
     """Errors of the maximum factor and line load, and that of stiffness and deflection by free ends."""
-    kappa = over.kappa[..., None]
-    loads, fewer = (one.left.shape[-1] * one.forces[torque] / kappa for one in (fine, coarse))
+    lever_ratios = over.lever_ratios[..., None]
+    loads, fewer = (
+        cell_share.remaining_gaps.shape[-1] * cell_share.forces[torque] / lever_ratios
+        for cell_share in (fine, coarse)
+    )
     factors, half = face_load_factors(loads), face_load_factors(fewer)
     greatest, greatest_half = loads.max(axis=(-2, -1)), fewer.max(axis=(-2, -1))
-    ends, found = 0.0, []
+    ends, errors = 0.0, []
     for values, few_values, over_mean in ((factors, half, True), (greatest, greatest_half, False)):
         at, few_at = _place(values), _place(few_values)
         error = greatest_error(_most_loaded(loads[at], over_mean), _most_loaded(fewer[few_at], over_mean))
         if face.model == FREE_ENDS:
             free, held = coarse.share, _between_walls(over, face, coarse, torque, at)
-            without = held.left.shape[-1] * held.forces[0] / kappa[at[1]]
+            without = held.remaining_gaps.shape[-1] * held.forces[0] / lever_ratios[at[1]]
             value = face_load_factors(without) if over_mean else without.max(axis=(-2, -1))
             error += ENDS_ERROR * abs(float(few_values[at]) - float(value[0, 0])) / float(values[at])
             for name in ("stiffness", "transmission_error") if over_mean else ():
                 apart = getattr(held.share, name)[0, 0, 0] / getattr(free, name)[torque, *at]
                 ends = max(ends, ENDS_ERROR * abs(float(apart) - 1.0))
-        found.append(error)
-    return found[0], found[1], ends
+        errors.append(error)
+    return errors[0], errors[1], ends
 
 
 def _place(values: Array) -> tuple[int, int]:

@@ -41,7 +41,7 @@ class FaceShare:
     ----------
     forces : (torques, pitches, positions, pairs, cells) array
         [N]
-    left : (torques, pitches, positions, pairs, cells) array
+    remaining_gaps : (torques, pitches, positions, pairs, cells) array
         Gap that is left under load [m]; where a cell bears, minus what the contact's own law yields.
     errors : CellErrors
         By the cells, and of the face-load factor by free ends.
@@ -56,7 +56,7 @@ class FaceShare:
     """
 
     forces: Array
-    left: Array
+    remaining_gaps: Array
     errors: CellErrors
     shafts: HeldShafts | None
     strips: Array
@@ -67,7 +67,7 @@ class FaceShare:
     @property
     def open(self) -> Array:
         """Minimum gap that is left along the face (torques, pitches, positions, pairs) [m]."""
-        return np.asarray(self.left.min(axis=-1))
+        return np.asarray(self.remaining_gaps.min(axis=-1))
 
     def bent(self, number: int) -> Array:
         """By how much more the pinion turns before flanks touch (pitches, positions) [m], because of the shafts.
@@ -85,16 +85,16 @@ class FaceShare:
 
 
 def share_over_face(
-    given: MeshSetup,
+    setup: MeshSetup,
     bodies: PairCompliance,
     whole: Array,
-    where: ContactCandidates,
-    kappa: Array,
+    candidates: ContactCandidates,
+    lever_ratios: Array,
     matrix: Array,
     laws: PairLaws,
     gaps: Array,
     oil: FilmLaw | None,
-    levers: Array | None,
+    tilted_lever_ratios: Array | None,
 ) -> tuple[LoadShare, FaceShare]:
     """Share forces over pairs and cells, arguments as of ``gears.share_load`` for whole faces.
 
@@ -107,31 +107,43 @@ def share_over_face(
     """
     from gears.sharing.load_sharing import share_load
 
-    assert given.face is not None
-    over = CellContact(given, bodies, whole, where, kappa, matrix, laws, gaps, oil, levers)
-    plane = share_load(whole, matrix, laws, gaps, oil, levers)
-    few, _ = half_as_many(given.face)
+    assert setup.face is not None
+    over = CellContact(
+        setup, bodies, whole, candidates, lever_ratios, matrix, laws, gaps, oil, tilted_lever_ratios
+    )
+    plane = share_load(whole, matrix, laws, gaps, oil, tilted_lever_ratios)
+    few, _ = half_as_many(setup.face)
     coarse = over.shared(few, plane.forces[..., None], held=False)
     coarse = over.shared(few, coarse.forces, over.gap_drops(few, coarse))
-    fine = over.shared(given.face, coarse.forces, over.gap_drops(given.face, coarse))
-    errors = cell_errors(over, given.face, fine, coarse)
-    share, left = of_pairs(fine.share, given.face.cells), settled_gaps(fine.left, fine.forces)
+    fine = over.shared(setup.face, coarse.forces, over.gap_drops(setup.face, coarse))
+    errors = cell_errors(over, setup.face, fine, coarse)
+    share, remaining_gaps = (
+        of_pairs(fine.share, setup.face.cells),
+        settled_gaps(fine.remaining_gaps, fine.forces),
+    )
     return share, FaceShare(
-        fine.forces, left, errors, fine.shafts, fine.strips, fine.rise, given.face.least_gap(given.pair)
+        fine.forces,
+        remaining_gaps,
+        errors,
+        fine.shafts,
+        fine.strips,
+        fine.rise,
+        setup.face.least_gap(setup.pair),
     )
 
 
-def of_pairs(found: LoadShare, cells: int) -> LoadShare:
+def of_pairs(load_share: LoadShare, cells: int) -> LoadShare:
     """Share of pairs from that of their cells (..., pairs cells)."""
     forces, slopes = (
-        one.reshape(*one.shape[:-1], -1, cells).sum(axis=-1) for one in (found.forces, found.pair_stiffness)
+        values.reshape(*values.shape[:-1], -1, cells).sum(axis=-1)
+        for values in (load_share.forces, load_share.pair_stiffness)
     )
-    return replace(found, forces=forces, pair_stiffness=slopes)
+    return replace(load_share, forces=forces, pair_stiffness=slopes)
 
 
-def settled_gaps(left: Array, forces: Array) -> Array:
+def settled_gaps(remaining_gaps: Array, forces: Array) -> Array:
     """Gaps that are left, of cells that bear over a part of their length none."""
-    return np.where(forces > 0.0, np.minimum(left, 0.0), left)
+    return np.where(forces > 0.0, np.minimum(remaining_gaps, 0.0), remaining_gaps)
 
 
 def yielding_over_face(film: Film, rho1: Array, forces: Array, shares: Array) -> Array:

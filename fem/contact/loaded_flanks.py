@@ -28,17 +28,18 @@ class FlanksInPlace:
 
     Attributes
     ----------
-    where : ContactCandidates
-    kappa : (positions, pairs) array
+    candidates : ContactCandidates
+    lever_ratios : (positions, pairs) array
+        kappa.
     oil : FilmLaw or None
-    levers : (positions, pairs) array
+    tilted_lever_ratios : (positions, pairs) array
         Of the tilted forces about the pinion's axis, over kappa r_b1.
     """
 
-    where: ContactCandidates
-    kappa: Array
+    candidates: ContactCandidates
+    lever_ratios: Array
     oil: FilmLaw | None
-    levers: Array
+    tilted_lever_ratios: Array
 
 
 @record
@@ -62,18 +63,20 @@ class LoadedFlanks(FlanksInPlace):
     largest: Array
 
 
-def flanks_in_place(given: MeshSetup, film: Film | None, reach: float) -> FlanksInPlace:
+def flanks_in_place(setup: MeshSetup, film: Film | None, reach: float) -> FlanksInPlace:
     """Place the flanks that bear in a setting; arguments as of ``loaded_flanks``."""
-    where = contact_candidates(given, reach)
-    kappa = np.where(where.touchable, where.lever[0, : given.positions], 1.0)
-    ends = float(given.pair.points.A), float(given.pair.points.E)
-    on_path = where.touchable & ~where.edge
-    oil = None if film is None else FilmLaw(film, np.where(on_path, np.clip(where.place, *ends), np.nan))
-    return FlanksInPlace(where, kappa, oil, _levers(given, where) / kappa)
+    candidates = contact_candidates(setup, reach)
+    lever_ratios = np.where(candidates.touchable, candidates.lever[0, : setup.positions], 1.0)
+    ends = float(setup.pair.points.A), float(setup.pair.points.E)
+    on_path = candidates.touchable & ~candidates.edge
+    oil = None if film is None else FilmLaw(film, np.where(on_path, np.clip(candidates.place, *ends), np.nan))
+    return FlanksInPlace(
+        candidates, lever_ratios, oil, _tilted_lever_ratios(setup, candidates) / lever_ratios
+    )
 
 
 def loaded_flanks(
-    given: MeshSetup,
+    setup: MeshSetup,
     bodies: PairCompliance,
     film: Film | None,
     reach: float,
@@ -84,7 +87,7 @@ def loaded_flanks(
 
     Parameters
     ----------
-    given : MeshSetup
+    setup : MeshSetup
     bodies : PairCompliance
     film : Film or None
     reach : float
@@ -94,53 +97,57 @@ def loaded_flanks(
     tables : EdgeTables
         Laws of the tip edges.
     """
-    placed = flanks_in_place(given, film, reach)
-    where, kappa = placed.where, placed.kappa
-    table, largest = tables.at(where)
-    rho1, rho2 = where.rho
-    matrix = bodies.bulk(rho1, rho2, where.leaning)
-    _leave_out_corner(bodies, matrix, where)
-    matrix /= kappa[..., :, None] * kappa[..., None, :]
-    on_path = where.touchable & ~where.edge
-    middle = 0.5 * float(given.pair.points.A + given.pair.points.E)
+    placed = flanks_in_place(setup, film, reach)
+    candidates, lever_ratios = placed.candidates, placed.lever_ratios
+    table, largest = tables.at(candidates)
+    rho1, rho2 = candidates.rho
+    matrix = bodies.bulk(rho1, rho2, candidates.leaning)
+    _leave_out_corner(bodies, matrix, candidates)
+    matrix /= lever_ratios[..., :, None] * lever_ratios[..., None, :]
+    on_path = candidates.touchable & ~candidates.edge
+    middle = 0.5 * float(setup.pair.points.A + setup.pair.points.E)
     # contacts that move have a separate law near the corner
     near = (
-        () if given.moving_contact else cut_offs(given, bodies, where, greatest_force(bodies, where, force))
+        ()
+        if setup.moving_contact
+        else cut_offs(setup, bodies, candidates, greatest_force(bodies, candidates, force))
     )
-    place = np.where(on_path, where.place, middle)
-    laws = PairLaws(bodies.hertz(place, where.curvature, kappa), where.edge, table, near)
-    return LoadedFlanks(where, kappa, placed.oil, placed.levers, matrix, laws, largest)
+    place = np.where(on_path, candidates.place, middle)
+    laws = PairLaws(bodies.hertz(place, candidates.curvature, lever_ratios), candidates.edge, table, near)
+    return LoadedFlanks(
+        candidates, lever_ratios, placed.oil, placed.tilted_lever_ratios, matrix, laws, largest
+    )
 
 
-def greatest_force(bodies: PairCompliance, where: ContactCandidates, force: float) -> float:
+def greatest_force(bodies: PairCompliance, candidates: ContactCandidates, force: float) -> float:
     """Maximum force on a pair by a torque's force [N]: teeth that overlap are pressed on both sides without one."""
-    overlap, points = -float(np.min(where.back_gap)), bodies.pair.points
+    overlap, points = -float(np.min(candidates.back_gap)), bodies.pair.points
     middle = np.array([0.5 * float(points.A + points.E)])
     return force + (overlap / float(bodies.own(middle)[0]) if overlap > 0.0 else 0.0)
 
 
-def _levers(given: MeshSetup, where: ContactCandidates) -> Array:
+def _tilted_lever_ratios(setup: MeshSetup, candidates: ContactCandidates) -> Array:
     """Levers about the pinion's axis of forces tilted by friction, over r_b1 (positions, pairs); 1 if none can act."""
-    lever, arm = where.lever[:, : given.positions], where.tangent_arm[:, : given.positions]
-    first, second = given.pair.base_radii
-    arm = np.where(where.touchable, arm, 0.0)
+    lever, arm = candidates.lever[:, : setup.positions], candidates.tangent_arm[:, : setup.positions]
+    first, second = setup.pair.base_radii
+    arm = np.where(candidates.touchable, arm, 0.0)
     slip = np.sign(arm[0] / first - arm[1] / second)
     # the gears turn on, whichever flanks bear: on the back flanks all surfaces move the other way
-    turning = -given.friction if given.back else given.friction
-    return np.asarray(np.where(where.touchable, lever[0], 1.0) + turning * slip * arm[0] / first)
+    turning = -setup.friction if setup.back else setup.friction
+    return np.asarray(np.where(candidates.touchable, lever[0], 1.0) + turning * slip * arm[0] / first)
 
 
-def _leave_out_corner(bodies: PairCompliance, matrix: Array, where: ContactCandidates) -> None:
+def _leave_out_corner(bodies: PairCompliance, matrix: Array, candidates: ContactCandidates) -> None:
     """Keep of the corner's gear only its turn on the hub: the edge's law holds its tooth and body already.
 
     The turn stays with that of the other pairs, so that with a weak hub the matrix remains definite.
     """
     width = bodies.pair.face_width
-    for corner, chosen in where.corners():
+    for corner, chosen in candidates.corners():
         gear = (bodies.pinion, bodies.wheel)[corner]
         position, column = np.nonzero(chosen)
-        rho = np.clip(where.rho[corner][position, column], *gear.rho_range)
-        lever = hub_lever(gear, rho, where.leaning[corner][position, column])
+        rho = np.clip(candidates.rho[corner][position, column], *gear.rho_range)
+        lever = hub_lever(gear, rho, candidates.leaning[corner][position, column])
         matrix[position, column, column] -= (gear.own(rho) - gear.hub_windup * lever**2) / width
 
 

@@ -51,7 +51,7 @@ class MovingCells:
     least : float
         Turn at which the first cell touches, from where straight, aligned gears do [m].
     touchable : (pitches, positions, n) boolean array
-    levers : (positions, pairs) array
+    tilted_lever_ratios : (positions, pairs) array
     moves : ContactMoves
         Of the pairs.
     smoothing : (positions, pairs, cells, cells) array
@@ -68,7 +68,7 @@ class MovingCells:
     along: Array
     least: float
     touchable: Booleans
-    levers: Array
+    tilted_lever_ratios: Array
     moves: ContactMoves
     smoothing: Array
     own: MovedFlanks | None
@@ -82,17 +82,17 @@ class MovingCells:
         """Distance that the pinion rolls on (...) [m]."""
         return approach + self.least
 
-    def split(self, every: Array) -> Array:
+    def split(self, values: Array) -> Array:
         """(..., n) as (..., pairs, cells)."""
-        return every.reshape(*every.shape[:-1], -1, self.cells)
+        return values.reshape(*values.shape[:-1], -1, self.cells)
 
-    def _first(self, every: Array) -> Array:
+    def _first(self, values: Array) -> Array:
         """(..., n) as (cells, ..., pairs)."""
-        return np.moveaxis(self.split(every), -1, 0)
+        return np.moveaxis(self.split(values), -1, 0)
 
-    def _last(self, found: Array) -> Array:
+    def _last(self, values: Array) -> Array:
         """(cells, ..., pairs) as (..., n)."""
-        moved = np.moveaxis(found, 0, -1)
+        moved = np.moveaxis(values, 0, -1)
         return moved.reshape(*moved.shape[:-2], -1)
 
     def everywhere(self, pairs: Array) -> Array:
@@ -101,8 +101,8 @@ class MovingCells:
 
     def bent(self, loads: Array) -> tuple[Array, Array]:
         """C F and C' F (..., n)."""
-        every, nothing = np.ones(loads.shape[:-1], dtype=bool), np.zeros_like(loads)
-        return self.coupling.applied(loads, every, nothing), self.roll.applied(loads, every, nothing)
+        wanted, nothing = np.ones(loads.shape[:-1], dtype=bool), np.zeros_like(loads)
+        return self.coupling.applied(loads, wanted, nothing), self.roll.applied(loads, wanted, nothing)
 
     def _tilted(self, loads: Array) -> tuple[tuple[Integers, ...], Array, Array, Array]:
         """Pairs that bear, as an index of (..., pairs), their forces f (k, cells), S (k, cells, cells) and S f."""
@@ -113,9 +113,9 @@ class MovingCells:
 
     def _gained(self, loads: Array, bear: tuple[Integers, ...], of_pairs: Array) -> Array:
         """(k, cells) of pairs that bear as (..., n), zero elsewhere."""
-        found = np.zeros_like(self.split(loads))
-        found[bear] = of_pairs
-        return found.reshape(loads.shape)
+        gains = np.zeros_like(self.split(loads))
+        gains[bear] = of_pairs
+        return gains.reshape(loads.shape)
 
     def tooth(self, loads: Array) -> Array:
         """What cells gain by U_3 of the tooth (..., n) [m]."""
@@ -126,7 +126,9 @@ class MovingCells:
     def thrust(self, loads: Array) -> tuple[Array, Array]:
         """What cells gain by U_3 (..., n) [m], and blocks of its second derivatives (..., cells, cells) [m/N]."""
         bear, force, smoothing, smooth = self._tilted(loads)
-        cubic, local = (one[0][bear[-2:]][:, None] for one in (self.moves.cubic, self.moves.local))
+        cubic, local = (
+            coefficients[0][bear[-2:]][:, None] for coefficients in (self.moves.cubic, self.moves.local)
+        )
         root = np.sqrt(np.maximum(force, 0.0))
         less = smooth**2 + 2 * (smoothing @ (force * smooth)[..., None])[..., 0]
         across = smooth[..., :, None] * smoothing
@@ -142,7 +144,7 @@ class MovingCells:
         """What the pinion's own flanks and the corners yield, of cells (..., n)."""
         assert self.own is not None
         n, force = self.cells, self.cells * self._first(loads)
-        both = (
+        pushes = (
             self.own.rolled(force, self.turn(approach)[..., None]),
             self.own.cornered(force, self._first(approach[..., None] - self.along)),
         )
@@ -150,62 +152,72 @@ class MovingCells:
             Pushed(
                 *(
                     self._last(np.broadcast_to(part, force.shape))
-                    for part in (one.approach, n * one.slope, one.push / n, one.less, one.stiff / n)
+                    for part in (
+                        pushed.approach,
+                        n * pushed.slope,
+                        pushed.push / n,
+                        pushed.less,
+                        pushed.stiff / n,
+                    )
                 )
             )
-            for one in both
+            for pushed in pushes
         )
         return flank, corner
 
     def linearised(self, loads: Array, approach: Array) -> Linearised:
         """As of ``MovingForces``."""
         (bent, rolled), (thrust, blocks) = self.bent(loads), self.thrust(loads)
-        turn, levers = self.turn(approach), self.everywhere(self.levers)
+        turn, tilted_lever_ratios = self.turn(approach), self.everywhere(self.tilted_lever_ratios)
         approached, slope = self.laws.value_and_slope(loads)
         residual = bent + approached + self.clear - thrust
         residual += turn[..., None] * rolled - approach[..., None]
         if self.film is not None:
             residual, slope = residual - self.film.approach(loads), slope - self.film.slope(loads)
         slope, reach, blocks = np.where(loads > 0, slope, 1.0), 1 - rolled, -blocks
-        carried, stiff = np.sum((levers - 0.5 * rolled) * loads, axis=-1), np.zeros_like(approach)
+        carried, stiff = (
+            np.sum((tilted_lever_ratios - 0.5 * rolled) * loads, axis=-1),
+            np.zeros_like(approach),
+        )
         if self.own is not None:
             for more in self._pushed(loads, approach):
                 residual, slope = residual + more.approach, slope + more.slope
                 reach = reach - more.less
                 carried, stiff = carried - more.push.sum(axis=-1), stiff + more.stiff.sum(axis=-1)
-        return Linearised(residual, reach, levers - (1 - reach), carried, stiff, slope, blocks)
+        return Linearised(residual, reach, tilted_lever_ratios - (1 - reach), carried, stiff, slope, blocks)
 
     def solved(self, at: Linearised, approach: Array, active: Booleans) -> tuple[Array, Array]:
         """As of ``MovingForces``."""
         assert at.blocks is not None
         unit, response = np.zeros_like(at.residual), np.zeros_like(at.residual)
         turn = self.turn(approach)
-        for one in np.ndindex(*approach.shape):
+        for index in np.ndindex(*approach.shape):
             cells, block, roll = (
-                every[one[-1]] for every in (self.coupling.cells, self.coupling.blocks, self.roll.blocks)
+                by_position[index[-1]]
+                for by_position in (self.coupling.cells, self.coupling.blocks, self.roll.blocks)
             )
-            jacobian = block + turn[one] * roll
+            jacobian = block + turn[index] * roll
             pairs = np.arange(len(cells) // self.cells)
             by_pair = jacobian.reshape(len(pairs), self.cells, len(pairs), self.cells)
-            by_pair[pairs, :, pairs, :] += at.blocks[one][cells[:: self.cells] // self.cells]
-            jacobian.flat[:: len(cells) + 1] += at.own[one][cells]
-            bears = np.flatnonzero(active[one][cells])
+            by_pair[pairs, :, pairs, :] += at.blocks[index][cells[:: self.cells] // self.cells]
+            jacobian.flat[:: len(cells) + 1] += at.own[index][cells]
+            bears = np.flatnonzero(active[index][cells])
             chosen = cells[bears]
             jacobian = jacobian.take(bears, axis=0).take(bears, axis=1)
-            sides = np.stack([at.reach[one][chosen], at.residual[one][chosen]])
-            unit[one][chosen], response[one][chosen] = solve_symmetric(jacobian, sides)
+            sides = np.stack([at.reach[index][chosen], at.residual[index][chosen]])
+            unit[index][chosen], response[index][chosen] = solve_symmetric(jacobian, sides)
         return unit, response
 
     def unloaded(self, loads: Array, approach: Array) -> Array:
         """As of ``MovingForces``."""
         bent, rolled = self.bent(loads)
         turn = self.turn(approach)
-        found = bent + self.clear - self.tooth(loads) + turn[..., None] * rolled - approach[..., None]
+        gaps = bent + self.clear - self.tooth(loads) + turn[..., None] * rolled - approach[..., None]
         if self.film is not None:
-            found = found - self.film.approach(np.zeros_like(loads))
+            gaps = gaps - self.film.approach(np.zeros_like(loads))
         if self.own is not None:
-            found = found + self._last(self.own.opened(self._first(approach[..., None] - self.along)))
-        return found
+            gaps = gaps + self._last(self.own.opened(self._first(approach[..., None] - self.along)))
+        return gaps
 
     def lever_losses(self, loads: Array, slopes: Array, approach: Array) -> tuple[Array, Array]:
         """Parts of base radii (2, ..., pairs) by which levers of pairs' forces, and of further ones, are shorter.
@@ -217,7 +229,7 @@ class MovingCells:
         approach : (...) array
             D [m].
         """
-        pairs, steeper = (self.split(one).sum(axis=-1) for one in (loads, slopes))
+        pairs, steeper = (self.split(values).sum(axis=-1) for values in (loads, slopes))
         bears = (pairs > 0.0) & (steeper != 0.0)
         size, per_turn = np.where(bears, pairs, 1.0), np.where(bears, steeper, 1.0)
         _, rolled = self.bent(loads)

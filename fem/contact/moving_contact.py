@@ -77,7 +77,7 @@ def contacts_move(pair: GearPair, asked: bool | None) -> bool:
     >>> contacts_move(pair, None), contacts_move(pair, True)
     (False, True)
     """
-    return min(one.youngs_modulus for one in pair.materials) < COMPLIANT if asked is None else asked
+    return min(material.youngs_modulus for material in pair.materials) < COMPLIANT if asked is None else asked
 
 
 @record
@@ -114,17 +114,19 @@ class ContactMoves:
         return np.asarray((self.roll @ force[..., None])[..., 0])
 
 
-def contact_moves(bodies: PairCompliance, where: ContactCandidates, corners: bool = False) -> ContactMoves:
+def contact_moves(
+    bodies: PairCompliance, candidates: ContactCandidates, corners: bool = False
+) -> ContactMoves:
     """Moves of the contacts of a pair at all positions.
 
     With ``corners`` those of tip edges too, with energies of the flanks' ends, and B' without the flanks' own part
     (``fem.contact.moving_corners``).
     """
     pair, width = bodies.pair, bodies.pair.face_width
-    flat = where.touchable & ~where.edge
-    on_path = where.touchable if corners else flat
+    flat = candidates.touchable & ~candidates.edge
+    on_path = candidates.touchable if corners else flat
     gears, radii = (bodies.pinion, bodies.wheel), pair.base_radii
-    rho = np.where(on_path, where.rho, 0.5 * pair.line_of_action)
+    rho = np.where(on_path, candidates.rho, 0.5 * pair.line_of_action)
     motions = bodies.motions
     rho = np.stack([np.clip(r, *motion.rho_range) for motion, r in zip(motions, rho, strict=True)])
     radius = rho[0] * rho[1] / (rho[0] + rho[1])
@@ -163,7 +165,7 @@ def contact_moves(bodies: PairCompliance, where: ContactCandidates, corners: boo
         np.where(on_path, cubic, 0.0) / width**2,
         np.where(on_path, local, 0.0) / width**1.5,
         np.where(flat, shift, 0.0) / width,
-        *(np.where(flat, one, 0.0) / width**2 for one in held),
+        *(np.where(flat, width_term, 0.0) / width**2 for width_term in held),
     )
 
 
@@ -200,7 +202,7 @@ class MovingPairs:
 
     Attributes
     ----------
-    bulk, laws, film, levers
+    bulk, laws, film, tilted_lever_ratios
         As for ``share_load``.
     clear : (..., pairs) array
         Gaps, 0 where there is no contact [m].
@@ -217,7 +219,7 @@ class MovingPairs:
     film: FilmLaw | None
     clear: Array
     touchable: Booleans
-    levers: Array
+    tilted_lever_ratios: Array
     moves: ContactMoves
     own: MovedFlanks | None
     start: float = 1e-2
@@ -231,13 +233,16 @@ class MovingPairs:
         if self.film is not None:
             residual, slope = residual - self.film.approach(loads), slope - self.film.slope(loads)
         slope, reach = np.where(loads > 0, slope, 1.0), 1 - rolled
-        carried, stiff = np.sum((self.levers - 0.5 * rolled) * loads, axis=-1), np.zeros_like(approach)
+        carried, stiff = (
+            np.sum((self.tilted_lever_ratios - 0.5 * rolled) * loads, axis=-1),
+            np.zeros_like(approach),
+        )
         if self.own is not None:
             more = self.own.pushed(loads, approach[..., None])
             residual, slope, reach = residual + more.approach, slope + more.slope, reach - more.less
             carried = carried - np.sum(np.where(loads > 0, more.push, 0.0), axis=-1)
             stiff = np.sum(np.where(loads > 0, more.stiff, 0.0), axis=-1)
-        return Linearised(residual, reach, self.levers - (1 - reach), carried, stiff, slope)
+        return Linearised(residual, reach, self.tilted_lever_ratios - (1 - reach), carried, stiff, slope)
 
     def bulk_at(self, approach: Array) -> Array:
         """Compliance (..., pairs, pairs) [m/N] where the pinion has rolled on by D (...) [m]."""
@@ -250,17 +255,17 @@ class MovingPairs:
     def unloaded(self, loads: Array, approach: Array) -> Array:
         """As of ``MovingForces``."""
         clear = self.clear if self.film is None else self.clear - self.film.approach(np.zeros_like(loads))
-        found = (self.bulk @ loads[..., None])[..., 0] + clear
-        found += approach[..., None] * (self.moves.rolled(loads) - 1)
-        return np.asarray(found if self.own is None else found + self.own.opened(approach[..., None]))
+        gaps = (self.bulk @ loads[..., None])[..., 0] + clear
+        gaps += approach[..., None] * (self.moves.rolled(loads) - 1)
+        return np.asarray(gaps if self.own is None else gaps + self.own.opened(approach[..., None]))
 
 
 def answers(bulk: Array, at: Linearised, active: Booleans) -> tuple[Array, Array]:
     """Answers of the forces in contact to the turn and to the residual (..., n), all of one compliance."""
     jacobian = bulk + at.own[..., None] * np.eye(active.shape[-1])
-    both = active[..., :, None] & active[..., None, :]
+    coupled = active[..., :, None] & active[..., None, :]
     scale = np.abs(jacobian).max()
-    matrix = np.where(both, jacobian / scale, np.eye(active.shape[-1]))
+    matrix = np.where(coupled, jacobian / scale, np.eye(active.shape[-1]))
     sides = np.stack([np.where(active, at.reach, 0.0), np.where(active, at.residual, 0.0)], axis=-1)
     solved = np.linalg.solve(matrix, sides / scale)
     return solved[..., 0], solved[..., 1]
@@ -271,13 +276,15 @@ def moving_pairs(
     laws: PairLaws,
     film: FilmLaw | None,
     gaps: Array,
-    levers: Array,
+    tilted_lever_ratios: Array,
     moves: ContactMoves,
     own: MovedFlanks | None = None,
 ) -> MovingPairs:
     """Put contacts that move together, arguments as for ``share_load``."""
     touchable = np.isfinite(gaps)
-    return MovingPairs(bulk, laws, film, np.where(touchable, gaps, 0.0), touchable, levers, moves, own)
+    return MovingPairs(
+        bulk, laws, film, np.where(touchable, gaps, 0.0), touchable, tilted_lever_ratios, moves, own
+    )
 
 
 def moved_share(share: LoadShare, force: Array, pairs: MovingPairs) -> LoadShare | None:
@@ -289,8 +296,8 @@ def moved_share(share: LoadShare, force: Array, pairs: MovingPairs) -> LoadShare
         None where Newton's method does not settle: the deflection is far beyond the first order.
     """
     whole = force + np.zeros_like(share.transmission_error)
-    found = moved_forces(pairs, whole, share.forces, share.transmission_error)
-    return None if found is None else replace(found, iterations=share.iterations + found.iterations)
+    moved = moved_forces(pairs, whole, share.forces, share.transmission_error)
+    return None if moved is None else replace(moved, iterations=share.iterations + moved.iterations)
 
 
 def moved_places(moves: ContactMoves, force: Array, approach: Array) -> Array:
@@ -321,13 +328,14 @@ def model_error(
     changed : (...) array, optional
         Part of D by which solutions with and without motion differ, where that is known.
     """
-    every = (0, -1) if force.ndim > approach.ndim + 1 else -1
-    part = force / force.sum(axis=every, keepdims=True)
-    turn = np.sum(part * moves.rolled(force), axis=every)
-    thrust, law = (np.sum(part * moves.thrust(force, k)[0], axis=every) / approach for k in (0, 1))
+    axes = (0, -1) if force.ndim > approach.ndim + 1 else -1
+    part = force / force.sum(axis=axes, keepdims=True)
+    turn = np.sum(part * moves.rolled(force), axis=axes)
+    thrust, law = (np.sum(part * moves.thrust(force, k)[0], axis=axes) / approach for k in (0, 1))
     change = np.maximum(np.abs(1.5 * turn - thrust), changed)
     slide, wide = (
-        np.sum(part * one * force**2, axis=every) / approach for one in (moves.slide, moves.spread)
+        np.sum(part * coefficient * force**2, axis=axes) / approach
+        for coefficient in (moves.slide, moves.spread)
     )
     whole = np.abs(law) + wide + change**2 + (0.0 if moving else np.maximum(change, slide))
     return float(np.max(whole))

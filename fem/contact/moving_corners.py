@@ -52,7 +52,7 @@ class MovedFlanks:
         Without what depends on D.
     gaps : (pitches, positions, pairs) array
         [m], without those that the surface has.
-    levers : (positions, pairs) array
+    tilted_lever_ratios : (positions, pairs) array
         Without D.
     surfaces : tuple of PlaceSurface
         Of the corners of pinion and wheel; none where relief has laws of the corners at held places.
@@ -71,7 +71,7 @@ class MovedFlanks:
     matrix: Array
     laws: PairLaws
     gaps: Array
-    levers: Array
+    tilted_lever_ratios: Array
     surfaces: tuple[PlaceSurface, ...]
     beside: tuple[Booleans, ...]
     beyond: Array
@@ -101,47 +101,47 @@ class MovedFlanks:
 
     def cornered(self, force: Array, turn: Array) -> Pushed:
         """What the corners add to forces (..., pairs) [N] under turns D (..., pairs) [m]."""
-        found = Pushed(*(np.zeros(np.broadcast(force, turn).shape) for _ in range(5)))
-        size = force + found.approach
-        for corner, (surface, some) in enumerate(zip(self.surfaces, self.beside, strict=True)):
-            if some.any():
-                at = surface.at(self._places(corner, turn), size[..., some])
+        pushed = Pushed(*(np.zeros(np.broadcast(force, turn).shape) for _ in range(5)))
+        size = force + pushed.approach
+        for corner, (surface, contacts) in enumerate(zip(self.surfaces, self.beside, strict=True)):
+            if contacts.any():
+                at = surface.at(self._places(corner, turn), size[..., contacts])
                 for name in (
                     ("approach", "slope") if corner else ("approach", "slope", "push", "less", "stiff")
                 ):
-                    getattr(found, name)[..., some] = getattr(at, name)
-        return found
+                    getattr(pushed, name)[..., contacts] = getattr(at, name)
+        return pushed
 
     def opened(self, turn: Array) -> Array:
         """Gaps of the corners without a force (..., pairs) under turns D (..., pairs) [m]."""
-        found = np.zeros(np.broadcast(turn, self.base).shape)
-        for corner, (surface, some) in enumerate(zip(self.surfaces, self.beside, strict=True)):
-            if some.any():
-                found[..., some] = surface.gap(self._places(corner, turn))
-        return found
+        gaps = np.zeros(np.broadcast(turn, self.base).shape)
+        for corner, (surface, contacts) in enumerate(zip(self.surfaces, self.beside, strict=True)):
+            if contacts.any():
+                gaps[..., contacts] = surface.gap(self._places(corner, turn))
+        return gaps
 
     def pushed(self, force: Array, turn: Array) -> Pushed:
         """Both together."""
-        one, two = self.rolled(force, turn), self.cornered(force, turn)
+        rolled, cornered = self.rolled(force, turn), self.cornered(force, turn)
         return Pushed(
-            one.approach + two.approach,
-            one.slope + two.slope,
-            one.push + two.push,
-            one.less + two.less,
-            one.stiff + two.stiff,
+            rolled.approach + cornered.approach,
+            rolled.slope + cornered.slope,
+            rolled.push + cornered.push,
+            rolled.less + cornered.less,
+            rolled.stiff + cornered.stiff,
         )
 
-    def edge_rho(self, flanks: LoadedFlanks, given: MeshSetup, approach: Array) -> Array:
+    def edge_rho(self, flanks: LoadedFlanks, setup: MeshSetup, approach: Array) -> Array:
         """Curvature radii at which tip edges touch pinion and wheel (2, ..., pairs) under a deflection (...) [m]."""
-        where, pair, turned = flanks.where, given.pair, approach[..., None]
-        rho = np.broadcast_to(where.rho[:, None], (2, *self.base.shape)) + 0.0 * turned
-        (_, before), (_, after) = where.corners()
+        candidates, pair, turned = flanks.candidates, setup.pair, approach[..., None]
+        rho = np.broadcast_to(candidates.rho[:, None], (2, *self.base.shape)) + 0.0 * turned
+        (_, before), (_, after) = candidates.corners()
         overlap = turned - np.where(
-            np.isfinite(where.gap), where.gap - where.gap.min(axis=-1, keepdims=True), 0.0
+            np.isfinite(candidates.gap), candidates.gap - candidates.gap.min(axis=-1, keepdims=True), 0.0
         )
-        rho[0] = np.where(before, where.rho[0] + np.maximum(overlap, 0.0), rho[0])
+        rho[0] = np.where(before, candidates.rho[0] + np.maximum(overlap, 0.0), rho[0])
         if self.surfaces and after.any():
-            end, line = given.rounds[0].rho, pair.line_of_action
+            end, line = setup.rounds[0].rho, pair.line_of_action
             place = line - end - self.beyond[0] - turned
             gap, touched = gap_at(
                 pair.base_radii[::-1], line, np.where(after, place, line - end), np.array(end)
@@ -151,50 +151,63 @@ class MovedFlanks:
 
 
 def moved_flanks(
-    given: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
+    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
 ) -> MovedFlanks:
     """Laws for contacts that move, from those for contacts that stay; arguments as for ``loaded_flanks``.
 
     Flanks with relief keep the laws of both corners at the places of contacts that stay: there the slope of what they
     lack parts the corners from the contacts.
     """
-    where, pair, width = flanks.where, given.pair, given.pair.face_width
-    surfaces = tables.surfaces if given.removed is None else ()
-    (_, before), (_, after) = where.corners()
-    kappa = np.ones_like(flanks.kappa) if surfaces else flanks.kappa
-    clear = where.gap - where.gap.min(axis=-1, keepdims=True)
+    candidates, pair, width = flanks.candidates, setup.pair, setup.pair.face_width
+    surfaces = tables.surfaces if setup.removed is None else ()
+    (_, before), (_, after) = candidates.corners()
+    lever_ratios = np.ones_like(flanks.lever_ratios) if surfaces else flanks.lever_ratios
+    clear = candidates.gap - candidates.gap.min(axis=-1, keepdims=True)
     if surfaces:
-        clear = clear - np.where(where.edge, where.lacking, 0.0)
+        clear = clear - np.where(candidates.edge, candidates.lacking, 0.0)
     held = np.where(np.isfinite(clear), clear, 0.0)
-    ratio = flanks.kappa / kappa
+    ratio = flanks.lever_ratios / lever_ratios
     matrix = flanks.matrix * ratio[..., :, None] * ratio[..., None, :]
-    share = np.where(where.touchable & (bool(surfaces) | ~after), 1 / (width * kappa**2), 0.0)
+    share = np.where(candidates.touchable & (bool(surfaces) | ~after), 1 / (width * lever_ratios**2), 0.0)
     diagonal = np.arange(matrix.shape[-1])
-    own = (bodies.pinion.own(where.rho[0]) - bodies.pinion.hub_windup) * share
+    own = (bodies.pinion.own(candidates.rho[0]) - bodies.pinion.hub_windup) * share
     matrix[..., diagonal, diagonal] -= np.where(after, 0.0, own)
     middle = 0.5 * (pair.points.A + pair.points.E)
-    place = np.where(where.touchable, np.clip(where.place, *given.ends), middle)
-    hertz, levers = bodies.hertz(place, where.curvature, kappa), flanks.levers * ratio
+    place = np.where(candidates.touchable, np.clip(candidates.place, *setup.ends), middle)
+    hertz, tilted_lever_ratios = (
+        bodies.hertz(place, candidates.curvature, lever_ratios),
+        flanks.tilted_lever_ratios * ratio,
+    )
     beyond = np.zeros((2, *clear.shape))
     beside: tuple[Booleans, ...] = ()
     if surfaces:
-        levers = np.where(after, levers - flanks.kappa + 1.0, levers)
-        laws = PairLaws(hertz, np.zeros_like(where.edge))
-        wheel, other = bodies.wheel, pair.line_of_action - where.place
+        tilted_lever_ratios = np.where(
+            after, tilted_lever_ratios - flanks.lever_ratios + 1.0, tilted_lever_ratios
+        )
+        laws = PairLaws(hertz, np.zeros_like(candidates.edge))
+        wheel, other = bodies.wheel, pair.line_of_action - candidates.place
         rounded = up_to(other, wheel.rho_range[1], wheel.module)[0]
-        known = np.where(before, wheel.hub_windup, wheel.own(where.rho[1]))
-        matrix[..., diagonal, diagonal] += np.where(where.touchable, wheel.own(rounded) - known, 0.0) / width
-        beyond[0], beyond[1] = where.place - held - given.rounds[0].rho, other - given.rounds[1].rho
+        known = np.where(before, wheel.hub_windup, wheel.own(candidates.rho[1]))
+        matrix[..., diagonal, diagonal] += (
+            np.where(candidates.touchable, wheel.own(rounded) - known, 0.0) / width
+        )
+        beyond[0], beyond[1] = candidates.place - held - setup.rounds[0].rho, other - setup.rounds[1].rho
         most = DEEPEST * pair.module, 0.0
         beside = tuple(
-            where.touchable & (flat > surface.first - more)
+            candidates.touchable & (flat > surface.first - more)
             for flat, surface, more in zip(
-                (where.place - given.rounds[0].rho, beyond[1][0]), surfaces, most, strict=True
+                (candidates.place - setup.rounds[0].rho, beyond[1][0]), surfaces, most, strict=True
             )
         )
     else:
-        table, _ = tables.at(where, slid=tables.slid)
-        laws = PairLaws(hertz, where.edge, table, cut_offs(given, bodies, where, force, slid=tables.slid))
-    base = np.where(after, where.place, where.rho[0]) - held
-    base = np.where(before & bool(surfaces), where.rho[0] - held - np.where(before, where.lacking, 0.0), base)
-    return MovedFlanks(matrix, laws, clear, levers, surfaces, beside, beyond, base, share, bodies.pinion)
+        table, _ = tables.at(candidates, slid=tables.slid)
+        laws = PairLaws(
+            hertz, candidates.edge, table, cut_offs(setup, bodies, candidates, force, slid=tables.slid)
+        )
+    base = np.where(after, candidates.place, candidates.rho[0]) - held
+    base = np.where(
+        before & bool(surfaces), candidates.rho[0] - held - np.where(before, candidates.lacking, 0.0), base
+    )
+    return MovedFlanks(
+        matrix, laws, clear, tilted_lever_ratios, surfaces, beside, beyond, base, share, bodies.pinion
+    )

@@ -28,40 +28,40 @@ STEP = 1e-3
 
 
 def cell_roll(
-    face: FaceSetting, bodies: PairCompliance, where: ContactCandidates, moves: ContactMoves
+    face: FaceSetting, bodies: PairCompliance, candidates: ContactCandidates, moves: ContactMoves
 ) -> CellCoupling:
     """C' between cells of pairs that may touch [1/N], kept for loads and alignments that follow."""
     held = replace(face, strip=0.0)  # which does not change with the place
-    arrays = (where.rho, where.touchable, moves.roll)
+    arrays = (candidates.rho, candidates.touchable, moves.roll)
     laws = (bodies.pinion.law.plane_modulus, bodies.wheel.law.plane_modulus)
     pair = bodies.pair
     size_of = (pair.module, pair.face_width, pair.face_widths, pair.face_offsets, bodies.reach)
-    key = (bodies.meshed, laws, size_of, held.coupled, *(one.tobytes() for one in arrays))
+    key = (bodies.meshed, laws, size_of, held.coupled, *(array.tobytes() for array in arrays))
 
     def differ(of: slice) -> Array:
-        rho, roll, step = where.rho[:, of], moves.roll[of], STEP * pair.module
+        rho, roll, step = candidates.rho[:, of], moves.roll[of], STEP * pair.module
         (count, pairs), n = roll.shape[:2], face.cells
-        one, still = np.ones((count, pairs)), np.zeros_like(roll)
+        ones, still = np.ones((count, pairs)), np.zeros_like(roll)
         ahead, behind = (
-            cell_matrix(held, bodies, rho + np.array([by, 0.0])[:, None, None], one, still, (0,))
+            cell_matrix(held, bodies, rho + np.array([by, 0.0])[:, None, None], ones, still, (0,))
             for by in (step, -step)
         )
-        found = ((ahead - behind) / (2 * step)).reshape(count, pairs, n, pairs, n)
+        derivative = ((ahead - behind) / (2 * step)).reshape(count, pairs, n, pairs, n)
         cell, rolls = np.arange(n), np.diagonal(roll, axis1=-2, axis2=-1) != 0.0
-        found[:, :, cell, :, cell] += n * roll
-        found *= (rolls[..., :, None] & rolls[..., None, :])[:, :, None, :, None]
-        return np.asarray(found.reshape(count, pairs * n, pairs * n))
+        derivative[:, :, cell, :, cell] += n * roll
+        derivative *= (rolls[..., :, None] & rolls[..., None, :])[:, :, None, :, None]
+        return np.asarray(derivative.reshape(count, pairs * n, pairs * n))
 
     def cut() -> CellCoupling:
-        return in_blocks(differ, where.touchable, face.cells)
+        return in_blocks(differ, candidates.touchable, face.cells)
 
-    if np.sum((where.touchable.sum(axis=-1) * face.cells) ** 2) > MOST_KEPT:
+    if np.sum((candidates.touchable.sum(axis=-1) * face.cells) ** 2) > MOST_KEPT:
         return cut()
     return GearStore().over_face("roll", key, cut)
 
 
 def other_pairs(
-    held: CellCoupling, touchable: Booleans, levers: Array, before: Array, bulk: Array
+    held: CellCoupling, touchable: Booleans, lever_ratios: Array, before: Array, bulk: Array
 ) -> CellCoupling:
     """Compliance between cells that has another one of the plane, and forces by other levers.
 
@@ -70,37 +70,39 @@ def other_pairs(
     held : CellCoupling
         With the plane's compliance ``before``.
     touchable : (positions, pairs) boolean array
-    levers : (positions, pairs) array
+    lever_ratios : (positions, pairs) array
         Of its forces, over those of the forces that are asked for.
     before, bulk : (positions, pairs, pairs) arrays
         [m/N]
     """
     pairs = touchable.shape[-1]
     n, blocks = held.unknowns // pairs, []
-    cell, both = np.arange(n), levers[..., :, None] * levers[..., None, :]
-    more = n * (bulk - before * both)
+    cell, ratio_products = np.arange(n), lever_ratios[..., :, None] * lever_ratios[..., None, :]
+    more = n * (bulk - before * ratio_products)
     for row, block in enumerate(held.blocks):
         at = np.flatnonzero(touchable[row])
         k, between = len(at), np.ix_(at, at)
-        found = block.reshape(k, n, k, n) * both[row][between][:, None, :, None]
-        found[:, cell, :, cell] += more[row][between]
-        blocks.append(found.reshape(k * n, k * n))
+        coupled = block.reshape(k, n, k, n) * ratio_products[row][between][:, None, :, None]
+        coupled[:, cell, :, cell] += more[row][between]
+        blocks.append(coupled.reshape(k * n, k * n))
     return CellCoupling(held.cells, tuple(blocks), held.unknowns)
 
 
-def tooth_smoothing(face: FaceSetting, bodies: PairCompliance, where: ContactCandidates) -> Array:
+def tooth_smoothing(face: FaceSetting, bodies: PairCompliance, candidates: ContactCandidates) -> Array:
     """S of each pair (positions, pairs, cells, cells): how the tilt of both its flanks follows the load.
 
     Slices tilt by their own load alone.
     """
     if face.model == SLICES:
-        return np.broadcast_to(np.eye(face.cells), (*where.touchable.shape, face.cells, face.cells)).copy()
+        return np.broadcast_to(
+            np.eye(face.cells), (*candidates.touchable.shape, face.cells, face.cells)
+        ).copy()
     pair, step = bodies.pair, STEP
     wave: Array = np.arange(1, face.cells, dtype=float) * (np.pi * pair.module / pair.face_width)
-    slow, fast = np.zeros(where.touchable.shape), np.zeros((*where.touchable.shape, len(wave)))
-    gears = zip((bodies.pinion, bodies.wheel), bodies.meshed, bodies.motions, where.rho, strict=True)
+    slow, fast = np.zeros(candidates.touchable.shape), np.zeros((*candidates.touchable.shape, len(wave)))
+    gears = zip((bodies.pinion, bodies.wheel), bodies.meshed, bodies.motions, candidates.rho, strict=True)
     for gear, meshed, motion, place in gears:
-        rho = np.where(where.touchable, np.clip(place, *motion.rho_range), motion.rho_range[0])
+        rho = np.where(candidates.touchable, np.clip(place, *motion.rho_range), motion.rho_range[0])
         lever, at = gear.base_radius / rho, rho / pair.module
         waves = waves_of(meshed, GearStore())
         slope = (waves.own_at(at + step, wave) - waves.own_at(at - step, wave)) / (2 * step * pair.module)

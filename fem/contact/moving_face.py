@@ -29,11 +29,11 @@ __all__ = ["moved_over_face", "moving_cells"]
 
 
 def moved_over_face(
-    given: MeshSetup,
+    setup: MeshSetup,
     bodies: PairCompliance,
     whole: Array,
     flanks: LoadedFlanks,
-    kappa: Array,
+    lever_ratios: Array,
     pairs: MovingPairs,
     stays: FaceShare,
 ) -> tuple[LoadShare, FaceShare] | None:
@@ -41,13 +41,13 @@ def moved_over_face(
 
     Parameters
     ----------
-    given : MeshSetup
+    setup : MeshSetup
     bodies : PairCompliance
     whole : (torques, 1, 1) array
         Torques over the base radius [N].
     flanks : LoadedFlanks
         Of contacts that stay.
-    kappa : (positions, pairs) array
+    lever_ratios : (positions, pairs) array
         Levers of the normals in whose forces the laws of ``pairs`` are.
     pairs : MovingPairs
     stays : FaceShare
@@ -58,50 +58,59 @@ def moved_over_face(
     LoadShare and FaceShare, or None
         Of the pairs and of their cells; None where Newton's method does not settle.
     """
-    assert given.face is not None
+    assert setup.face is not None
     shares: list[LoadShare] = []
     shape, lost_shape = stays.forces.shape, (2, *stays.forces.shape[:-1])
-    forces, left, lost = np.zeros(shape), np.zeros(shape), (np.zeros(lost_shape), np.zeros(lost_shape))
+    forces, remaining_gaps, lost = (
+        np.zeros(shape),
+        np.zeros(shape),
+        (np.zeros(lost_shape), np.zeros(lost_shape)),
+    )
     order, held = [], []
-    shafts = shafts_under_face(given.face, given.pair)
-    gaps = flanks.where.gap - flanks.where.gap.min(axis=-1, keepdims=True)
+    shafts = shafts_under_face(setup.face, setup.pair)
+    gaps = flanks.candidates.gap - flanks.candidates.gap.min(axis=-1, keepdims=True)
     for strip in np.unique(stays.strips):
-        some = np.flatnonzero(stays.strips == strip)
-        rise = stays.rise[some]
-        still = moving_cells(given, bodies, flanks, kappa, pairs, rise, float(strip))
+        torques = np.flatnonzero(stays.strips == strip)
+        rise = stays.rise[torques]
+        still = moving_cells(setup, bodies, flanks, lever_ratios, pairs, rise, float(strip))
         cells = still
         if (
             shafts is not None
         ):  # corners touch at the approach of the flanks, to which shafts do not contribute
-            bent = shafts.bent(stays.forces[some], flanks.kappa).sum(axis=-2)[..., None, :] / kappa[..., None]
+            bent = (
+                shafts.bent(stays.forces[torques], flanks.lever_ratios).sum(axis=-2)[..., None, :]
+                / lever_ratios[..., None]
+            )
             still = replace(still, along=still.along + bent.reshape(*bent.shape[:-2], -1))
-            cells = replace(still, coupling=still.coupling.plus(shafts.compliance, kappa))
-        found = _found(cells, whole[some], stays.forces[some])
-        if found is None:
+            cells = replace(still, coupling=still.coupling.plus(shafts.compliance, lever_ratios))
+        load_share = _solved(cells, whole[torques], stays.forces[torques])
+        if load_share is None:
             return None
-        forces[some] = cells.split(found.forces)
-        open_ = np.where(cells.touchable, cells.unloaded(found.forces, found.transmission_error), np.inf)
-        left[some] = settled_gaps(cells.split(open_) + rise, forces[some])
-        turn = found.transmission_error
+        forces[torques] = cells.split(load_share.forces)
+        open_ = np.where(
+            cells.touchable, cells.unloaded(load_share.forces, load_share.transmission_error), np.inf
+        )
+        remaining_gaps[torques] = settled_gaps(cells.split(open_) + rise, forces[torques])
+        turn = load_share.transmission_error
         if shafts is not None:
-            at = still.linearised(found.forces, turn)
-            by_tilt = np.zeros_like(found.forces) + shafts.levers(kappa)
-            slopes = still.solved(replace(at, residual=by_tilt), turn, found.forces > 0.0)
-            found, brought = shafts.held(found, kappa, gaps, slopes, at.arms)
-            found = replace(found, stiffness=found.stiffness - at.stiff)
+            at = still.linearised(load_share.forces, turn)
+            by_tilt = np.zeros_like(load_share.forces) + shafts.levers(lever_ratios)
+            slopes = still.solved(replace(at, residual=by_tilt), turn, load_share.forces > 0.0)
+            load_share, brought = shafts.held(load_share, lever_ratios, gaps, slopes, at.further_lever_ratios)
+            load_share = replace(load_share, stiffness=load_share.stiffness - at.stiff)
             held.append(brought)
-        losses = cells.lever_losses(found.forces, found.pair_stiffness, turn)
-        for every, one in zip(lost, losses, strict=True):
-            every[:, some] = one
-        shares.append(of_pairs(found, given.face.cells))
-        order.append(some)
+        losses = cells.lever_losses(load_share.forces, load_share.pair_stiffness, turn)
+        for lost_part, loss in zip(lost, losses, strict=True):
+            lost_part[:, torques] = loss
+        shares.append(of_pairs(load_share, setup.face.cells))
+        order.append(torques)
     back = np.argsort(np.concatenate(order))
     share = _in_order(shares, back)
     reached = joined(held, back) if held else None
-    return share, replace(stays, forces=forces, left=left, lost=lost, shafts=reached)
+    return share, replace(stays, forces=forces, remaining_gaps=remaining_gaps, lost=lost, shafts=reached)
 
 
-def _found(cells: MovingCells, whole: Array, near: Array) -> LoadShare | None:
+def _solved(cells: MovingCells, whole: Array, near: Array) -> LoadShare | None:
     """Forces on cells, from those of contacts that stay (torques, ..., pairs, cells), or from as much spread evenly."""
     even = np.repeat(near.mean(axis=-1, keepdims=True), near.shape[-1], axis=-1)
     for start in (near, even):
@@ -109,17 +118,17 @@ def _found(cells: MovingCells, whole: Array, near: Array) -> LoadShare | None:
         nothing = np.zeros(begin.shape[:-1])
         deflection = cells.linearised(begin, nothing).residual
         approach = np.mean(deflection, axis=-1, where=begin > 0.0)
-        found = moved_forces(cells, whole + nothing, begin, approach)
-        if found is not None:
-            return found
+        load_share = moved_forces(cells, whole + nothing, begin, approach)
+        if load_share is not None:
+            return load_share
     return None
 
 
 def moving_cells(
-    given: MeshSetup,
+    setup: MeshSetup,
     bodies: PairCompliance,
     flanks: LoadedFlanks,
-    kappa: Array,
+    lever_ratios: Array,
     pairs: MovingPairs,
     rise: Array,
     strip: float = 0.0,
@@ -128,34 +137,36 @@ def moving_cells(
 
     Parameters
     ----------
-    given, bodies, flanks, kappa, pairs
+    setup, bodies, flanks, lever_ratios, pairs
         As of ``moved_over_face``.
     rise : (torques, pitches, positions, pairs, cells) array
         By how much smallest gaps of cells fall short of their mean [m].
     strip : float
         Half-width of strips of pressure over a cell's length.
     """
-    assert given.face is not None
-    face, where = replace(given.face, strip=strip), flanks.where
-    along = along_cells(face, given.pair, where)
-    touchable = np.repeat(where.touchable & np.isfinite(where.gap), face.cells, axis=-1)
+    assert setup.face is not None
+    face, candidates = replace(setup.face, strip=strip), flanks.candidates
+    along = along_cells(face, setup.pair, candidates)
+    touchable = np.repeat(candidates.touchable & np.isfinite(candidates.gap), face.cells, axis=-1)
     flat, short = (*along.shape[:-2], -1), rise.reshape(*rise.shape[:-2], -1)
     clear = (pairs.clear[..., None] + along).reshape(*pairs.clear.shape[:-1], -1) - short
-    stiff = cell_coupling(face, bodies, where, flanks.kappa, flanks.matrix)
+    stiff = cell_coupling(face, bodies, candidates, flanks.lever_ratios, flanks.matrix)
     stays = partial_cells(CellLaws(flanks.laws, face.cells), stiff, short)
     return MovingCells(
         face.cells,
-        other_pairs(stiff, where.touchable, flanks.kappa / kappa, flanks.matrix, pairs.bulk),
-        cell_roll(face, bodies, where, pairs.moves),
+        other_pairs(
+            stiff, candidates.touchable, flanks.lever_ratios / lever_ratios, flanks.matrix, pairs.bulk
+        ),
+        cell_roll(face, bodies, candidates, pairs.moves),
         PartialCells(CellLaws(pairs.laws, face.cells), short, stays.whole),
         None if pairs.film is None else CellLaws(pairs.film, face.cells),
         np.where(touchable, clear, 0.0),
         along.reshape(flat),
-        face.least_gap(given.pair),
+        face.least_gap(setup.pair),
         touchable,
-        pairs.levers,
+        pairs.tilted_lever_ratios,
         pairs.moves,
-        tooth_smoothing(face, bodies, where),
+        tooth_smoothing(face, bodies, candidates),
         pairs.own,
     )
 
@@ -163,5 +174,5 @@ def moving_cells(
 def _in_order(shares: list[LoadShare], order: Integers) -> LoadShare:
     """Shares of some torques each, as one of all."""
     names = ("forces", "transmission_error", "stiffness", "pair_stiffness")
-    every = {name: np.concatenate([getattr(one, name) for one in shares])[order] for name in names}
-    return replace(shares[0], **every, iterations=max(one.iterations for one in shares))
+    columns = {name: np.concatenate([getattr(share, name) for share in shares])[order] for name in names}
+    return replace(shares[0], **columns, iterations=max(share.iterations for share in shares))

@@ -36,7 +36,7 @@ class Linearised:
         Overlap wanting [m].
     reach : (..., n) array
         What is closed by a turn.
-    arms : (..., n) array
+    further_lever_ratios : (..., n) array
         Levers of further forces.
     carried : (...) array
         Torque over the base radius [N].
@@ -50,7 +50,7 @@ class Linearised:
 
     residual: Array
     reach: Array
-    arms: Array
+    further_lever_ratios: Array
     carried: Array
     stiff: Array
     own: Array
@@ -103,8 +103,8 @@ def moved_forces(problem: MovingForces, whole: Array, loads: Array, approach: Ar
     for iteration in range(1, ITERATIONS + 1):
         at = problem.linearised(loads, approach)
         unit, response = problem.solved(at, approach, active)
-        tangent = np.sum(at.arms * unit, axis=-1) - at.stiff
-        lift = (whole - at.carried + np.sum(at.arms * response, axis=-1)) / tangent
+        tangent = np.sum(at.further_lever_ratios * unit, axis=-1) - at.stiff
+        lift = (whole - at.carried + np.sum(at.further_lever_ratios * response, axis=-1)) / tangent
         step = np.where(active, unit * lift[..., None] - response, 0.0)
         moved = loads + step
         negative = active & (moved <= 0)

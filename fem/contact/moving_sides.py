@@ -51,36 +51,40 @@ class MovedSide:
     moves : ContactMoves
     own : MovedFlanks or None
         Of the corners.
-    kappa : (positions, pairs) array
-        Of the forces in ``pairs``.
+    lever_ratios : (positions, pairs) array
+        kappa of the forces in ``pairs``.
     """
 
     flanks: LoadedFlanks
     pairs: MovingPairs
     moves: ContactMoves
     own: MovedFlanks | None
-    kappa: Array
+    lever_ratios: Array
 
     @property
-    def levers(self) -> Array:
+    def tilted_lever_ratios(self) -> Array:
         """Of the tilted forces about the pinion's axis, over kappa r_b1 (positions, pairs)."""
-        return np.asarray(self.flanks.levers * self.flanks.kappa / self.kappa)
+        return np.asarray(self.flanks.tilted_lever_ratios * self.flanks.lever_ratios / self.lever_ratios)
 
 
 def moved_side(
-    given: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
+    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
 ) -> MovedSide:
     """Flanks of one side with contacts that move; arguments as for ``loaded_flanks``."""
-    where, kappa, levers = flanks.where, flanks.kappa, flanks.levers
-    moves, own = contact_moves(bodies, where, given.beyond_path), None
+    candidates, lever_ratios, tilted_lever_ratios = (
+        flanks.candidates,
+        flanks.lever_ratios,
+        flanks.tilted_lever_ratios,
+    )
+    moves, own = contact_moves(bodies, candidates, setup.beyond_path), None
     matrix, laws = flanks.matrix, flanks.laws
-    gaps = where.gap - where.gap.min(axis=-1, keepdims=True)
-    if given.beyond_path:
-        own = moved_flanks(given, bodies, flanks, greatest_force(bodies, where, force), tables)
-        matrix, laws, gaps, levers = own.matrix, own.laws, own.gaps, own.levers
-        kappa = np.ones_like(kappa) if own.surfaces else kappa
-    pairs = moving_pairs(matrix, laws, flanks.oil, gaps, levers, moves, own)
-    return MovedSide(flanks, pairs, moves, own, kappa)
+    gaps = candidates.gap - candidates.gap.min(axis=-1, keepdims=True)
+    if setup.beyond_path:
+        own = moved_flanks(setup, bodies, flanks, greatest_force(bodies, candidates, force), tables)
+        matrix, laws, gaps, tilted_lever_ratios = own.matrix, own.laws, own.gaps, own.tilted_lever_ratios
+        lever_ratios = np.ones_like(lever_ratios) if own.surfaces else lever_ratios
+    pairs = moving_pairs(matrix, laws, flanks.oil, gaps, tilted_lever_ratios, moves, own)
+    return MovedSide(flanks, pairs, moves, own, lever_ratios)
 
 
 @record
@@ -117,9 +121,9 @@ class MovingSides:
         """As of ``MovingForces``."""
         return np.concatenate([self.front.touchable, self.back.touchable], axis=-1)
 
-    def split(self, every: Array) -> tuple[Array, Array]:
+    def split(self, values: Array) -> tuple[Array, Array]:
         """(..., front and back pairs) as those of either side."""
-        return every[..., : self.count], every[..., self.count :]
+        return values[..., : self.count], values[..., self.count :]
 
     def behind(self, approach: Array) -> Array:
         """D' by which the other flanks have rolled on [m]."""
@@ -141,13 +145,15 @@ class MovingSides:
         front, back = self.split(loads)
         here = self.front.linearised(front, approach)
         there = self.back.linearised(back, self.behind(approach))
-        cross, (one, two) = self._coupling(approach), self.crossed(loads)
+        cross, (front_loss, back_loss) = self._coupling(approach), self.crossed(loads)
         bent = (cross @ back[..., None])[..., 0], (np.swapaxes(cross, -1, -2) @ front[..., None])[..., 0]
         return Linearised(
             np.concatenate([here.residual + bent[0], there.residual + bent[1]], axis=-1),
-            np.concatenate([here.reach - one, two - there.reach], axis=-1),
-            np.concatenate([here.arms - one, two - there.arms], axis=-1),
-            here.carried - there.carried - np.sum(one * front, axis=-1),
+            np.concatenate([here.reach - front_loss, back_loss - there.reach], axis=-1),
+            np.concatenate(
+                [here.further_lever_ratios - front_loss, back_loss - there.further_lever_ratios], axis=-1
+            ),
+            here.carried - there.carried - np.sum(front_loss * front, axis=-1),
             here.stiff + there.stiff,
             np.concatenate([here.own, there.own], axis=-1),
         )
@@ -171,24 +177,29 @@ class MovingSides:
         )
 
 
-def moving_sides(given: MeshSetup, bodies: PairCompliance, front: MovedSide, back: MovedSide) -> MovingSides:
+def moving_sides(setup: MeshSetup, bodies: PairCompliance, front: MovedSide, back: MovedSide) -> MovingSides:
     """Put both sides together; the setting is that of the loaded one."""
-    step, turn = STEP * given.pair.module, np.array([1.0, 0.0])[:, None, None]
-    levers = (front.flanks.kappa / front.kappa)[:, :, None] * (back.flanks.kappa / back.kappa)[:, None, :]
+    step, turn = STEP * setup.pair.module, np.array([1.0, 0.0])[:, None, None]
+    ratio_products = (front.flanks.lever_ratios / front.lever_ratios)[:, :, None] * (
+        back.flanks.lever_ratios / back.lever_ratios
+    )[:, None, :]
 
     def coupling(first: float, second: float) -> Array:
         here, there = (
-            replace(side.flanks, where=replace(side.flanks.where, rho=side.flanks.where.rho + by * turn))
+            replace(
+                side.flanks,
+                candidates=replace(side.flanks.candidates, rho=side.flanks.candidates.rho + by * turn),
+            )
             for side, by in ((front, first), (back, second))
         )
-        return np.asarray(between(given, bodies, here, there) * levers)
+        return np.asarray(between(setup, bodies, here, there) * ratio_products)
 
     rolls = [
         (coupling(*ahead) - coupling(*behind)) / (2 * step)
         for ahead, behind in (((step, 0.0), (-step, 0.0)), ((0.0, step), (0.0, -step)))
     ]
-    touches = (side.flanks.where.gap.min(axis=-1) for side in (front, back))
-    play = given.pair.backlash + sum(touches)
+    touches = (side.flanks.candidates.gap.min(axis=-1) for side in (front, back))
+    play = setup.pair.backlash + sum(touches)
     return MovingSides(front.pairs, back.pairs, play, coupling(0.0, 0.0), np.stack(rolls))
 
 
@@ -222,27 +233,27 @@ def _between(
             forces=np.concatenate([alone.forces, nothing], axis=-1),
             pair_stiffness=np.concatenate([alone.pair_stiffness, nothing], axis=-1),
         )
-        left = problem.unloaded(near.forces, near.transmission_error)[..., problem.count :]
-        clear = np.all(left >= -ROUNDING * np.abs(near.transmission_error)[..., None], axis=-1)
+        remaining_gaps = problem.unloaded(near.forces, near.transmission_error)[..., problem.count :]
+        clear = np.all(remaining_gaps >= -ROUNDING * np.abs(near.transmission_error)[..., None], axis=-1)
         clear |= apart[:, None, None]
         if clear.all():
             return near
         force = np.where(apart[:, None, None], np.min(force[~apart]), force)
     begin = stays.share(force)
-    found = moved_forces(problem, force, begin.forces, begin.transmission_error)
-    if found is None and near is not None:
+    moved = moved_forces(problem, force, begin.forces, begin.transmission_error)
+    if moved is None and near is not None:
         begin_alone = np.where(clear[..., None], begin.forces, near.forces)
         approach = np.where(clear, begin.transmission_error, near.transmission_error)
-        found = moved_forces(problem, force, begin_alone, approach)
-    if found is None or near is None:
-        return found
+        moved = moved_forces(problem, force, begin_alone, approach)
+    if moved is None or near is None:
+        return moved
     pairs = clear[..., None]
     return LoadShare(
-        np.where(pairs, near.forces, found.forces),
-        np.where(clear, near.transmission_error, found.transmission_error),
-        np.where(clear, near.stiffness, found.stiffness),
-        np.where(pairs, near.pair_stiffness, found.pair_stiffness),
-        near.iterations + found.iterations,
+        np.where(pairs, near.forces, moved.forces),
+        np.where(clear, near.transmission_error, moved.transmission_error),
+        np.where(clear, near.stiffness, moved.stiffness),
+        np.where(pairs, near.pair_stiffness, moved.pair_stiffness),
+        near.iterations + moved.iterations,
     )
 
 
@@ -270,7 +281,7 @@ class BothMoved:
 
 
 def both_moved(
-    given: MeshSetup,
+    setup: MeshSetup,
     bodies: PairCompliance,
     force: Array,
     film: Film | None,
@@ -284,18 +295,18 @@ def both_moved(
 
     Parameters
     ----------
-    given, bodies, force, film, flanks, apart, reach, tables
+    setup, bodies, force, film, flanks, apart, reach, tables
         As for ``fem.contact.opposite_flanks.share_with_opposite``.
     alone : (LoadShare, MovedSide) or None
         The loaded side by itself, solved; None without a torque.
     """
     most, whole = float(np.max(force)), force[:, None, None]
-    other = loaded_flanks(given.opposite, bodies, film, reach, most, tables)
-    stays = both_sides(given, bodies, flanks, other)
+    other = loaded_flanks(setup.opposite, bodies, film, reach, most, tables)
+    stays = both_sides(setup, bodies, flanks, other)
     front = None if alone is None else alone[1]
-    front = moved_side(given, bodies, flanks, most, tables) if front is None else front
-    back = moved_side(given.opposite, bodies, other, most, tables)
-    problem = moving_sides(given, bodies, front, back)
+    front = moved_side(setup, bodies, flanks, most, tables) if front is None else front
+    back = moved_side(setup.opposite, bodies, other, most, tables)
+    problem = moving_sides(setup, bodies, front, back)
     pressed, rest = stays.pressed(), np.zeros(problem.play.shape)
     asked = whole + 0.0 * pressed
     share = _between(problem, stays, asked, None if alone is None else alone[0], apart)

@@ -67,9 +67,9 @@ class OppositeShare:
 
     Attributes
     ----------
-    where : ContactCandidates
+    candidates : ContactCandidates
         Of the mirrored gears.
-    kappa, levers, largest : arrays
+    lever_ratios, tilted_lever_ratios, largest : arrays
         As of the loaded flanks.
     forces, pair_stiffness, open : (..., pairs) arrays
         kappa G [N], its slope dG/dD, not above 0 [N/m], and the gap that is left [m].
@@ -84,9 +84,9 @@ class OppositeShare:
         Numbers of the torques for which no load sharing was found.
     """
 
-    where: ContactCandidates
-    kappa: Array
-    levers: Array
+    candidates: ContactCandidates
+    lever_ratios: Array
+    tilted_lever_ratios: Array
     largest: Array
     forces: Array
     pair_stiffness: Array
@@ -103,22 +103,22 @@ class OppositeShare:
 
     def flanks(self, number: int) -> OppositeFlanks:
         """Contacts under one of the torques, pitch after pitch."""
-        where, pairs = self.where, len(self.where.offset)
-        pitches = len(where.gap)
-        rho = np.tile(np.where(where.touchable, where.rho, np.nan), (1, pitches, 1))
+        candidates, pairs = self.candidates, len(self.candidates.offset)
+        pitches = len(candidates.gap)
+        rho = np.tile(np.where(candidates.touchable, candidates.rho, np.nan), (1, pitches, 1))
         return OppositeFlanks(
-            (self.forces[number] / self.kappa).reshape(-1, pairs),
-            (self.pair_stiffness[number] / self.kappa).reshape(-1, pairs),
+            (self.forces[number] / self.lever_ratios).reshape(-1, pairs),
+            (self.pair_stiffness[number] / self.lever_ratios).reshape(-1, pairs),
             rho,
-            np.tile(where.edge, (pitches, 1)),
-            where.teeth,
-            where.lever,
+            np.tile(candidates.edge, (pitches, 1)),
+            candidates.teeth,
+            candidates.lever,
             np.where(self.forces[number] > 0.0, 0.0, self.open[number]).reshape(-1, pairs),
         )
 
     def refusal(self, number: int) -> str:
         """Why the solution for a torque is not to be believed, empty if it is."""
-        where, turned = self.where, self.forces[number]
+        candidates, turned = self.candidates, self.forces[number]
         if number in self.lost:
             return "no load sharing with back flanks was found; give more backlash, or reduce the torque"
         if self.cells and (np.any(turned > 0.0) or np.any(self.open[number] < -NOTHING)):
@@ -126,11 +126,11 @@ class OppositeShare:
                 "flanks on both sides bear, which know no cells of the face; give more backlash, raise the torque, "
                 "or leave leads, alignment and cells out"
             )
-        if where.edge.any() and np.any(turned[..., where.edge] > self.largest):
+        if candidates.edge.any() and np.any(turned[..., candidates.edge] > self.largest):
             return "a tip edge of a back flank presses over more than the strips cover; give more backlash"
-        if self.reached[number] > where.reach_gap:
+        if self.reached[number] > candidates.reach_gap:
             return "back flanks overlap by more than was looked for outside the path; give more backlash"
-        if np.any(turned[..., where.chamfered] > 0.0):
+        if np.any(turned[..., candidates.chamfered] > 0.0):
             return (
                 "the face of a chamfer touches on a back flank, for which there is no law; give more backlash"
             )
@@ -172,15 +172,15 @@ def across(
     if "coupling" in bodies.left_out:
         return np.zeros((positions, len(front.offset), len(back.offset)))
     moved = np.zeros((positions, len(front.offset), len(back.offset)))
-    found = (bodies.back_before if before else None) or bodies.back_flanks
+    back_flanks = (bodies.back_before if before else None) or bodies.back_flanks
     numbers, hubs = (pair.pinion.teeth, pair.wheel.teeth), (bodies.pinion, bodies.wheel)
-    for gear, (flexible, teeth, hub) in enumerate(zip(found, numbers, hubs, strict=True)):
+    for gear, (flexible, teeth, hub) in enumerate(zip(back_flanks, numbers, hubs, strict=True)):
         here, there = front.teeth[gear, :positions, :, None], back.teeth[gear, :positions, None, :]
         # following teeth of the pinion stand clockwise, those of the wheel anticlockwise
         tooth = _nearest(here - there if gear == 0 else there - here, teeth)
         seen = flexible.across(tooth, front.rho[gear][:, :, None], back.rho[gear][:, None, :])
         felt = np.isin(tooth, list(flexible.series))
-        first, second = (hub_lever(hub, one.rho[gear], one.leaning[gear]) for one in (front, back))
+        first, second = (hub_lever(hub, side.rho[gear], side.leaning[gear]) for side in (front, back))
         turned = first[:, :, None] * second[:, None, :]  # torques of the two sides are opposed
         moved = moved + seen + hub.hub_windup * (felt - turned)
     return np.asarray(moved / pair.face_width + bodies.common_across)
@@ -202,7 +202,7 @@ class BothSides:
     oil: _Joined | None
     gaps: Array
     sides: Array
-    levers: Array | None
+    tilted_lever_ratios: Array | None
 
     def open(self, loads: Array, approach: Array) -> Array:
         """Gaps that are left where pairs do not bear."""
@@ -221,58 +221,62 @@ class BothSides:
         """Share forces (torques, 1 or pitches, 1 or positions) [N]."""
         from gears.sharing.both_flanks import share_between
 
-        return share_between(force, self.matrix, self.laws, self.gaps, self.sides, self.oil, self.levers)
+        return share_between(
+            force, self.matrix, self.laws, self.gaps, self.sides, self.oil, self.tilted_lever_ratios
+        )
 
 
 def between(
-    given: MeshSetup,
+    setup: MeshSetup,
     bodies: PairCompliance,
     flanks: FlanksInPlace,
     other: FlanksInPlace,
     before: bool = False,
 ) -> Array:
     """Compliance between the loaded flanks and the others, for F' = kappa F (positions, pairs, others) [m/N]."""
-    front, back = (other, flanks) if given.back else (flanks, other)
-    found = across(bodies, front.where, back.where, before) / (
-        front.kappa[:, :, None] * back.kappa[:, None, :]
+    front, back = (other, flanks) if setup.back else (flanks, other)
+    compliance = across(bodies, front.candidates, back.candidates, before) / (
+        front.lever_ratios[:, :, None] * back.lever_ratios[:, None, :]
     )
-    return np.swapaxes(found, 1, 2) if given.back else found
+    return np.swapaxes(compliance, 1, 2) if setup.back else compliance
 
 
 def both_sides(
-    given: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, other: LoadedFlanks
+    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, other: LoadedFlanks
 ) -> BothSides:
     """Put the loaded flanks of a setting and the others together."""
-    count, more = len(flanks.where.offset), len(other.where.offset)
-    matrix = np.zeros((given.positions, count + more, count + more))
+    count, more = len(flanks.candidates.offset), len(other.candidates.offset)
+    matrix = np.zeros((setup.positions, count + more, count + more))
     matrix[:, :count, :count], matrix[:, count:, count:] = flanks.matrix, other.matrix
-    cross = between(given, bodies, flanks, other)
+    cross = between(setup, bodies, flanks, other)
     matrix[:, :count, count:], matrix[:, count:, :count] = cross, np.swapaxes(cross, 1, 2)
-    touch = flanks.where.gap.min(axis=-1, keepdims=True)
-    behind = given.pair.backlash + other.where.gap + touch
+    touch = flanks.candidates.gap.min(axis=-1, keepdims=True)
+    behind = setup.pair.backlash + other.candidates.gap + touch
     oil = None if flanks.oil is None or other.oil is None else _Joined(flanks.oil, other.oil, count)
     return BothSides(
         count,
         matrix,
         _Joined(flanks.laws, other.laws, count),
         oil,
-        np.concatenate([flanks.where.gap - touch, behind], axis=-1),
+        np.concatenate([flanks.candidates.gap - touch, behind], axis=-1),
         np.repeat([1.0, -1.0], [count, more]),
-        np.concatenate([flanks.levers, other.levers], axis=-1) if given.friction else None,
+        np.concatenate([flanks.tilted_lever_ratios, other.tilted_lever_ratios], axis=-1)
+        if setup.friction
+        else None,
     )
 
 
-def _lost(both: BothSides, force: Array) -> bool:
+def _lost(sides: BothSides, force: Array) -> bool:
     """Whether no load sharing is found under the force of one torque (pitches, positions) [N]."""
     try:
-        both.share(force[None])
+        sides.share(force[None])
     except LoadSharingError:
         return True
     return False
 
 
 def share_with_opposite(
-    given: MeshSetup,
+    setup: MeshSetup,
     bodies: PairCompliance,
     force: Array,
     film: Film | None,
@@ -286,7 +290,7 @@ def share_with_opposite(
 
     Parameters
     ----------
-    given, bodies, film, reach, tables
+    setup, bodies, film, reach, tables
         As for ``loaded_flanks``.
     force : (torques,) array
         [N]
@@ -302,59 +306,59 @@ def share_with_opposite(
     (LoadShare, OppositeShare, array)
         Of the loaded flanks and of the others, and the gaps that are left on the loaded side.
     """
-    other = loaded_flanks(given.opposite, bodies, film, reach, float(np.max(force)), tables)
-    both = both_sides(given, bodies, flanks, other)
-    whole, count = force[:, None, None], both.count
-    pressed = both.pressed()
-    found, clear = alone, np.zeros((len(force), *pressed.shape), dtype=bool)
-    loads = np.zeros((len(force), *both.gaps.shape))
+    other = loaded_flanks(setup.opposite, bodies, film, reach, float(np.max(force)), tables)
+    sides = both_sides(setup, bodies, flanks, other)
+    whole, count = force[:, None, None], sides.count
+    pressed = sides.pressed()
+    loaded_share, clear = alone, np.zeros((len(force), *pressed.shape), dtype=bool)
+    loads = np.zeros((len(force), *sides.gaps.shape))
     if alone is not None:
         loads[..., :count] = alone.forces
-        left = both.open(loads, alone.transmission_error)[..., count:]
-        clear = np.all(left >= -ROUNDING * np.abs(alone.transmission_error)[..., None], axis=-1)
+        remaining_gaps = sides.open(loads, alone.transmission_error)[..., count:]
+        clear = np.all(remaining_gaps >= -ROUNDING * np.abs(alone.transmission_error)[..., None], axis=-1)
         clear |= apart[:, None, None]
     slopes, rest = np.zeros_like(loads), np.zeros(pressed.shape)
     if alone is not None:
         slopes[..., :count] = alone.pair_stiffness
     if not (
-        clear.all() or (alone is not None and given.face is not None)
+        clear.all() or (alone is not None and setup.face is not None)
     ):  # loads of cells have no both sides
         asked = np.where(apart, float(np.min(force, where=~apart, initial=np.inf)), force)
         try:
-            joint = both.share(asked[:, None, None] + 0.0 * pressed)
+            joint = sides.share(asked[:, None, None] + 0.0 * pressed)
         except LoadSharingError:
-            lost = tuple(n for n in np.flatnonzero(~apart).tolist() if _lost(both, asked[n] + 0.0 * pressed))
+            lost = tuple(n for n in np.flatnonzero(~apart).tolist() if _lost(sides, asked[n] + 0.0 * pressed))
             if alone is None or not lost:
                 raise
             without = apart | np.isin(np.arange(len(force)), lost)
-            kept, opposite, left = share_with_opposite(
-                given, bodies, force, film, flanks, alone, without, reach, tables
+            kept, opposite, remaining_gaps = share_with_opposite(
+                setup, bodies, force, film, flanks, alone, without, reach, tables
             )
-            return kept, replace(opposite, lost=lost), left
+            return kept, replace(opposite, lost=lost), remaining_gaps
         loads = np.where(clear[..., None], loads, joint.forces)
         slopes = np.where(clear[..., None], slopes, joint.pair_stiffness)
         moved, tangent = joint.transmission_error, joint.stiffness
         if alone is not None:
             moved = np.where(clear, alone.transmission_error, moved)
             tangent = np.where(clear, alone.stiffness, tangent)
-        found = LoadShare(loads[..., :count], moved, tangent, slopes[..., :count], joint.iterations)
-    assert found is not None
+        loaded_share = LoadShare(loads[..., :count], moved, tangent, slopes[..., :count], joint.iterations)
+    assert loaded_share is not None
     if pressed.any():
         small = np.where(pressed, 0.0, max(float(np.max(force, where=~apart, initial=0.0)), 1.0))
-        rest = np.where(pressed, both.share(small).transmission_error, 0.0)
-    left = both.open(loads, found.transmission_error)
-    touch = flanks.where.gap.min(axis=-1)
-    closing = bodies.turning * whole - found.transmission_error - touch - given.pair.backlash
+        rest = np.where(pressed, sides.share(small).transmission_error, 0.0)
+    remaining_gaps = sides.open(loads, loaded_share.transmission_error)
+    touch = flanks.candidates.gap.min(axis=-1)
+    closing = bodies.turning * whole - loaded_share.transmission_error - touch - setup.pair.backlash
     opposite = OppositeShare(
-        other.where,
-        other.kappa,
-        other.levers,
+        other.candidates,
+        other.lever_ratios,
+        other.tilted_lever_ratios,
         other.largest,
         loads[..., count:],
         slopes[..., count:],
-        left[..., count:],
+        remaining_gaps[..., count:],
         rest,
-        given.face is not None,
+        setup.face is not None,
         closing.max(axis=(1, 2)),
     )
-    return found, opposite, left[..., :count]
+    return loaded_share, opposite, remaining_gaps[..., :count]

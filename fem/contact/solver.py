@@ -38,47 +38,48 @@ class MovedShare:
 
     own: MovedFlanks
     flanks: LoadedFlanks
-    given: MeshSetup
+    setup: MeshSetup
 
     def edge_rho(self, approach: Array) -> Array:
         """Places of tip edges (2, pitches, positions, pairs) [m]."""
-        return self.own.edge_rho(self.flanks, self.given, approach)
+        return self.own.edge_rho(self.flanks, self.setup, approach)
 
-    def turned(self, found: ContactState) -> Array:
+    def turned(self, state: ContactState) -> Array:
         """Part of the pinion's base radius (positions, pairs) by which levers about the wheel's axis are longer."""
-        return np.asarray(found.where.lever[0, : self.given.positions] / found.kappa - 1.0)
+        return np.asarray(state.candidates.lever[0, : self.setup.positions] / state.lever_ratios - 1.0)
 
-    def add_losses(self, found: ContactState, half: Array, whole: Array) -> None:
+    def add_losses(self, state: ContactState, half: Array, whole: Array) -> None:
         """Add what the pinion's flanks take from the levers of forces, and of further ones (2, torques, ...)."""
         force, approach, slope = (
-            found.share.forces,
-            found.share.transmission_error,
-            found.share.pair_stiffness,
+            state.share.forces,
+            state.share.transmission_error,
+            state.share.pair_stiffness,
         )
         bears = (force > 0.0) & (slope != 0.0)
         size, per_turn = np.where(bears, force, 1.0), np.where(bears, slope, 1.0)
         parts = self.own.rolled(force, approach[..., None]), self.own.cornered(force, approach[..., None])
-        for gears, one in zip(((0, 1), (0,)), parts, strict=True):
+        for gears, pushed in zip(((0, 1), (0,)), parts, strict=True):
             for gear in gears:
-                half[gear] += np.where(bears, one.push / size, 0.0)
-                whole[gear] += np.where(bears, one.less + one.stiff / per_turn, 0.0)
+                half[gear] += np.where(bears, pushed.push / size, 0.0)
+                whole[gear] += np.where(bears, pushed.less + pushed.stiff / per_turn, 0.0)
 
 
 @record
 class ContactState:
     """Solution for all torques: shares with leading dimensions (torques, pitches, positions of one).
 
-    kappa and levers belong to the normal and to the tilted force, largest is what the tip edges' laws cover,
-    closing the deflection less the hubs' wind-up, open the gap that is left where a pair does not bear. With moving
-    contacts that do not settle, share is the one of contacts that stay, and settled is False. opposite: the flanks on
-    the other side, where they were looked at; back, where these move: they seen in the mirror, with the turn D' and its
-    slopes; crossing: what loads on the other side take from levers. face: what the cells of the face bear.
+    lever_ratios, kappa, and tilted_lever_ratios belong to the normal and to the tilted force, largest is what the tip
+    edges' laws cover, closing the deflection less the hubs' wind-up, open the gap that is left where a pair does not
+    bear. With moving contacts that do not settle, share is the one of contacts that stay, and settled is False.
+    opposite: the flanks on the other side, where they were looked at; back, where these move: they seen in the mirror,
+    with the turn D' and its slopes; crossing: what loads on the other side take from levers. face: what the cells of
+    the face bear.
     """
 
-    where: ContactCandidates
+    candidates: ContactCandidates
     share: LoadShare
-    kappa: Array
-    levers: Array
+    lever_ratios: Array
+    tilted_lever_ratios: Array
     largest: Array
     closing: Array
     open: Array
@@ -94,7 +95,7 @@ class ContactState:
     @property
     def touch(self) -> Array:
         """Transmission error at which the gears touch without load (pitches, positions) [m]."""
-        return np.asarray(self.where.gap.min(axis=-1))
+        return np.asarray(self.candidates.gap.min(axis=-1))
 
     def deflection(self, number: int) -> Array:
         """Turn under a torque less that without any, on shafts that are held (pitches, positions) [m]."""
@@ -118,10 +119,10 @@ class ContactState:
         lost, behind : (2, positions, pairs) arrays
             Parts of the levers of either side that contacts which move lose.
         """
-        found = _levered(self.where, self.kappa, loaded, lost)
+        sums = _levered(self.candidates, self.lever_ratios, loaded, lost)
         if other is not None and self.opposite is not None:
-            found = found - _levered(self.opposite.where, self.opposite.kappa, other, behind)
-        return found
+            sums = sums - _levered(self.opposite.candidates, self.opposite.lever_ratios, other, behind)
+        return sums
 
     @cached_property
     def _lever_losses(self) -> tuple[Array, Array]:
@@ -134,7 +135,7 @@ class ContactState:
             if self.moved is not None:
                 self.moved.add_losses(self, half, whole)
         else:
-            half, whole = (one.copy() for one in self.face.lost)
+            half, whole = (loss.copy() for loss in self.face.lost)
         if self.moved is not None:
             turned = self.moved.turned(self)
             half[0] += turned
@@ -159,21 +160,23 @@ class ContactState:
 
     def torques(self, number: int) -> Array:
         """Torque of each pair over the pinion's base radius (pitches, positions, pairs) [N]."""
-        return np.asarray(self.share.forces[number] * (self.levers - self.lever_loss(number)[0][0]))
+        return np.asarray(
+            self.share.forces[number] * (self.tilted_lever_ratios - self.lever_loss(number)[0][0])
+        )
 
     def flank_rho(self, pair: GearPair, number: int) -> Array:
         """Curvature radii where pinion and wheel are touched (2, pitches, positions, pairs) [m], untouched ones too."""
         share = self.share
-        rho = np.repeat(self.where.rho[:, None], len(share.forces[number]), axis=1)
+        rho = np.repeat(self.candidates.rho[:, None], len(share.forces[number]), axis=1)
         if self.moves is None:
             return rho
         force, approach = share.forces[number], share.transmission_error[number]
         approach = approach if self.face is None else approach + self.face.turned(number)
-        rho = rho + np.where(self.where.edge, 0.0, moved_places(self.moves, force, approach))
+        rho = rho + np.where(self.candidates.edge, 0.0, moved_places(self.moves, force, approach))
         if self.moved is not None:
-            rho = np.where(self.where.edge, self.moved.edge_rho(approach), rho)
+            rho = np.where(self.candidates.edge, self.moved.edge_rho(approach), rho)
         ends = [profile.flank_rho for profile in pair.teeth_profiles]
-        return np.stack([np.clip(one, *end) for one, end in zip(rho, ends, strict=True)])
+        return np.stack([np.clip(radii, *end) for radii, end in zip(rho, ends, strict=True)])
 
     def shafts_give_way(self, number: int) -> float:
         """Maximum deflection of both shafts on the face over the module; 0 of rigid ones."""
@@ -182,7 +185,7 @@ class ContactState:
 
     def refusal(self, number: int) -> str:
         """Why the solution for a torque is not to be believed, empty if it is."""
-        where, turned = self.where, self.share.forces[number]
+        candidates, turned = self.candidates, self.share.forces[number]
         if not self.settled:
             most = 1e3 * np.max(self.share.transmission_error)
             return (
@@ -195,25 +198,25 @@ class ContactState:
                 "as they do; give stiffer shafts or bearings, bring them nearer to the gears, or reduce the torque"
             )
         deepest = float(np.max(self.share.transmission_error[number]))
-        if self.moved is not None and deepest > DEEPEST * self.moved.given.pair.module:
+        if self.moved is not None and deepest > DEEPEST * self.moved.setup.pair.module:
             return (
                 f"a deflection of {1e3 * deepest:.2g} mm is more than a quarter of the module, up to which corners "
                 "that move have laws; reduce the torque, or let contacts stay"
             )
-        if where.edge.any() and np.any(turned[..., where.edge] > self.largest):
+        if candidates.edge.any() and np.any(turned[..., candidates.edge] > self.largest):
             return "a tip edge presses over more than the strips cover; reduce the torque"
-        if np.max(self.closing[number] + self.touch) > where.reach_gap:
+        if np.max(self.closing[number] + self.touch) > candidates.reach_gap:
             return (
                 "the deflection closes gaps more than a base pitch outside the path, where no contact was looked "
                 "for; reduce the torque or the deviations"
             )
-        if np.any(turned[..., where.chamfered] > 0):
+        if np.any(turned[..., candidates.chamfered] > 0):
             return "a chamfer's face touches before its corner does, for which there is no law; reduce the torque"
         return "" if self.opposite is None else self.opposite.refusal(number)
 
 
 def solve_contact(
-    given: MeshSetup,
+    setup: MeshSetup,
     bodies: PairCompliance,
     force: Array,
     film: Film | None,
@@ -226,7 +229,7 @@ def solve_contact(
 
     Parameters
     ----------
-    given : MeshSetup
+    setup : MeshSetup
     bodies : PairCompliance
     force : (torques,) array
         [N], all above 0 or all 0.
@@ -234,81 +237,108 @@ def solve_contact(
     tables : EdgeTables, optional
         Laws of the tip edges of gears that are set up likewise, to be used again.
     """
-    tables, most = tables or EdgeTables(given, bodies), float(np.max(force))
-    found: ContactState | None = None
+    tables, most = tables or EdgeTables(setup, bodies), float(np.max(force))
+    state: ContactState | None = None
     # without a torque overlap alone says how far contacts reach
     for reach in REACHES if np.all(force) else REACHES[-1:]:
-        flanks = loaded_flanks(given, bodies, film, reach, most, tables)
-        found = solve_one_side(given, bodies, force, flanks, tables) if np.all(force) else None
-        if found is None or np.max(found.closing + found.touch) <= flanks.where.reach_gap:
+        flanks = loaded_flanks(setup, bodies, film, reach, most, tables)
+        state = solve_one_side(setup, bodies, force, flanks, tables) if np.all(force) else None
+        if state is None or np.max(state.closing + state.touch) <= flanks.candidates.reach_gap:
             break
-    if found is None or given.both or _near(flanks, found, given.pair.tight):
-        found = _two_sided(given, bodies, force, film, flanks, found, reach, tables)
-    return found
+    if state is None or setup.two_sided or _near(flanks, state, setup.pair.tight):
+        state = _two_sided(setup, bodies, force, film, flanks, state, reach, tables)
+    return state
 
 
-def _near(flanks: LoadedFlanks, found: ContactState, tight: bool) -> bool:
+def _near(flanks: LoadedFlanks, state: ContactState, tight: bool) -> bool:
     """Whether the other side may bear: teeth bend by no more than the deflection and the film between them.
 
     That side's gap is left by j + D - b_1 - b_2 - s', with b the bending of two loaded teeth, b <= D + s each, and
     s' its own film. Teeth that deviations alone make jam are left to one side unless the pair is tight.
     """
-    if np.min(flanks.where.back_gap) < 0.0 and not tight:
+    if np.min(flanks.candidates.back_gap) < 0.0 and not tight:
         return False
     film = 0.0
     if flanks.oil is not None:
-        film = float(np.max(flanks.oil.approach(np.zeros_like(found.share.forces))))
-    reached = found.closing.reshape(len(found.closing), -1)
-    return bool(np.any(flanks.where.back_gap < reached + 3.0 * film))
+        film = float(np.max(flanks.oil.approach(np.zeros_like(state.share.forces))))
+    reached = state.closing.reshape(len(state.closing), -1)
+    return bool(np.any(flanks.candidates.back_gap < reached + 3.0 * film))
 
 
 def solve_one_side(
-    given: MeshSetup, bodies: PairCompliance, force: Array, flanks: LoadedFlanks, tables: EdgeTables
+    setup: MeshSetup, bodies: PairCompliance, force: Array, flanks: LoadedFlanks, tables: EdgeTables
 ) -> ContactState:
     """Solution with the loaded flanks alone."""
     from gears.sharing.load_sharing import share_load
 
-    where, matrix, laws, oil = flanks.where, flanks.matrix, flanks.laws, flanks.oil
-    whole, gaps = force[:, None, None], where.gap - where.gap.min(axis=-1, keepdims=True)
-    arms, over = flanks.levers if given.friction else None, None
-    if given.face is None:
-        share = share_load(whole, matrix, laws, gaps, oil, arms)
+    candidates, matrix, laws, oil = flanks.candidates, flanks.matrix, flanks.laws, flanks.oil
+    whole, gaps = force[:, None, None], candidates.gap - candidates.gap.min(axis=-1, keepdims=True)
+    friction_lever_ratios, over = flanks.tilted_lever_ratios if setup.friction else None, None
+    if setup.face is None:
+        share = share_load(whole, matrix, laws, gaps, oil, friction_lever_ratios)
     else:
         share, over = share_over_face(
-            given, bodies, whole, where, flanks.kappa, matrix, laws, gaps, oil, arms
+            setup,
+            bodies,
+            whole,
+            candidates,
+            flanks.lever_ratios,
+            matrix,
+            laws,
+            gaps,
+            oil,
+            friction_lever_ratios,
         )
-    moves, settled, own, side, levers, kappa = None, True, None, None, flanks.levers, flanks.kappa
-    if given.moving_contact:
-        side = moved_side(given, bodies, flanks, float(np.max(force)), tables)
-        moves, own, pairs, levers, kappa = side.moves, side.own, side.pairs, side.levers, side.kappa
+    moves, settled, own, side, tilted_lever_ratios, lever_ratios = (
+        None,
+        True,
+        None,
+        None,
+        flanks.tilted_lever_ratios,
+        flanks.lever_ratios,
+    )
+    if setup.moving_contact:
+        side = moved_side(setup, bodies, flanks, float(np.max(force)), tables)
+        moves, own, pairs, tilted_lever_ratios, lever_ratios = (
+            side.moves,
+            side.own,
+            side.pairs,
+            side.tilted_lever_ratios,
+            side.lever_ratios,
+        )
         if own is not None:
             matrix, gaps = own.matrix, own.gaps
         if over is None:
             moved = moved_share(share, whole, pairs)
             share, settled = share if moved is None else moved, moved is not None
         else:
-            both = moved_over_face(given, bodies, whole, flanks, kappa, pairs, over)
-            (share, over), settled = (share, over) if both is None else both, both is not None
+            moved_face = moved_over_face(setup, bodies, whole, flanks, lever_ratios, pairs, over)
+            (share, over), settled = (
+                (share, over) if moved_face is None else moved_face,
+                moved_face is not None,
+            )
     if over is None:
         propped = 0.0 if oil is None else oil.approach(np.zeros_like(share.forces))
         bent = (matrix @ share.forces[..., None])[..., 0] + gaps
-        left = bent - propped - share.transmission_error[..., None]
+        remaining_gaps = bent - propped - share.transmission_error[..., None]
         if moves is not None:
-            left = left + share.transmission_error[..., None] * moves.rolled(share.forces)
+            remaining_gaps = remaining_gaps + share.transmission_error[..., None] * moves.rolled(share.forces)
         if own is not None:
-            left = left + own.pushed(share.forces, share.transmission_error[..., None]).approach
+            remaining_gaps = (
+                remaining_gaps + own.pushed(share.forces, share.transmission_error[..., None]).approach
+            )
     else:
-        left = over.open
+        remaining_gaps = over.open
     closing = share.transmission_error - bodies.turning * whole
-    moved_by = None if own is None else MovedShare(own, flanks, given)
+    moved_by = None if own is None else MovedShare(own, flanks, setup)
     return ContactState(
-        where,
+        candidates,
         share,
-        kappa,
-        levers,
+        lever_ratios,
+        tilted_lever_ratios,
         flanks.largest,
         closing,
-        left,
+        remaining_gaps,
         moves,
         settled,
         moved=moved_by,
@@ -318,7 +348,7 @@ def solve_one_side(
 
 
 def _two_sided(
-    given: MeshSetup,
+    setup: MeshSetup,
     bodies: PairCompliance,
     force: Array,
     film: Film | None,
@@ -334,29 +364,31 @@ def _two_sided(
         if apart.all():
             return alone
         clear = (
-            None if given.both else stays_clear(given, bodies, force, film, flanks, alone.share, apart, reach)
+            None
+            if setup.two_sided
+            else stays_clear(setup, bodies, force, film, flanks, alone.share, apart, reach)
         )
         if clear is not None:
             return replace(alone, opposite=clear)
-    if given.moving_contact and given.face is None:
+    if setup.moving_contact and setup.face is None:
         by_itself = None if alone is None else (alone.share, alone.side)
-        found = both_moved(given, bodies, force, film, flanks, by_itself, apart, reach, tables)
-        return _moved_solution(given, bodies, force, found, alone)
-    share, opposite, left = share_with_opposite(
-        given, bodies, force, film, flanks, None if alone is None else alone.share, apart, reach, tables
+        solved = both_moved(setup, bodies, force, film, flanks, by_itself, apart, reach, tables)
+        return _moved_solution(setup, bodies, force, solved, alone)
+    share, opposite, remaining_gaps = share_with_opposite(
+        setup, bodies, force, film, flanks, None if alone is None else alone.share, apart, reach, tables
     )
     if alone is not None and not opposite.bears:
         return replace(alone, opposite=opposite)
     closing = share.transmission_error - bodies.turning * force[:, None, None]
     moves, settled = (None, True) if alone is None else (alone.moves, alone.settled)
     return ContactState(
-        flanks.where,
+        flanks.candidates,
         share,
-        flanks.kappa,
-        flanks.levers,
+        flanks.lever_ratios,
+        flanks.tilted_lever_ratios,
         flanks.largest,
         closing,
-        left,
+        remaining_gaps,
         moves,
         settled,
         opposite,
@@ -364,42 +396,52 @@ def _two_sided(
 
 
 def _moved_solution(
-    given: MeshSetup, bodies: PairCompliance, force: Array, found: BothMoved, alone: ContactState | None
+    setup: MeshSetup, bodies: PairCompliance, force: Array, solved: BothMoved, alone: ContactState | None
 ) -> ContactState:
     """Solution with flanks on both sides that move, for forces (torques,) [N]."""
-    problem, share, whole = found.problem, found.share, force[:, None, None]
-    front, back = found.front.flanks, found.back.flanks
+    problem, share, whole = solved.problem, solved.share, force[:, None, None]
+    front, back = solved.front.flanks, solved.back.flanks
     turn, loads = share.transmission_error, problem.split(share.forces)
     slopes, open_ = problem.split(share.pair_stiffness), problem.split(problem.unloaded(share.forces, turn))
-    closing = bodies.turning * whole - turn - front.where.gap.min(axis=-1) - given.pair.backlash
+    closing = bodies.turning * whole - turn - front.candidates.gap.min(axis=-1) - setup.pair.backlash
     opposite = OppositeShare(
-        back.where,
-        found.back.kappa,
-        found.back.levers,
+        back.candidates,
+        solved.back.lever_ratios,
+        solved.back.tilted_lever_ratios,
         back.largest,
         loads[1],
         slopes[1],
         open_[1],
-        found.rest,
+        solved.rest,
         False,
         closing.max(axis=(1, 2)),
     )
     if alone is not None and not opposite.bears:
-        return replace(alone, opposite=opposite, settled=found.settled)
-    turns, signs, settings = (turn, problem.behind(turn)), (1.0, -1.0), (given, given.opposite)
+        return replace(alone, opposite=opposite, settled=solved.settled)
+    turns, signs, settings = (turn, problem.behind(turn)), (1.0, -1.0), (setup, setup.opposite)
     crossing, sides = problem.crossed(share.forces), []
-    for k, side in enumerate((found.front, found.back)):
+    for k, side in enumerate((solved.front, solved.back)):
         part = replace(
             share, forces=loads[k], transmission_error=turns[k], pair_stiffness=signs[k] * slopes[k]
         )
         moved = None if side.own is None else MovedShare(side.own, side.flanks, settings[k])
         closed = turns[k] - bodies.turning * whole
-        laws = side.kappa, side.levers, side.flanks.largest, closed, open_[k], side.moves, found.settled
-        sides.append(ContactState(side.flanks.where, part, *laws, moved=moved, crossing=crossing[k]))
+        laws = (
+            side.lever_ratios,
+            side.tilted_lever_ratios,
+            side.flanks.largest,
+            closed,
+            open_[k],
+            side.moves,
+            solved.settled,
+        )
+        sides.append(ContactState(side.flanks.candidates, part, *laws, moved=moved, crossing=crossing[k]))
     return replace(sides[0], opposite=opposite, back=sides[1])
 
 
-def _levered(where: ContactCandidates, kappa: Array, forces: Array, lost: Array | float = 0.0) -> Array:
+def _levered(
+    candidates: ContactCandidates, lever_ratios: Array, forces: Array, lost: Array | float = 0.0
+) -> Array:
     """Sum by the levers of the normals (2, positions)."""
-    lever = np.where(forces != 0.0, where.lever, 0.0) / kappa
+    lever = np.where(forces != 0.0, candidates.lever, 0.0) / lever_ratios
     return np.asarray(np.sum((lever - lost) * forces, axis=-1))

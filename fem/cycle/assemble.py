@@ -47,7 +47,7 @@ def cycle_of(
     cost: Cost,
 ) -> MeshCycle:
     """Put the figures of one torque of a solution together."""
-    candidates, pairs = contact.where, len(contact.where.offset)
+    candidates, pairs = contact.candidates, len(contact.candidates.offset)
     force = torque / setup.pair.base_radii[0]
     opposite = contact.opposite
     turned = contact.share.forces[number]  # kappa F
@@ -61,7 +61,7 @@ def cycle_of(
         if contact.face is None
         else float(contact.face.errors.relative[number] + contact.face.errors.ends[number])
     )
-    forces = (turned / contact.kappa).reshape(-1, pairs) + bad
+    forces = (turned / contact.lever_ratios).reshape(-1, pairs) + bad
     edge = np.tile(candidates.edge, (setup.pitches, 1))
     on_path = candidates.touchable & ~candidates.edge
     rho = contact.flank_rho(setup.pair, number).reshape(2, -1, pairs)
@@ -72,7 +72,7 @@ def cycle_of(
     held, supports = held_turns(bodies)
     approach = contact.share.transmission_error[number]
     both_sides = opposite is not None and bool(np.any(opposite.forces[number] > 0.0))
-    behind = (opposite.where, opposite.forces[number]) if opposite is not None and both_sides else None
+    behind = (opposite.candidates, opposite.forces[number]) if opposite is not None and both_sides else None
     return MeshCycle(
         torque=torque,
         force=force,
@@ -90,7 +90,7 @@ def cycle_of(
         transmission_error=(-(setup.pair.backlash + moved) if setup.back else moved) + bad,
         stiffness=stiffness + bad,
         secant_stiffness=(abs(force) / deflection if force else stiffness) + bad,
-        pair_stiffness=(contact.share.pair_stiffness[number] / contact.kappa).reshape(-1, pairs) + bad,
+        pair_stiffness=(contact.share.pair_stiffness[number] / contact.lever_ratios).reshape(-1, pairs) + bad,
         plane=bodies.plane,
         beyond_path=setup.beyond_path,
         error=bodies.error + by_cells,
@@ -114,7 +114,7 @@ def cycle_of(
         problem=None
         if refusal
         else ContactProblem(
-            replace(setup, both=both_sides),
+            replace(setup, two_sided=both_sides),
             bodies,
             force,
             film,
@@ -151,8 +151,8 @@ def _on_faces(contact: ContactState, number: int) -> Array:
 def _large(setup: MeshSetup, contact: ContactState, number: int, forces: Array, plane: str) -> list[str]:
     """Deflections and contacts that are large for a law of the first order."""
     part = np.max(contact.share.transmission_error[number]) / setup.pair.module
-    loaded = np.where(contact.where.edge, 0.0, forces.reshape(contact.share.forces[number].shape))
-    rho1, rho2 = contact.where.rho
+    loaded = np.where(contact.candidates.edge, 0.0, forces.reshape(contact.share.forces[number].shape))
+    rho1, rho2 = contact.candidates.rho
     radius = rho1 * rho2 / (rho1 + rho2)
     width = hertz_half_width(loaded / setup.pair.face_width, radius, reduced_modulus(setup.pair, plane))
     wide = np.max(width / radius)
@@ -191,7 +191,7 @@ def _remarks(
     setup: MeshSetup, contact: ContactState, number: int, forces: Array, edge: Booleans
 ) -> list[str]:
     """Remarks for a reader of the figures."""
-    candidates, remarks = contact.where, []
+    candidates, remarks = contact.candidates, []
     if np.any(forces[edge] > 0):
         sharp = [rounding.radius == 0.0 for rounding in setup.rounds]
         form = (

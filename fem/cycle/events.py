@@ -158,17 +158,17 @@ class ContactProblem:
         """
         if not self.force:
             return None
-        forces = state.share.forces[0, 0] / state.kappa
+        forces = state.share.forces[0, 0] / state.lever_ratios
         rho = state.flank_rho(self.setup.pair, 0)[:, 0]
         whole = np.stack([state.torques(0)[0] / abs(self.force), forces, *rho], axis=-1)
         if state.face is None:
             return whole
-        cells = state.face.forces[0, 0] / state.kappa[..., None]
+        cells = state.face.forces[0, 0] / state.lever_ratios[..., None]
         return np.concatenate([whole, cells * cells.shape[-1] / self.setup.pair.face_width], axis=-1)
 
     def _curves(self, state: ContactState) -> Array:
         """Transmission error, tangent and secant stiffness, moments and their slopes (7, positions)."""
-        share, candidates, turned = state.share, state.where, state.share.forces[0, 0]
+        share, candidates, turned = state.share, state.candidates, state.share.forces[0, 0]
         size, deflection = abs(self.force), state.deflection(0)[0]
         moved, tangent = state.turn(0)[0], share.stiffness[0, 0]
         secant = size / deflection if size else tangent
@@ -176,11 +176,11 @@ class ContactProblem:
             rho1 = np.where(
                 candidates.touchable & ~candidates.edge, np.clip(candidates.place, *self.setup.ends), np.nan
             )
-            shares = turned * state.levers / size if size else turned / turned.sum(axis=-1, keepdims=True)
+            shares = turned * state.tilted_lever_ratios / size if size else turned / turned.sum(axis=-1, keepdims=True)
             if state.face is None:
-                added = film_yielding(self.film, rho1, turned / state.kappa, shares)
+                added = film_yielding(self.film, rho1, turned / state.lever_ratios, shares)
             else:
-                forces = state.face.forces[0, 0] / state.kappa[..., None]
+                forces = state.face.forces[0, 0] / state.lever_ratios[..., None]
                 added = yielding_over_face(self.film, rho1, forces, shares)
             secant = size / (size / secant + added) if size else secant
         if self.setup.back:
@@ -246,7 +246,7 @@ def _reserve(state: ContactState, force: float, setup: MeshSetup) -> Array:
     """
     size = float(np.mean(state.share.transmission_error))
     loads, gaps = state.share.forces[0, 0], state.open[0, 0]
-    if setup.both and state.opposite is not None:
+    if setup.two_sided and state.opposite is not None:
         # both sides may be pressed together without a torque, or with next to none
         loads = np.concatenate([loads, state.opposite.forces[0, 0]], axis=-1)
         gaps = np.concatenate([gaps, state.opposite.open[0, 0]], axis=-1)
@@ -258,7 +258,7 @@ def _reserve(state: ContactState, force: float, setup: MeshSetup) -> Array:
     if setup.even:
         return np.asarray(bears)
     # flanks that both fit touch together: what is less than rounding is no difference
-    return np.concatenate([bears, _nearest(state.where.gap[0]) / size + 1e-10], axis=1)
+    return np.concatenate([bears, _nearest(state.candidates.gap[0]) / size + 1e-10], axis=1)
 
 
 def _nearest(gap: Array) -> Array:

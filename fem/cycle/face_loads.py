@@ -159,9 +159,9 @@ def face_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
     if over is None or setup.face is None:
         return None
     pair, cells = setup.pair, setup.face.cells
-    forces = (over.forces[number] / contact.kappa[..., None]).reshape(-1, *over.forces.shape[-2:])
+    forces = (over.forces[number] / contact.lever_ratios[..., None]).reshape(-1, *over.forces.shape[-2:])
     factors = face_load_factors(forces)
-    candidates, (rho1, rho2) = contact.where, contact.where.rho
+    candidates, (rho1, rho2) = contact.candidates, contact.candidates.rho
     radius = np.where(candidates.touchable & ~candidates.edge, rho1 * rho2 / (rho1 + rho2), np.nan)
     travel = np.where(candidates.touchable, candidates.place - pair.points.A, np.nan)
     return FaceLoads(
@@ -173,7 +173,7 @@ def face_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         setting=setup.face,
         plane=plane,
         curvature_radius=np.tile(radius, (setup.pitches, 1)),
-        gap=np.maximum(over.left[number], 0.0).reshape(forces.shape),
+        gap=np.maximum(over.remaining_gaps[number], 0.0).reshape(forces.shape),
         error=float(over.errors.factor[number]),
         line_load_error=float(over.errors.line_load[number]),
         **_shafts(setup, over, number),

@@ -89,7 +89,7 @@ class LoadedContacts:
             return 0.0
         force, shares = np.array([abs(self.load)]), []
         for moving in (False, True):
-            setup = replace(self.setup, moving_contact=moving, pitches=1, both=both_sides)
+            setup = replace(self.setup, moving_contact=moving, pitches=1, two_sided=both_sides)
             tables = EdgeTables(setup, self.bodies)
             if both_sides:
                 solution = solve_contact(setup, self.bodies, force, None, tables)

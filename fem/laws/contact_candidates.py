@@ -84,23 +84,23 @@ class ContactCandidates:
         return (1, before), (0, self.edge & ~before)
 
 
-def contact_candidates(given: MeshSetup, reach: float = REACHES[0]) -> ContactCandidates:
+def contact_candidates(setup: MeshSetup, reach: float = REACHES[0]) -> ContactCandidates:
     """Candidates for contact at midpoints of equal intervals of each base pitch, and their unloaded gaps."""
-    pair, positions = given.pair, given.positions
-    start, end = given.ends
+    pair, positions = setup.pair, setup.positions
+    start, end = setup.ends
     pitch, line = pair.base_pitch, pair.line_of_action
     last = ceil(pair.contact_ratio)
-    offset = np.arange(-1, last + 1) if given.beyond_path else np.arange(last)
-    stations = given.stations
+    offset = np.arange(-1, last + 1) if setup.beyond_path else np.arange(last)
+    stations = setup.stations
     position = (np.arange(positions) + 0.5) / positions if stations is None else stations.within
     within, turned = position, np.zeros(len(position), dtype=np.int64)
-    if given.back:
-        within = given.mirror - position
+    if setup.back:
+        within = setup.mirror - position
         turned = np.floor(within).astype(np.int64)
         within = within - turned
     place = pair.points.A + (within[:, None] + offset) * pitch
     outside = (place < start) | (place > end)
-    edge = outside & (np.maximum(start - place, place - end) < reach * pitch) & given.beyond_path
+    edge = outside & (np.maximum(start - place, place - end) < reach * pitch) & setup.beyond_path
     touchable = ~outside | edge
     middle = 0.5 * (pair.points.A + pair.points.E)
     # places of pairs that cannot touch are never used, but must be places
@@ -109,41 +109,41 @@ def contact_candidates(given: MeshSetup, reach: float = REACHES[0]) -> ContactCa
     lever, arm, leaning = np.ones_like(rho), rho.copy(), np.zeros_like(rho)
     gap, curvature = np.where(touchable, 0.0, np.inf), np.ones_like(place)
     chamfered = np.zeros_like(edge)
-    if given.removed is not None and gentle(given):
-        near = touch(given, place[touchable], given.removed)
+    if setup.removed is not None and gentle(setup):
+        near = touch(setup, place[touchable], setup.removed)
         beyond = np.zeros_like(touchable)
         beyond[touchable] = near.beyond
-        edge = (beyond if given.beyond_path else beyond & outside) & touchable
+        edge = (beyond if setup.beyond_path else beyond & outside) & touchable
         gap[touchable], curvature[touchable] = near.gap, near.curvature
         rho[:, touchable], lever[:, touchable], arm[:, touchable] = near.rho, near.lever, near.rho
         leaning[:, touchable] = near.leaning
-    elif given.removed is not None:
+    elif setup.removed is not None:
         on_path = touchable & ~edge
-        gap[on_path] = given.removed[0](rho[0][on_path]) + given.removed[1](rho[1][on_path])
-    other_place = pair.points.A + given.mirror * pitch - (place - pair.points.A)
+        gap[on_path] = setup.removed[0](rho[0][on_path]) + setup.removed[1](rho[1][on_path])
+    other_place = pair.points.A + setup.mirror * pitch - (place - pair.points.A)
     for corner, chosen in ((1, edge & (place < middle)), (0, edge & (place > middle))):
         if chosen.any():
-            at = _edges(given, corner, place[chosen])
-            rho[1 - corner][chosen], rho[corner][chosen] = at.where, given.rounds[corner].rho
+            at = _edges(setup, corner, place[chosen])
+            rho[1 - corner][chosen], rho[corner][chosen] = at.touched_rho, setup.rounds[corner].rho
             lever[corner][chosen], lever[1 - corner][chosen] = at.lever, 1.0
-            arm[corner][chosen], arm[1 - corner][chosen] = at.arm, at.where
+            arm[corner][chosen], arm[1 - corner][chosen] = at.arm, at.touched_rho
             leaning[corner][chosen], leaning[1 - corner][chosen], gap[chosen] = at.leaning, 0.0, at.gap
             chamfered[chosen], curvature[chosen] = at.chamfered, 1.0
     missed = touchable & ~np.isfinite(gap)  # the tip passes over the other tip
     touchable, edge = touchable & ~missed, edge & ~missed
     # (pitches, positions, pairs): every position in every pitch, or each in its own
-    number = np.arange(given.pitches)[:, None, None] if stations is None else stations.pitch[:, None]
-    ahead = offset - turned[:, None] if given.back else -offset
-    steps = np.broadcast_to(number + ahead, (given.pitches, positions, len(offset)))
-    teeth, other = given.teeth(steps), given.opposite
-    by_tooth = given.pitch_gap(teeth) + given.tooth_gap(teeth, rho) / np.where(touchable, lever[0], 1.0)
-    rolling = given.rolling_gap(place)
-    gaps = gap + rolling + by_tooth + (0.0 if given.face is None else given.face.least_gap(pair))
+    number = np.arange(setup.pitches)[:, None, None] if stations is None else stations.pitch[:, None]
+    ahead = offset - turned[:, None] if setup.back else -offset
+    steps = np.broadcast_to(number + ahead, (setup.pitches, positions, len(offset)))
+    teeth, other = setup.teeth(steps), setup.opposite
+    by_tooth = setup.pitch_gap(teeth) + setup.tooth_gap(teeth, rho) / np.where(touchable, lever[0], 1.0)
+    rolling = setup.rolling_gap(place)
+    gaps = gap + rolling + by_tooth + (0.0 if setup.face is None else setup.face.least_gap(pair))
     least = float(np.min(by_tooth) + np.min(rolling))
-    behind = other.pitch_gap(other.teeth(steps)) + given.rolling_gap(np.clip(other_place, start, end))
+    behind = other.pitch_gap(other.teeth(steps)) + setup.rolling_gap(np.clip(other_place, start, end))
     back = np.where(touchable, behind, np.inf).min(axis=-1)
     numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
-    tiles = (1, given.pitches, 1)
+    tiles = (1, setup.pitches, 1)
     return ContactCandidates(
         position=(number[..., 0] + position).ravel(),
         offset=offset,
@@ -160,15 +160,15 @@ def contact_candidates(given: MeshSetup, reach: float = REACHES[0]) -> ContactCa
         teeth=teeth.reshape(2, -1, len(offset)) % numbers,
         back_gap=(pair.backlash + gaps.min(axis=-1) + back).ravel(),
         chamfered=chamfered,
-        reach_gap=_reach_gap(given, reach) + least if given.beyond_path else np.inf,
+        reach_gap=_reach_gap(setup, reach) + least if setup.beyond_path else np.inf,
     )
 
 
-def _reach_gap(given: MeshSetup, reach: float) -> float:
+def _reach_gap(setup: MeshSetup, reach: float) -> float:
     """Smaller gap of the two contacts at the ends of the reach; farther out gaps are larger."""
-    start, end = given.ends
-    apart = reach * given.pair.base_pitch
-    before, after = _edges(given, 1, np.array([start - apart])), _edges(given, 0, np.array([end + apart]))
+    start, end = setup.ends
+    apart = reach * setup.pair.base_pitch
+    before, after = _edges(setup, 1, np.array([start - apart])), _edges(setup, 0, np.array([end + apart]))
     return float(min(before.gap[0], after.gap[0]))
 
 
@@ -176,7 +176,7 @@ def _reach_gap(given: MeshSetup, reach: float) -> float:
 class _Edges:
     """Contacts of one gear's tip: where the other flank is touched; lever, arm and leaning of the force, gap."""
 
-    where: Array
+    touched_rho: Array
     lever: Array
     arm: Array
     leaning: Array
@@ -184,21 +184,21 @@ class _Edges:
     chamfered: Booleans
 
 
-def _edges(given: MeshSetup, corner: int, place: Array) -> _Edges:
-    pair, rounding = given.pair, given.rounds[corner]
+def _edges(setup: MeshSetup, corner: int, place: Array) -> _Edges:
+    pair, rounding = setup.pair, setup.rounds[corner]
     radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
     touched = place if corner == 1 else pair.line_of_action - place
-    _, where = unloaded_gap(radii, pair.line_of_action, touched, np.array([rounding.rho]))
-    place_of_tip = where[:, 0]
+    _, touched_rho = unloaded_gap(radii, pair.line_of_action, touched, np.array([rounding.rho]))
+    place_of_tip = touched_rho[:, 0]
     lever = lever_ratio(pair, place_of_tip, place, corner)
     arm = np.sqrt(np.maximum(radii[1] ** 2 * (1 - lever**2) + rounding.rho**2, 0.0))
-    angle = opening(radii, pair.line_of_action, touched, where, np.array([rounding.rho]))[:, 0]
+    angle = opening(radii, pair.line_of_action, touched, touched_rho, np.array([rounding.rho]))[:, 0]
     plain = nearest_gap(pair, corner, place, rounding)
-    removed = given.removed
+    removed = setup.removed
     gap = plain if removed is None else nearest_gap(pair, corner, place, rounding, removed)
     # turns of the pinion close the gap by the pinion's lever: r_b1 for its own flank
     gap = gap / lever if corner == 0 else gap
-    reaches = (place_of_tip <= given.rounds[1 - corner].rho) & (lever > 0)
+    reaches = (place_of_tip <= setup.rounds[1 - corner].rho) & (lever > 0)
     beyond = chamfer_gap(pair, corner, touched, rounding.start)
     chamfered = np.isfinite(beyond) & (beyond < plain)
     return _Edges(place_of_tip, lever, arm, angle, np.where(reaches, gap, np.inf), chamfered)
@@ -232,8 +232,8 @@ def unloaded_transmission_error(
     >>> unloaded_transmission_error(pair, positions=3)
     array([0., 0., 0.])
     """
-    given = MeshSetup(pair, positions, beyond_path, deviations, pitches, first_teeth, tip_rounding)
-    found = Faults()
-    given.check(found)
-    found.raise_if_any()
-    return np.asarray(contact_candidates(given, REACHES[-1]).gap.min(axis=-1).ravel())
+    setup = MeshSetup(pair, positions, beyond_path, deviations, pitches, first_teeth, tip_rounding)
+    faults = Faults()
+    setup.check(faults)
+    faults.raise_if_any()
+    return np.asarray(contact_candidates(setup, REACHES[-1]).gap.min(axis=-1).ravel())

@@ -60,9 +60,9 @@ BELOW, ABOVE = 16, 32
 
 
 def cut_offs(
-    given: MeshSetup,
+    setup: MeshSetup,
     bodies: PairCompliance,
-    where: ContactCandidates,
+    candidates: ContactCandidates,
     force: float,
     slid: tuple[float, float] = (0.0, 0.0),
 ) -> tuple[CutOff, ...]:
@@ -72,22 +72,22 @@ def cut_offs(
 
     ``slid`` by pinion and wheel, as for ``cut_off``.
     """
-    if not given.beyond_path:
+    if not setup.beyond_path:
         return ()
-    pair, found = bodies.pair, []
+    pair, corrections = bodies.pair, []
     widest = hertz_half_width(
-        force / pair.face_width, where.rho.prod(axis=0) / pair.line_of_action, _reduced(bodies)
+        force / pair.face_width, candidates.rho.prod(axis=0) / pair.line_of_action, _reduced(bodies)
     )
     reach = np.minimum(FADE[1] * widest, FAR[1] * pair.module)
     for corner, gear in ((1, bodies.wheel), (0, bodies.pinion)):
-        distance = (given.rounds[corner].rho ** 2 - where.rho[corner] ** 2) / (2 * gear.base_radius)
-        at = where.touchable & ~where.edge & (distance < reach)
+        distance = (setup.rounds[corner].rho ** 2 - candidates.rho[corner] ** 2) / (2 * gear.base_radius)
+        at = candidates.touchable & ~candidates.edge & (distance < reach)
         if at.any():
-            known = given.removed if gentle(given) else None
-            relieved = None if known is None else _Relieved.of(known, where, corner, at)
-            law = where.place[at], at, given.rounds[corner], relieved, slid[corner]
-            found.append(cut_off(bodies, corner, *law))
-    return tuple(found)
+            known = setup.removed if gentle(setup) else None
+            relieved = None if known is None else _Relieved.of(known, candidates, corner, at)
+            law = candidates.place[at], at, setup.rounds[corner], relieved, slid[corner]
+            corrections.append(cut_off(bodies, corner, *law))
+    return tuple(corrections)
 
 
 @record
@@ -98,17 +98,17 @@ class _Relieved:
     rho: Array
     curvature: Array
     lacking: Array
-    kappa: Array
+    lever_ratios: Array
     leaning: Array
 
     @classmethod
     def of(
-        cls, removed: tuple[Removed, Removed], where: ContactCandidates, corner: int, at: Booleans
+        cls, removed: tuple[Removed, Removed], candidates: ContactCandidates, corner: int, at: Booleans
     ) -> _Relieved:
         """Contacts near one gear's corner."""
-        first = where.lever[0, : len(at)]
-        of_corner = where.rho[corner][at], where.curvature[at], where.lacking[at], first[at]
-        return cls(removed, *of_corner, where.leaning[corner][at])
+        first = candidates.lever[0, : len(at)]
+        of_corner = candidates.rho[corner][at], candidates.curvature[at], candidates.lacking[at], first[at]
+        return cls(removed, *of_corner, candidates.leaning[corner][at])
 
 
 def cut_off(
@@ -145,23 +145,23 @@ def cut_off(
     pair, width, line = bodies.pair, bodies.pair.face_width, bodies.pair.line_of_action
     gear, other = (bodies.pinion, bodies.wheel)[corner], (bodies.wheel, bodies.pinion)[corner]
     place = rho1 if corner == 0 else line - rho1
-    one = np.ones_like(rho1)
-    removed, rho, curvature, lacking, kappa, lean = (
-        (None, place, one, 0.0 * one, one, 0.0 * one)
+    ones = np.ones_like(rho1)
+    removed, rho, curvature, lacking, lever_ratios, lean = (
+        (None, place, ones, 0.0 * ones, ones, 0.0 * ones)
         if relieved is None
         else (
             relieved.removed,
             relieved.rho,
             relieved.curvature,
             relieved.lacking,
-            relieved.kappa,
+            relieved.lever_ratios,
             relieved.leaning,
         )
     )
     round_end = gear.rho_end if rounding is None else rounding.rho
     distance = np.maximum(round_end**2 - rho**2, 0.0) / (2 * gear.base_radius)
     radius = place * (line - place) / (line * curvature)
-    of_one = hertz_half_width(1 / (width * kappa), radius, _reduced(bodies))
+    of_one = hertz_half_width(1 / (width * lever_ratios), radius, _reduced(bodies))
     law: Callable[[Array], tuple[Array, Array]]
     tips = pair, bodies.tips[corner], corner, rho1, other.law
     if rounding is None or rounding.radius == 0.0:
@@ -176,8 +176,11 @@ def cut_off(
     ):  # whose gap may have its minimum a little inside the corner, where few strips would pull
         least = np.maximum(least, (0.4 * tips[1].distance[FIRST] / of_one) ** 2)
     comes = np.clip((JOIN * distance / of_one) ** 2, least, LAST * force[:, -1])
-    flank, own = bodies.hertz(rho1, curvature, kappa), (gear.own(rho) - gear.hub_windup) / (width * kappa**2)
-    further = _leaning(bodies, corner, distance, rho, lean) / (width * kappa**2)
+    flank, own = (
+        bodies.hertz(rho1, curvature, lever_ratios),
+        (gear.own(rho) - gear.hub_windup) / (width * lever_ratios**2),
+    )
+    further = _leaning(bodies, corner, distance, rho, lean) / (width * lever_ratios**2)
     fade = 1.0 - _rise(distance / pair.module, *FAR)[0]
     below = 2 * np.log(np.geomspace(1 / (JOIN * FADE[1]), 1.0, BELOW + 1)[:-1]) + np.zeros((len(rho1), 1))
     above = np.linspace(0.0, 1.0, ABOVE) * np.log(force[:, -1:] / comes[:, None])
@@ -228,8 +231,8 @@ def _between(force: Array, approach: Array, asked: Array) -> tuple[Array, Array]
     from scipy.interpolate import CubicSpline
 
     strips = np.arange(1, force.shape[1])
-    both = np.stack([force, approach])[..., 1:] * RATIO ** (-2.0 * strips)
-    parts = CubicSpline(strips, both, axis=-1).c
+    points = np.stack([force, approach])[..., 1:] * RATIO ** (-2.0 * strips)
+    parts = CubicSpline(strips, points, axis=-1).c
     rows = np.arange(len(force))[:, None]
     cell = np.clip((force[:, None, 1:] <= asked[..., None]).sum(axis=-1) - 1, 0, len(strips) - 2)
     cubic = np.moveaxis(parts[:, cell, :, rows], (-2, -1), (0, 1))  # (4, 2, n, m)

@@ -59,8 +59,8 @@ class _Laws:
         """Whether the law of each place is here, or of one that rounding has put beside it."""
         if not len(self.key):
             return np.zeros(len(key), dtype=bool)
-        found: Booleans = np.abs(self.key[self._nearest(key)] - key) <= 1.0
-        return found
+        known: Booleans = np.abs(self.key[self._nearest(key)] - key) <= 1.0
+        return known
 
     def rows(self, key: Array) -> _Laws:
         """Laws of places that are here."""
@@ -68,12 +68,12 @@ class _Laws:
 
     def joined(self, other: _Laws) -> _Laws:
         """These and others."""
-        every = [(getattr(self, one.name), getattr(other, one.name)) for one in fields(self)]
-        both = _Laws(*(np.concatenate(pair) for pair in every))
-        return both._part(np.argsort(both.key))
+        columns = [(getattr(self, field.name), getattr(other, field.name)) for field in fields(self)]
+        laws = _Laws(*(np.concatenate(pair) for pair in columns))
+        return laws._part(np.argsort(laws.key))
 
     def _part(self, rows: Integers) -> _Laws:
-        return _Laws(*(getattr(self, one.name)[rows] for one in fields(self)))
+        return _Laws(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 
 class EdgeTables:
@@ -81,14 +81,14 @@ class EdgeTables:
 
     Parameters
     ----------
-    given : MeshSetup
+    setup : MeshSetup
         At any positions: what counts is how the gears are set up.
     bodies : PairCompliance
         On any of its meshes that share the answer of the tips; others have separate tables (`serving`).
     """
 
-    def __init__(self, given: MeshSetup, bodies: PairCompliance) -> None:
-        self.given, self.bodies = given, bodies
+    def __init__(self, setup: MeshSetup, bodies: PairCompliance) -> None:
+        self.setup, self.bodies = setup, bodies
         self._kept: dict[int, _Laws] = {}
         self._other: EdgeTables | None = None
 
@@ -98,30 +98,30 @@ class EdgeTables:
         if bodies is self.bodies or strips is None or strips is self.bodies.tips:
             return self
         if self._other is None or self._other.bodies.tip_strips is not strips:
-            self._other = EdgeTables(self.given, bodies)
+            self._other = EdgeTables(self.setup, bodies)
         return self._other
 
     def at(
-        self, where: ContactCandidates, slid: tuple[float, float] = (0.0, 0.0)
+        self, candidates: ContactCandidates, slid: tuple[float, float] = (0.0, 0.0)
     ) -> tuple[Table | None, Array]:
         """Laws of all tip edges in row-major order, and the largest forces kappa F that they cover [N].
 
         What strips ``slid`` on pinion and wheel is given back (``fem.laws.cut_off``).
         """
-        if not where.edge.any():
+        if not candidates.edge.any():
             return None, np.zeros(0)
-        found = [
-            (chosen, self._laws(corner, where.place[chosen], slid[corner]))
-            for corner, chosen in where.corners()
+        by_corner = [
+            (chosen, self._laws(corner, candidates.place[chosen], slid[corner]))
+            for corner, chosen in candidates.corners()
         ]
-        points = max(laws.force.shape[1] for _, laws in found)
-        order = np.argsort(np.concatenate([np.flatnonzero(chosen) for chosen, _ in found]))
+        points = max(laws.force.shape[1] for _, laws in by_corner)
+        order = np.argsort(np.concatenate([np.flatnonzero(chosen) for chosen, _ in by_corner]))
         force, approach = (
-            np.concatenate([_extended(values, points) for values in every])[order]
-            for every in ([laws.force for _, laws in found], [laws.approach for _, laws in found])
+            np.concatenate([_extended(values, points) for values in columns])[order]
+            for columns in ([laws.force for _, laws in by_corner], [laws.approach for _, laws in by_corner])
         )
-        largest = np.concatenate([laws.largest for _, laws in found])[order]
-        smooth = np.concatenate([laws.smooth for _, laws in found])[order]
+        largest = np.concatenate([laws.largest for _, laws in by_corner])[order]
+        smooth = np.concatenate([laws.smooth for _, laws in by_corner])[order]
         return Table.through(force, approach, smooth), largest
 
     @cached_property
@@ -133,17 +133,17 @@ class EdgeTables:
     def surfaces(self) -> tuple[PlaceSurface, PlaceSurface]:
         """Laws beside the corners of pinion and wheel over place and force, for contacts that move."""
         first, second = (
-            place_surface(self.given, self.bodies, corner, self.slid[corner]) for corner in (0, 1)
+            place_surface(self.setup, self.bodies, corner, self.slid[corner]) for corner in (0, 1)
         )
         return first, second
 
     def _laws(self, corner: int, place: Array, slid: float) -> _Laws:
         """Laws of one gear's tip at places (n,) [m]; those that are known are not computed again."""
-        found = self._held(corner, place)
-        return found if slid == 0.0 else replace(found, approach=found.approach + 3 * slid * found.force**2)
+        laws = self._held(corner, place)
+        return laws if slid == 0.0 else replace(laws, approach=laws.approach + 3 * slid * laws.force**2)
 
     def _held(self, corner: int, place: Array) -> _Laws:
-        key = np.round(place / (APART * self.given.pair.base_pitch))
+        key = np.round(place / (APART * self.setup.pair.base_pitch))
         known = self._kept.get(corner)
         if known is None or len(known.key) > MOST:
             known = self._computed(corner, key, place)
@@ -156,28 +156,28 @@ class EdgeTables:
         key, first = np.unique(key, return_index=True)
         apart = np.diff(key, prepend=-np.inf) > 1.0  # what rounding has parted is one place
         key, first = key[apart], first[apart]
-        given, bodies = self.given, self.bodies
+        setup, bodies = self.setup, self.bodies
         touched = (bodies.pinion, bodies.wheel)[1 - corner].law
         tips = bodies.tips[corner]
-        law = edge_laws(given.pair, tips, corner, place[first], touched, given.rounds[corner], given.removed)
+        law = edge_laws(setup.pair, tips, corner, place[first], touched, setup.rounds[corner], setup.removed)
         return _Laws(key, law.force, law.approach - law.approach[:, :1], law.largest, law.smooth)
 
 
 _TABLES: Memo[EdgeTables] = Memo(4)
 
 
-def edge_tables(given: MeshSetup, bodies: PairCompliance) -> EdgeTables:
+def edge_tables(setup: MeshSetup, bodies: PairCompliance) -> EdgeTables:
     """Tables of a face set up likewise, with what loads before have left in them; new ones of flanks with relief.
 
     Parameters
     ----------
-    given : MeshSetup
+    setup : MeshSetup
     bodies : PairCompliance
         The very record: tables that are kept hold theirs, so that no other one can take its place.
     """
-    if given.removed is not None or given.face is None:
-        return EdgeTables(given, bodies)
-    return _TABLES.obtain((id(bodies), given.rounds), lambda: EdgeTables(given, bodies))
+    if setup.removed is not None or setup.face is None:
+        return EdgeTables(setup, bodies)
+    return _TABLES.obtain((id(bodies), setup.rounds), lambda: EdgeTables(setup, bodies))
 
 
 def _extended(values: Array, points: int) -> Array:

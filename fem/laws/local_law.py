@@ -101,8 +101,8 @@ class CutOff:
     def of(self, position: int) -> CutOff:
         """Corrections at a single position."""
         rows = np.nonzero(self.at)[0] == position
-        one = self.at[position : position + 1]
-        return CutOff(one, self.log_force[rows], self.quotient[rows], self.slope[rows])
+        contacts = self.at[position : position + 1]
+        return CutOff(contacts, self.log_force[rows], self.quotient[rows], self.slope[rows])
 
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Further deflection [m] and its derivative [m/N] under forces (..., n) [N], one of each contact."""
@@ -127,11 +127,11 @@ def _by_row(at: Callable[[Integers, Array], tuple[Array, Array]], force: Array) 
     """Ask laws of rows at forces (m,) for forces (..., rows): those without a force once a row."""
     bears, count = force != 0.0, force.shape[-1]
     rows = np.nonzero(bears)[-1]
-    found = at(np.concatenate([np.arange(count), rows]), np.concatenate([np.zeros(count), force[bears]]))
+    answers = at(np.concatenate([np.arange(count), rows]), np.concatenate([np.zeros(count), force[bears]]))
     value, slope = np.empty_like(force), np.empty_like(force)
-    for each, one in zip((value, slope), found, strict=True):
-        each[...] = one[:count]
-        each[bears] = one[count:]
+    for each, answer in zip((value, slope), answers, strict=True):
+        each[...] = answer[:count]
+        each[bears] = answer[count:]
     return value, slope
 
 
@@ -158,14 +158,14 @@ class PairLaws:
 
     def at(self, position: int) -> PairLaws:
         """Laws of a single position."""
-        one = slice(position, position + 1)
-        per_log = np.broadcast_to(self.hertz.per_log, self.edge.shape)[one]
+        row = slice(position, position + 1)
+        per_log = np.broadcast_to(self.hertz.per_log, self.edge.shape)[row]
         table = self.table
         if table is not None:
             rows = np.nonzero(self.edge)[0] == position
             table = Table(table.force[rows], table.approach[rows], table.steepness[rows])
         near = tuple(cut.of(position) for cut in self.cut_offs)
-        return PairLaws(HertzApproach(self.hertz.constant[one], per_log), self.edge[one], table, near)
+        return PairLaws(HertzApproach(self.hertz.constant[row], per_log), self.edge[row], table, near)
 
     def approach(self, force: Array) -> Array:
         """Local deflection (positions, pairs) [m]."""
@@ -180,10 +180,10 @@ class PairLaws:
         value, slope = self.hertz.value_and_slope(force)
         if self.table is not None:
             value[..., self.edge], slope[..., self.edge] = self.table.value_and_slope(force[..., self.edge])
-        for one in self.cut_offs:
-            more, steeper = one.value_and_slope(force[..., one.at])
-            value[..., one.at] += more
-            slope[..., one.at] += steeper
+        for cut in self.cut_offs:
+            more, steeper = cut.value_and_slope(force[..., cut.at])
+            value[..., cut.at] += more
+            slope[..., cut.at] += steeper
         return value, slope
 
 
@@ -243,6 +243,6 @@ class FilmLaw:
         """Both together; the film is asked with all leading dimensions as positions."""
         places = np.broadcast_to(self.rho1, force.shape)
         flat, wet = (-1, force.shape[-1]), np.isfinite(places)
-        found = self.film(places.reshape(flat), force.reshape(flat))
-        value, slope = (np.where(wet, np.reshape(one, force.shape), 0.0) for one in found)
+        answers = self.film(places.reshape(flat), force.reshape(flat))
+        value, slope = (np.where(wet, np.reshape(answer, force.shape), 0.0) for answer in answers)
         return value, slope

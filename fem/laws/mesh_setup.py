@@ -55,7 +55,7 @@ class MeshSetup:
     """How a pair stands and what its flanks are like; `mesh_cycle` describes each of these.
 
     Nothing is checked before `check` is called. With `back` the loaded flanks are those in which a braking pinion
-    bears: the same gears in a mirror, at the same positions. `both`: their opposite flanks bear too.
+    bears: the same gears in a mirror, at the same positions. `two_sided`: their opposite flanks bear too.
     """
 
     pair: GearPair
@@ -70,7 +70,7 @@ class MeshSetup:
     moving_contact: bool = False
     base_pitch_difference: float = 0.0
     back: bool = False
-    both: bool = False
+    two_sided: bool = False
     face: FaceSetting | None = None
 
     def at(self, position: Array) -> MeshSetup:
@@ -99,7 +99,7 @@ class MeshSetup:
     def seen(self, position: Array) -> Array:
         """Positions at which a corner in the law of a flank is met by the flanks that bear (n,), 0 to 1."""
         mirrored = (self.mirror - position) % 1.0
-        if self.both:
+        if self.two_sided:
             return np.concatenate([position, mirrored])
         return mirrored if self.back else position
 
@@ -111,54 +111,54 @@ class MeshSetup:
         first, second = self.first_teeth
         return np.stack([first + step, second + step + int(self.back)])
 
-    def check(self, found: Faults) -> None:
+    def check(self, faults: Faults) -> None:
         """Note everything that is wrong."""
-        found.number("positions", self.positions, COUNT)
-        found.number("pitches", self.pitches, COUNT)
-        found.number("friction", self.friction, FRICTION)
+        faults.number("positions", self.positions, COUNT)
+        faults.number("pitches", self.pitches, COUNT)
+        faults.number("friction", self.friction, FRICTION)
         for name in ("beyond_path", "moving_contact"):
-            found.instance(name, getattr(self, name), bool, "True or False")
+            faults.instance(name, getattr(self, name), bool, "True or False")
         if self.face is not None:
-            self.face.check(found, self.pair, self.positions)
-        both = tuple(self.first_teeth) if isinstance(self.first_teeth, Sequence) else ()
-        if len(both) != 2 or any(isinstance(n, bool) or not isinstance(n, Integral) for n in both):
-            found.add("first_teeth", self.first_teeth, "must be two whole numbers", "number from 0")
+            self.face.check(faults, self.pair, self.positions)
+        numbers = tuple(self.first_teeth) if isinstance(self.first_teeth, Sequence) else ()
+        if len(numbers) != 2 or any(isinstance(n, bool) or not isinstance(n, Integral) for n in numbers):
+            faults.add("first_teeth", self.first_teeth, "must be two whole numbers", "number from 0")
         if len(self._by_gear) != 2:
             gears = f"{len(self._by_gear)} gears"
-            found.add("deviations", gears, "must be of pinion and wheel", "give None for a perfect one")
+            faults.add("deviations", gears, "must be of pinion and wheel", "give None for a perfect one")
         else:
             for k, (gear, spec) in enumerate(
                 zip(self._by_gear, (self.pair.pinion, self.pair.wheel), strict=True)
             ):
-                where = f"deviations[{k}]"
-                if found.instance(where, gear, GearDeviations, optional=True) and gear is not None:
-                    found.extend(gear.faults(where, spec.teeth))
-        self._check_rounding(found)
+                key = f"deviations[{k}]"
+                if faults.instance(key, gear, GearDeviations, optional=True) and gear is not None:
+                    faults.extend(gear.faults(key, spec.teeth))
+        self._check_rounding(faults)
 
-    def _check_rounding(self, found: Faults) -> None:
+    def _check_rounding(self, faults: Faults) -> None:
         numbers = [
             isinstance(r, Real) and not isinstance(r, bool) and np.isfinite(r) and r >= 0 for r in self._radii
         ]
         if len(self._radii) != 2 or not all(numbers):
             allowed = "must be a radius of at least 0 m, or one for each gear"
-            found.add("tip_rounding", self.tip_rounding, allowed, "give metres; 0 is sharp")
+            faults.add("tip_rounding", self.tip_rounding, allowed, "give metres; 0 is sharp")
             return
         fits = True
-        for k, (one, profile) in enumerate(zip(self.rounds, self.pair.teeth_profiles, strict=True)):
-            if one.radius == 0.0:
+        for k, (rounding, profile) in enumerate(zip(self.rounds, self.pair.teeth_profiles, strict=True)):
+            if rounding.radius == 0.0:
                 continue
             land = profile.tip_radius * sin(max(profile.tip_half_angle, 0.0))
             # with a chamfer the arc is between flank and chamfer, and must end on it
             length = chamfer_length(profile)
             room = min(LARGEST_ROUND * profile.module, length if length > 0 else land)
-            if one.start > room:
-                most = f"must be at most {rounded_down(room * one.radius / one.start, 3)} m"
-                found.add(f"tip_rounding[{k}]", f"{one.radius:g} m", most, "round the tip less")
+            if rounding.start > room:
+                most = f"must be at most {rounded_down(room * rounding.radius / rounding.start, 3)} m"
+                faults.add(f"tip_rounding[{k}]", f"{rounding.radius:g} m", most, "round the tip less")
                 fits = False
         start, end = self.ends
         if fits and not self.beyond_path and end - start < self.pair.base_pitch:
             remedy = "round the tips less, or let tip edges touch"
-            found.add("tip_rounding", self.tip_rounding, "must leave a contact ratio above 1", remedy)
+            faults.add("tip_rounding", self.tip_rounding, "must leave a contact ratio above 1", remedy)
 
     @property
     def _radii(self) -> tuple[float, ...]:
@@ -184,7 +184,7 @@ class MeshSetup:
     def strips_at_corners(self) -> tuple[bool, bool]:
         """Whether contacts beside the tip corners of pinion and wheel press by strips of plain flanks that stay."""
         plain = self.beyond_path and self.removed is None and not self.moving_contact
-        first, second = (plain and one.radius == 0.0 for one in self.rounds)
+        first, second = (plain and rounding.radius == 0.0 for rounding in self.rounds)
         return first, second
 
     @property
@@ -196,19 +196,19 @@ class MeshSetup:
     @property
     def even(self) -> bool:
         """Whether the flanks are true involutes at equal pitches."""
-        plain = all(some is None or some.every_tooth_alike for some in self._by_gear)
+        plain = all(deviations is None or deviations.every_tooth_alike for deviations in self._by_gear)
         return plain and self.removed is None and not self.base_pitch_difference
 
     @property
     def teeth_alike(self) -> bool:
         """Whether all teeth of a gear have one profile."""
-        return all(some is None or some.profiles_alike for some in self._by_gear)
+        return all(deviations is None or deviations.profiles_alike for deviations in self._by_gear)
 
     def kinks(self, gear: int) -> Array:
         """Curvature radii at which the slope of what a gear's flank lacks changes at once."""
-        profile, some = self.pair.teeth_profiles[gear], self._by_gear[gear]
+        profile, deviations = self.pair.teeth_profiles[gear], self._by_gear[gear]
         relief = [] if profile.tip_relief is None else [profile.flank_rho[1] - profile.tip_relief.length]
-        return np.concatenate([relief, [] if some is None else some.kinks(MOST_POINTS)])
+        return np.concatenate([relief, [] if deviations is None else deviations.kinks(MOST_POINTS)])
 
     @property
     def corners(self) -> Array:
@@ -220,30 +220,30 @@ class MeshSetup:
         pair = self.pair
         line, places = pair.line_of_action, [*self.ends, pair.points.A, pair.points.E]
         for gear, profile in enumerate(pair.teeth_profiles):
-            some, rho = self._by_gear[gear], []
+            deviations, rho = self._by_gear[gear], []
             if profile.tip_relief is not None:
                 rho.append(profile.flank_rho[1] - profile.tip_relief.length)
-            if some is not None:
-                rho += some.corners(MOST_POINTS).tolist()
-            places += rho if gear == 0 else [line - one for one in rho]
+            if deviations is not None:
+                rho += deviations.corners(MOST_POINTS).tolist()
+            places += rho if gear == 0 else [line - radius for radius in rho]
         if self.friction:
             places.append(pair.points.C)
-        inside = [one for one in places if self.ends[0] <= one <= self.ends[1]] + [pair.points.A]
+        inside = [place for place in places if self.ends[0] <= place <= self.ends[1]] + [pair.points.A]
         return np.unique((np.array(inside) - pair.points.A) / pair.base_pitch % 1.0)
 
     @property
     def removed(self) -> tuple[Removed, Removed] | None:
         """Material missing from pinion's and wheel's flank at curvature radii, mean of their teeth; None if none is."""
         profiles = self.pair.teeth_profiles
-        curves = [some is not None and some.curved for some in self._by_gear]
+        curves = [deviations is not None and deviations.curved for deviations in self._by_gear]
         if not any(curves) and all(profile.tip_relief is None for profile in profiles):
             return None
 
         def missing(gear: int) -> Removed:
-            some, relief = self._by_gear[gear], profiles[gear].relief
-            if some is None or not curves[gear]:
+            deviations, relief = self._by_gear[gear], profiles[gear].relief
+            if deviations is None or not curves[gear]:
                 return relief
-            return lambda rho: np.asarray(relief(rho) - some.excess(rho))
+            return lambda rho: np.asarray(relief(rho) - deviations.excess(rho))
 
         return missing(0), missing(1)
 
@@ -268,9 +268,9 @@ class MeshSetup:
         by is taken as even.
         """
         gap = np.zeros(teeth.shape[1:])
-        for some, tooth, place in zip(self._by_gear, teeth, rho, strict=True):
-            if some is not None:
-                gap -= some.of_tooth(tooth, place)
+        for deviations, tooth, place in zip(self._by_gear, teeth, rho, strict=True):
+            if deviations is not None:
+                gap -= deviations.of_tooth(tooth, place)
         return gap
 
     def rolling_gap(self, place: Array) -> Array:

@@ -121,8 +121,8 @@ class PlaceSurface:
         lower, upper = force < self.forces[0], force >= self.forces[1]
 
         def value(dx: int = 0, dy: int = 0) -> Array:
-            found = np.asarray(self.surface.ev(xi, log, dx=dx, dy=dy))
-            return np.where(covered, found, 0.0) if dx else found
+            derivative = np.asarray(self.surface.ev(xi, log, dx=dx, dy=dy))
+            return np.where(covered, derivative, 0.0) if dx else derivative
 
         def open_(order: int) -> Array:
             return np.where(covered, self.gaps(xi, order), 0.0)
@@ -141,14 +141,14 @@ class PlaceSurface:
         )
 
 
-def place_surface(given: MeshSetup, bodies: PairCompliance, corner: int, slid: float) -> PlaceSurface:
+def place_surface(setup: MeshSetup, bodies: PairCompliance, corner: int, slid: float) -> PlaceSurface:
     """Surface beside a corner of true involutes: of the wheel (1) beside A, of the pinion (0) beside E.
 
     ``slid`` as for ``fem.laws.cut_off.cut_off``.
     """
     from scipy.interpolate import CubicSpline, RectBivariateSpline
 
-    pair, line, rounding = bodies.pair, bodies.pair.line_of_action, given.rounds[corner]
+    pair, line, rounding = bodies.pair, bodies.pair.line_of_action, setup.rounds[corner]
     gear, other = (bodies.pinion, bodies.wheel)[corner], (bodies.wheel, bodies.pinion)[corner]
     end, unit = float(rounding.rho), NEAR * pair.module
     inside = end - np.sqrt(max(end**2 - 2 * gear.base_radius * FAR[1] * pair.module, 0.25 * end**2))
@@ -161,8 +161,8 @@ def place_surface(given: MeshSetup, bodies: PairCompliance, corner: int, slid: f
     largest = float(np.median(law.force[:, -1]))
     log = np.arange(np.log(LEAST * largest), np.log(largest) + FORCES, FORCES)
     force = np.exp(log)[:, None]
-    every = np.ones((1, on.sum()), dtype=bool)
-    near = cut_off(bodies, corner, place[on], every, rounding, None, slid, 1 - corner)
+    contacts = np.ones((1, on.sum()), dtype=bool)
+    near = cut_off(bodies, corner, place[on], contacts, rounding, None, slid, 1 - corner)
     edge, _ = Table.through(law.force, law.approach, law.smooth).value_and_slope(
         np.repeat(force, (~on).sum(), axis=1)
     )
@@ -197,10 +197,10 @@ def slid(bodies: PairCompliance) -> tuple[float, float]:
     (R/2)(tau + t/R)^2 for a unit line load: strips know tilt and motion of the corner's tooth, to the second order in
     the distance from the contact.
     """
-    pair, found = bodies.pair, []
+    pair, energies = bodies.pair, []
     for gear, motion in enumerate(bodies.motions):
         rho = motion.rho_range[1]
         radius = rho * (pair.line_of_action - rho) / pair.line_of_action
         along = float(motion.tangential(np.array(rho)))
-        found.append(0.5 * radius * (_tilt(bodies, gear, rho) + along / radius) ** 2 / pair.face_width**2)
-    return found[0], found[1]
+        energies.append(0.5 * radius * (_tilt(bodies, gear, rho) + along / radius) ** 2 / pair.face_width**2)
+    return energies[0], energies[1]

@@ -75,14 +75,14 @@ class Touch:
     beyond: Booleans
 
 
-def touch(given: MeshSetup, place: Array, removed: tuple[Removed, Removed]) -> Touch:
+def touch(setup: MeshSetup, place: Array, removed: tuple[Removed, Removed]) -> Touch:
     """Where flanks touch whose unlimited involutes touch at ``place`` (n,) of the line of action [m]."""
-    pair, line = given.pair, given.pair.line_of_action
+    pair, line = setup.pair, setup.pair.line_of_action
     first, second = pair.base_radii
     other = line - place
     radius = place * other / line
-    low = (other**2 - given.rounds[1].rho ** 2) / (2 * second)
-    high = (given.rounds[0].rho ** 2 - place**2) / (2 * first)
+    low = (other**2 - setup.rounds[1].rho ** 2) / (2 * second)
+    high = (setup.rounds[0].rho ** 2 - place**2) / (2 * first)
     span = np.minimum(SPAN * pair.module, 0.25 * (high - low))
 
     def rho(sigma: Array) -> tuple[Array, Array]:
@@ -92,7 +92,7 @@ def touch(given: MeshSetup, place: Array, removed: tuple[Removed, Removed]) -> T
         )
 
     def missing(sigma: Array) -> Array:
-        return np.stack([some(at) for some, at in zip(removed, rho(sigma), strict=True)])
+        return np.stack([curve(at) for curve, at in zip(removed, rho(sigma), strict=True)])
 
     def bends(sigma: Array) -> tuple[Array, Array]:
         """Slope and curvature of what each flank lacks (2, n)."""
@@ -108,16 +108,16 @@ def touch(given: MeshSetup, place: Array, removed: tuple[Removed, Removed]) -> T
     slope, bent = bends(sigma)
     curvature = np.clip(1 + radius * bent.sum(axis=0), *CURVATURES)
     touched = rho(sigma)
-    gap, where = gap_at(pair.base_radii, line, place, touched[1])
+    gap, pinion_rho = gap_at(pair.base_radii, line, place, touched[1])
     # the normals of the involutes there are turned against each other, each by the slope of its relief
     leaning = np.stack([slope[0], -slope[1]])
-    turned = opening_at(pair.base_radii, line, place, where, touched[1])
-    both = leaning[1] - leaning[0]
-    leaning = leaning * np.divide(turned, both, out=np.zeros_like(turned), where=np.abs(both) > 1e-12)
-    lever = np.cos(leaning) - np.sin(leaning) * np.stack([where / first, touched[1] / second])
-    lacking = (removed[0](where) + removed[1](touched[1])) / lever[0]
+    turned = opening_at(pair.base_radii, line, place, pinion_rho, touched[1])
+    between = leaning[1] - leaning[0]
+    leaning = leaning * np.divide(turned, between, out=np.zeros_like(turned), where=np.abs(between) > 1e-12)
+    lever = np.cos(leaning) - np.sin(leaning) * np.stack([pinion_rho / first, touched[1] / second])
+    lacking = (removed[0](pinion_rho) + removed[1](touched[1])) / lever[0]
     gap = np.where(sigma == 0.0, 0.0, gap) + lacking
-    return Touch(np.stack([where, touched[1]]), gap, curvature, lever, leaning, beyond)
+    return Touch(np.stack([pinion_rho, touched[1]]), gap, curvature, lever, leaning, beyond)
 
 
 def _least(slope: Callable[[Array], Array], low: Array, high: Array, close: float) -> tuple[Array, Booleans]:
@@ -136,81 +136,81 @@ def _least(slope: Callable[[Array], Array], low: Array, high: Array, close: floa
             break
         apart = here - was
         step = np.divide(here, apart, out=np.zeros_like(here), where=here != 0.0) * (least - before)
-        found = least - step
-        now = np.where(here == 0.0, 0.0, slope(found))
+        trial = least - step
+        now = np.where(here == 0.0, 0.0, slope(trial))
         turned = now * here < 0.0
         before, was = np.where(turned, least, before), np.where(turned, here, 0.5 * was)
-        least, here = found, now
+        least, here = trial, now
     return least, beyond
 
 
-def gentle(given: MeshSetup) -> bool:
+def gentle(setup: MeshSetup) -> bool:
     """Whether all teeth of a gear have one profile, without hollows that no single contact fills.
 
     Otherwise flanks are taken to touch where involutes do.
     """
-    removed = given.removed
-    if removed is None or not given.teeth_alike:
-        return given.teeth_alike
-    pair, line = given.pair, given.pair.line_of_action
-    place = np.linspace(*given.ends, HOLLOWS)[1:-1]
+    removed = setup.removed
+    if removed is None or not setup.teeth_alike:
+        return setup.teeth_alike
+    pair, line = setup.pair, setup.pair.line_of_action
+    place = np.linspace(*setup.ends, HOLLOWS)[1:-1]
     span, first, second = SPAN * pair.module, *pair.base_radii
 
-    low = ((line - place) ** 2 - given.rounds[1].rho ** 2) / (2 * second)
-    high = (given.rounds[0].rho ** 2 - place**2) / (2 * first)
+    low = ((line - place) ** 2 - setup.rounds[1].rho ** 2) / (2 * second)
+    high = (setup.rounds[0].rho ** 2 - place**2) / (2 * first)
     middle = np.clip(0.0, low + span, high - span)  # beyond the ends of flanks curves say nothing
 
     def missing(apart: float) -> Array:
         rho = place**2 + 2 * first * (middle + apart), (line - place) ** 2 - 2 * second * (middle + apart)
         # no flank begins below its base circle, where rho is 0
-        here = [some(np.sqrt(np.maximum(at, 0.0))) for some, at in zip(removed, rho, strict=True)]
+        here = [curve(np.sqrt(np.maximum(at, 0.0))) for curve, at in zip(removed, rho, strict=True)]
         return np.asarray(np.sum(here, axis=0))
 
     bent = (missing(span) - 2 * missing(0.0) + missing(-span)) / span**2
     return bool(np.all(1 + place * (line - place) / line * bent >= CURVATURES[0]))
 
 
-def ends_of_flanks(given: MeshSetup) -> tuple[float, float]:
+def ends_of_flanks(setup: MeshSetup) -> tuple[float, float]:
     """Places on the line of action [m] between which flanks touch beside their corners, under no load.
 
     A and E, or those of roundings; with relief farther out.
     """
-    start, end = given.ends
-    removed = given.removed
-    if removed is None or not gentle(given):
+    start, end = setup.ends
+    removed = setup.removed
+    if removed is None or not gentle(setup):
         return start, end
-    pitch, found = given.pair.base_pitch, []
+    pitch, ends = setup.pair.base_pitch, []
     for place, outwards in ((start, -1.0), (end, 1.0)):
         apart = place + 0.5 * outwards * pitch * np.array([-1.0, 1.0])
         for _ in range(6):  # 15 places at once
             places = np.linspace(apart[0], apart[1], 17)
-            inside = ~touch(given, places, removed).beyond
+            inside = ~touch(setup, places, removed).beyond
             last = int(np.flatnonzero(inside)[-1]) if inside.any() else 0
             apart = places[[min(last, 15), min(last, 15) + 1]]
-        found.append(float(apart.mean()))
-    return found[0], found[1]
+        ends.append(float(apart.mean()))
+    return ends[0], ends[1]
 
 
-def starts_of_relief(given: MeshSetup) -> list[float]:
+def starts_of_relief(setup: MeshSetup) -> list[float]:
     """Places on the line of action [m] at which the law of touch changes at kinks, such as starts of tip relief.
 
     A flank stays on such a kink for a while; its slope and curvature, differences over ``SPAN``, know it from before
     it is touched until after.
     """
-    removed = given.removed
-    if removed is None or not gentle(given):
+    removed = setup.removed
+    if removed is None or not gentle(setup):
         return []
-    span, gears, wanted = SPAN * given.pair.module, [], []
-    for gear, base in enumerate(given.pair.base_radii):
+    span, gears, wanted = SPAN * setup.pair.module, [], []
+    for gear, base in enumerate(setup.pair.base_radii):
         for apart, slack in ((-span, 0.0), (0.0, -SLACK), (0.0, SLACK), (span, 0.0)):
-            rho = np.sqrt(np.maximum(given.kinks(gear) ** 2 + 2 * base * apart, 0.0)) + slack
+            rho = np.sqrt(np.maximum(setup.kinks(gear) ** 2 + 2 * base * apart, 0.0)) + slack
             gears += [gear] * len(rho)
             wanted += rho.tolist()
     which, target = np.array(gears, dtype=np.int64), np.array(wanted)
-    places = np.linspace(given.ends[0], given.ends[1], 257) + np.zeros((len(target), 1))
+    places = np.linspace(setup.ends[0], setup.ends[1], 257) + np.zeros((len(target), 1))
     for _ in range(5):
-        found = touch(given, places.ravel(), removed).rho.reshape(2, *places.shape)
-        above = np.take_along_axis(found, which[None, :, None], axis=0)[0] > target[:, None]
+        touched = touch(setup, places.ravel(), removed).rho.reshape(2, *places.shape)
+        above = np.take_along_axis(touched, which[None, :, None], axis=0)[0] > target[:, None]
         change = above[:, 1:] != above[:, :-1]
         met = change.any(axis=1)
         which, target, places, first = which[met], target[met], places[met], change[met].argmax(axis=1)

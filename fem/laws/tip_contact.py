@@ -95,7 +95,7 @@ class EdgeLaw:
     largest : (n,) array
         Force [N] up to which the law holds: over all strips, or until strips farther in would let it fall.
         Beyond it goes on straight.
-    where : (n,) array
+    touched_rho : (n,) array
         Curvature radius at which the other gear's flank is touched [m].
     smooth : (n,) boolean array
         Whether the strips close one after the other from the corner, so that the law is smooth.
@@ -103,7 +103,7 @@ class EdgeLaw:
 
     force: Array
     approach: Array
-    where: Array
+    touched_rho: Array
     largest: Array
     smooth: Booleans
 
@@ -123,9 +123,13 @@ def _gaps(
     return gaps + missing[1 - corner](touched), touched
 
 
-def _levers(pair: GearPair, corner: int, where: Array, rho1: Array, turned: int = 0) -> Array:
-    """Levers of forces on the touched flank at ``where`` (n, k) about the turned gear's axis, over its base radius."""
-    return lever_ratio(pair, where, rho1[:, None], corner) if corner == turned else np.ones_like(where)
+def _lever_ratios(pair: GearPair, corner: int, touched_rho: Array, rho1: Array, turned: int = 0) -> Array:
+    """Levers of forces on the flank at ``touched_rho`` (n, k) about the turned gear's axis, over its base radius."""
+    return (
+        lever_ratio(pair, touched_rho, rho1[:, None], corner)
+        if corner == turned
+        else np.ones_like(touched_rho)
+    )
 
 
 def _at_corner(profile: ToothProfile, rounding: TipRound) -> _Tip:
@@ -156,7 +160,7 @@ def _touching(
 ) -> Array:
     """Approach at which each strip by itself would touch (contacts, strips) [m]."""
     gaps, touched = _gaps(pair, corner, rho1, tip, missing)
-    return np.asarray(gaps / _levers(pair, corner, touched, rho1, turned))
+    return np.asarray(gaps / _lever_ratios(pair, corner, touched, rho1, turned))
 
 
 def edge_laws(
@@ -192,7 +196,7 @@ def edge_laws(
     profile = pair.teeth_profiles[corner]
     rounding = rounding or tip_round(profile, 0.0)
     missing = removed or (_nothing, _nothing)
-    _, where = _gaps(pair, corner, rho1, _at_corner(profile, rounding), missing)
+    _, touched_rho = _gaps(pair, corner, rho1, _at_corner(profile, rounding), missing)
     if rounding.radius == 0.0 and removed is None:
         force, approach = begun(*strip_law(pair, strips, corner, rho1, other, turned=turned))
         smooth = np.ones(len(rho1), dtype=bool)
@@ -210,7 +214,7 @@ def edge_laws(
             inwards = begun(force[smooth], smoothed(force, approach)[smooth])
             force[smooth], approach[smooth] = inwards
     force, approach, largest = _growing(force, approach)
-    return EdgeLaw(force, approach, where[:, 0], largest, smooth)
+    return EdgeLaw(force, approach, touched_rho[:, 0], largest, smooth)
 
 
 def strip_law(
@@ -231,8 +235,8 @@ def strip_law(
     sharp, missing = tip_round(profile, 0.0), removed or (_nothing, _nothing)
     first = _touching(pair, corner, rho1, _at_corner(profile, sharp), missing, turned)[:, 0]
     tip = _surface(profile, strips.distance, strips.width, sharp)
-    kernel, gaps, levers = _strips(pair, strips, corner, rho1, other, tip, missing, turned)
-    force, approach = from_the_corner(kernel, gaps, first, levers)
+    kernel, gaps, lever_ratios = _strips(pair, strips, corner, rho1, other, tip, missing, turned)
+    force, approach = from_the_corner(kernel, gaps, first, lever_ratios)
     return force * pair.face_width, smoothed(force, approach)
 
 
@@ -253,8 +257,8 @@ def rounded_law(
     tip = _surface(pair.teeth_profiles[corner], *round_layout(pair.module, rounding), rounding)
     answer = strips.on(tip.distance, tip.width)
     missing = removed or (_nothing, _nothing)
-    kernel, gaps, levers = _strips(pair, answer, corner, rho1, other, tip, missing, turned)
-    force, approach = by_the_far_end(kernel, gaps, levers)
+    kernel, gaps, lever_ratios = _strips(pair, answer, corner, rho1, other, tip, missing, turned)
+    force, approach = by_the_far_end(kernel, gaps, lever_ratios)
     lower = smoothed(force, approach)
     return force * pair.face_width, np.where(np.isfinite(lower), lower, approach)
 
@@ -275,7 +279,7 @@ def _strips(
     own = strips.lever(angle)
     hub = strips.hub_windup * own[:, :, None] * own[:, None, :]
     kernel = strips.leaning(angle) - hub + flat_kernel(tip.distance, tip.width, other, pair.module)
-    return kernel, gaps, _levers(pair, corner, touched, rho1, turned)
+    return kernel, gaps, _lever_ratios(pair, corner, touched, rho1, turned)
 
 
 def _lean(pair: GearPair, corner: int, rho1: Array, tip: _Tip, touched: Array) -> Array:
@@ -297,7 +301,7 @@ class StripsOfContact:
         Curvature radii of the other gear's flank [m].
     lean : (k,) array
         Angles of the forces from the inward normals of the corner's flank, away from the tip [rad].
-    gaps, levers : (k,) arrays
+    gaps, lever_ratios : (k,) arrays
         [m], -
     kernel : (k, k) array
         Of both bodies, without the turn on the hub [m per N/m].
@@ -308,7 +312,7 @@ class StripsOfContact:
     touched: Array
     lean: Array
     gaps: Array
-    levers: Array
+    lever_ratios: Array
     kernel: Array
 
 
@@ -329,10 +333,10 @@ def strips_of(
     rounding = rounding or tip_round(profile, 0.0)
     tip = _surface(profile, *(layout or round_layout(pair.module, rounding)), rounding)
     answer, missing = strips.on(tip.distance, tip.width), (_nothing, _nothing)
-    kernel, gaps, levers = _strips(pair, answer, corner, at, other, tip, missing)
+    kernel, gaps, lever_ratios = _strips(pair, answer, corner, at, other, tip, missing)
     _, touched = _gaps(pair, corner, at, tip, missing)
     lean = _lean(pair, corner, at, tip, touched)[0]
-    return StripsOfContact(tip.distance, tip.width, touched[0], lean, gaps[0], levers[0], kernel[0])
+    return StripsOfContact(tip.distance, tip.width, touched[0], lean, gaps[0], lever_ratios[0], kernel[0])
 
 
 def _growing(force: Array, approach: Array) -> tuple[Array, Array, Array]:

@@ -62,7 +62,7 @@ def unloaded_gap(
     -------
     gap : (n, k) array
         Rotation of gear 1 until its flank meets the point, times r_b1 [m].
-    where : (n, k) array
+    touched_rho : (n, k) array
         Curvature radius of flank 1 there [m].
     """
     return gap_at(base_radii, line, rho1[:, None], rho2, along, out)
@@ -86,14 +86,16 @@ def gap_at(
     x = (line - rho1) * less + r2 * ((s - turn) + turn * less) + along * s - out * c
     y = r2 * less - rho2 * s - along * c - out * s
     farther = x * (2 * rho1 + x) + y * (2 * r1 + y)
-    where = np.sqrt(np.maximum(rho1**2 + farther, 0.0))
-    rolled = np.maximum(farther, -(rho1**2)) / (where + rho1)
+    touched_rho = np.sqrt(np.maximum(rho1**2 + farther, 0.0))
+    rolled = np.maximum(farther, -(rho1**2)) / (touched_rho + rho1)
     turned = np.arctan2(rho1 * y - r1 * x, rho1 * (rho1 + x) + r1 * (r1 + y))
-    return rolled - r1 * (np.arctan2(r1 * rolled, r1**2 + where * rho1) + turned), where
+    return rolled - r1 * (np.arctan2(r1 * rolled, r1**2 + touched_rho * rho1) + turned), touched_rho
 
 
-def opening(base_radii: tuple[float, float], line: float, rho1: Array, where: Array, rho2: Array) -> Array:
-    """Angle between the normals of flank 1 at ``where`` and of flank 2 at ``rho2`` (n, k) [rad].
+def opening(
+    base_radii: tuple[float, float], line: float, rho1: Array, touched_rho: Array, rho2: Array
+) -> Array:
+    """Angle between the normals of flank 1 at ``touched_rho`` and of flank 2 at ``rho2`` (n, k) [rad].
 
     Zero on the line of action. Outside the path it is positive at the tip of gear 2: the flanks open away from
     the corner, and a force that stands on flank 1 leans from the normal of flank 2 away from the tip.
@@ -106,28 +108,30 @@ def opening(base_radii: tuple[float, float], line: float, rho1: Array, where: Ar
         rho1 + rho2 on the line of action [m].
     rho1 : (n,) array
         Positions [m].
-    where : (n, k) array
+    touched_rho : (n, k) array
         Curvature radii of flank 1 [m].
     rho2 : (k,) array
         Curvature radii of flank 2 [m].
     """
-    return opening_at(base_radii, line, rho1[:, None], where, rho2)
+    return opening_at(base_radii, line, rho1[:, None], touched_rho, rho2)
 
 
-def opening_at(base_radii: tuple[float, float], line: float, rho1: Array, where: Array, rho2: Array) -> Array:
+def opening_at(
+    base_radii: tuple[float, float], line: float, rho1: Array, touched_rho: Array, rho2: Array
+) -> Array:
     """As ``opening`` for separate points at every position: arrays of one shape."""
     r1, r2 = base_radii
-    turned: Array = (where - rho1) / r1 - (rho2 - (line - rho1)) / r2
+    turned: Array = (touched_rho - rho1) / r1 - (rho2 - (line - rho1)) / r2
     return turned
 
 
-def lever_ratio(pair: GearPair, where: Array, rho1: Array, corner: int = 0) -> Array:
+def lever_ratio(pair: GearPair, touched_rho: Array, rho1: Array, corner: int = 0) -> Array:
     """Lever of a flank's normal about the axis of the other gear, over that gear's base radius.
 
     Parameters
     ----------
     pair : gears.GearPair
-    where : (n,) array
+    touched_rho : (n,) array
         Curvature radii of the touched flank [m].
     rho1 : (n,) array
         Positions: where the unlimited involutes touch on the line of action [m].
@@ -136,7 +140,7 @@ def lever_ratio(pair: GearPair, where: Array, rho1: Array, corner: int = 0) -> A
     """
     own, touched = pair.base_radii[corner], pair.base_radii[1 - corner]
     line = pair.line_of_action
-    turn = (where - (rho1 if corner == 1 else line - rho1)) / touched
+    turn = (touched_rho - (rho1 if corner == 1 else line - rho1)) / touched
     return np.asarray(((own + touched) * np.cos(turn) - line * np.sin(turn) - touched) / own)
 
 

@@ -95,11 +95,13 @@ def tip_pressure(
     bears = np.ones(len(tip.width), dtype=bool)
     for _ in range(ITERATIONS):
         on = np.flatnonzero(bears)
-        matrix = np.block([[tip.kernel[np.ix_(on, on)], -tip.levers[on, None]], [np.ones((1, len(on))), 0.0]])
+        matrix = np.block(
+            [[tip.kernel[np.ix_(on, on)], -tip.lever_ratios[on, None]], [np.ones((1, len(on))), 0.0]]
+        )
         *loads, approach = np.linalg.solve(matrix, np.append(-tip.gaps[on], line_load))
         whole = np.zeros(len(bears))
         whole[on] = loads
-        after = (whole > 0) | (~bears & (tip.kernel @ whole + tip.gaps < tip.levers * approach))
+        after = (whole > 0) | (~bears & (tip.kernel @ whole + tip.gaps < tip.lever_ratios * approach))
         if np.array_equal(after, bears):
             return TipPressure(
                 tip.distance[on], tip.width[on], whole[on] / tip.width[on], tip.lean[on], tip.touched[on]

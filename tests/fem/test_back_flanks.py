@@ -142,7 +142,7 @@ def test_large_backlash_costs_nothing_and_changes_nothing(loose):
     flanks = loaded_flanks(given, bodies, None, 0.6, float(force[0]), EdgeTables(given, bodies))
     alone = solve_one_side(given, bodies, force, flanks, EdgeTables(given, bodies))
     cycle = fem.mesh_cycle(close, 600.0, 10, bodies)
-    assert np.array_equal(cycle.forces, (alone.share.forces / alone.kappa).reshape(cycle.forces.shape))
+    assert np.array_equal(cycle.forces, (alone.share.forces / alone.lever_ratios).reshape(cycle.forces.shape))
     assert "back flanks stand clear by at least" in cycle.message
 
 

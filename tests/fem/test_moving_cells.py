@@ -108,11 +108,13 @@ def problem(bodies, beyond=True):
     force, tables = TORQUE / PLASTIC.base_radii[0], EdgeTables(given, bodies)
     flanks = loaded_flanks(given, bodies, None, 0.6, force, tables)
     own = moved_flanks(given, bodies, flanks, force, tables)
-    moves = contact_moves(bodies, flanks.where, corners=True)
-    pairs = moving_pairs(own.matrix, own.laws, None, own.gaps, own.levers, moves, own)
-    rise = np.full((1, 1, 4, flanks.where.touchable.shape[-1], CELLS), 2e-6)
-    cells = moving_cells(given, bodies, flanks, np.ones_like(flanks.kappa), pairs, rise)
-    draw = np.random.default_rng(1).uniform(0.2, 1.0, (1, 1, 4, flanks.where.touchable.shape[-1] * CELLS))
+    moves = contact_moves(bodies, flanks.candidates, corners=True)
+    pairs = moving_pairs(own.matrix, own.laws, None, own.gaps, own.tilted_lever_ratios, moves, own)
+    rise = np.full((1, 1, 4, flanks.candidates.touchable.shape[-1], CELLS), 2e-6)
+    cells = moving_cells(given, bodies, flanks, np.ones_like(flanks.lever_ratios), pairs, rise)
+    draw = np.random.default_rng(1).uniform(
+        0.2, 1.0, (1, 1, 4, flanks.candidates.touchable.shape[-1] * CELLS)
+    )
     loads = np.where(cells.touchable, 0.5 * force / CELLS * draw, 0.0)
     return cells, loads, np.full((1, 1, 4), 100e-6)
 
@@ -139,7 +141,7 @@ def test_forces_and_torque_follow_from_one_energy(bodies):
     )
     np.testing.assert_allclose(one, other, rtol=1e-6)
     for way, arm in zip(along, arms, strict=True):
-        np.testing.assert_allclose(np.sum(way * at.arms, axis=-1), arm, rtol=1e-6)
+        np.testing.assert_allclose(np.sum(way * at.further_lever_ratios, axis=-1), arm, rtol=1e-6)
 
 
 def test_newton_s_matrix_is_the_derivative(bodies):
@@ -158,13 +160,13 @@ def test_compliance_between_cells_is_that_of_the_moved_pairs(bodies):
     given = MeshSetup(PLASTIC, 4, face=face_setting(PLASTIC, None, CELLS, "walls"))
     flanks = loaded_flanks(given, bodies, None, 0.6, 1e3, EdgeTables(given, bodies))
     own = moved_flanks(given, bodies, flanks, 1e3, EdgeTables(given, bodies))
-    ones = np.ones_like(flanks.kappa)
+    ones = np.ones_like(flanks.lever_ratios)
     stays, anew = (
-        cell_coupling(given.face, bodies, flanks.where, levers, matrix)
-        for levers, matrix in ((flanks.kappa, flanks.matrix), (ones, own.matrix))
+        cell_coupling(given.face, bodies, flanks.candidates, levers, matrix)
+        for levers, matrix in ((flanks.lever_ratios, flanks.matrix), (ones, own.matrix))
     )
-    found = other_pairs(stays, flanks.where.touchable, flanks.kappa, flanks.matrix, own.matrix)
-    assert np.any(flanks.kappa[flanks.where.touchable] < 0.99)
+    found = other_pairs(stays, flanks.candidates.touchable, flanks.lever_ratios, flanks.matrix, own.matrix)
+    assert np.any(flanks.lever_ratios[flanks.candidates.touchable] < 0.99)
     for one, other in zip(found.blocks, anew.blocks, strict=True):
         np.testing.assert_allclose(one, other, rtol=0, atol=1e-12 * np.abs(other).max())
 
@@ -172,7 +174,7 @@ def test_compliance_between_cells_is_that_of_the_moved_pairs(bodies):
 def test_smoothing_holds_even_loads_and_takes_short_waves_away(bodies):
     where = loaded_flanks(
         MeshSetup(PLASTIC, 4), bodies, None, 0.6, 1e3, EdgeTables(MeshSetup(PLASTIC, 4), bodies)
-    ).where
+    ).candidates
     face = face_setting(PLASTIC, None, 32, "walls")
     smooth = tooth_smoothing(face, bodies, where)
     np.testing.assert_allclose(smooth.sum(axis=-1), 1.0, rtol=1e-12)
@@ -186,7 +188,7 @@ def test_smoothing_holds_even_loads_and_takes_short_waves_away(bodies):
 
 def test_slices_tilt_by_their_own_load(bodies):
     given = MeshSetup(PLASTIC, 4)
-    where = loaded_flanks(given, bodies, None, 0.6, 1e3, EdgeTables(given, bodies)).where
+    where = loaded_flanks(given, bodies, None, 0.6, 1e3, EdgeTables(given, bodies)).candidates
     smooth = tooth_smoothing(face_setting(PLASTIC, None, CELLS, "slices"), bodies, where)
     np.testing.assert_array_equal(smooth, np.broadcast_to(np.eye(CELLS), smooth.shape))
 

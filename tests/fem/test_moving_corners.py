@@ -191,8 +191,11 @@ def test_edges_touch_where_gears_that_are_turned_by_the_deflection_do(plastic):
     found = solved(pair, bodies, tables, [end + away for end in ends(pair) for away in (-0.03, 0.03)], 20.0)
     rho, D = found.flank_rho(pair, 0)[:, 0], found.share.transmission_error[0, 0]
     known, seen = found.share.forces[0, 0] > 0.0, [0, 0]
-    for i, k in zip(*np.nonzero(found.where.edge & known), strict=True):
-        place, before = float(found.where.place[i, k]), bool(found.where.place[i, k] < pair.points.C)
+    for i, k in zip(*np.nonzero(found.candidates.edge & known), strict=True):
+        place, before = (
+            float(found.candidates.place[i, k]),
+            bool(found.candidates.place[i, k] < pair.points.C),
+        )
         tip = (bodies.wheel if before else bodies.pinion).rho_end
         if before:
             wanted = touched(radii[::-1], line, tip, line - place, line - place - D[i])

@@ -67,7 +67,9 @@ def test_forces_and_torque_follow_from_one_energy(tight, beyond):
     further = np.where(some, rng.normal(size=loads.shape), 0.0) * 100.0
     less, more = (both.linearised(loads + s * step * further, turn) for s in (-1, 1))
     carried = (more.carried - less.carried) / (2 * step)
-    np.testing.assert_allclose(np.sum(at.arms * further, axis=-1), carried, rtol=1e-6, atol=1e-5)
+    np.testing.assert_allclose(
+        np.sum(at.further_lever_ratios * further, axis=-1), carried, rtol=1e-6, atol=1e-5
+    )
     # what ``solved`` inverts is the derivative of the overlap
     risen = (more.residual - less.residual) / (2 * step)
     unit, response = both.solved(replace(at, residual=risen), turn, some)
@@ -120,7 +122,7 @@ def test_pressed_gears_rest_in_the_middle_where_they_are_their_own_mirror(tight)
     """Both sides roll on by as much, and bear alike; the transmission error is half the overlap."""
     mirror = MeshSetup(tight.pair).mirror
     places = np.array([0.5 * mirror, 0.5 * mirror + 0.5]) % 1.0
-    given = MeshSetup(tight.pair, moving_contact=True, both=True, beyond_path=False).at(places)
+    given = MeshSetup(tight.pair, moving_contact=True, two_sided=True, beyond_path=False).at(places)
     found = solve_contact(given, tight, np.zeros(1), None)
     assert found.settled
     np.testing.assert_allclose(found.share.transmission_error[0, 0], 10e-6, rtol=2e-3)

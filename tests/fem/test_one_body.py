@@ -34,7 +34,7 @@ def energy_over_loads(pair: GearPair, reach: float) -> np.ndarray:
     both = both_sides(given, bodies, front, back)
     np.testing.assert_array_equal(both.matrix, np.swapaxes(both.matrix, 1, 2))
     secant = both.laws.approach(np.full(both.gaps.shape, FORCE))[0] / FORCE
-    touches = np.concatenate([front.where.touchable, back.where.touchable], axis=-1)
+    touches = np.concatenate([front.candidates.touchable, back.candidates.touchable], axis=-1)
     whole = both.matrix + np.where(touches, secant, 0.0)[:, None, :] * np.eye(touches.shape[-1])
     smallest = []
     for matrix, some in zip(whole, touches, strict=True):

@@ -324,9 +324,11 @@ def test_edge_and_flank_deflect_as_the_pinion_turns(article_pair, article_bodies
         here = article_pair.points.A + (cycle.position[row] + cycle.pair_offset[on]) * article_pair.base_pitch
         law = edge_laws(article_pair, article_bodies.tips[0], 0, here[edge], LAW)
         kappa = np.ones(len(on))
-        kappa[edge] = lever_ratio(article_pair, law.where, here[edge])
+        kappa[edge] = lever_ratio(article_pair, law.touched_rho, here[edge])
         line, end = article_pair.line_of_action, pinion.rho_end
-        angle = opening(article_pair.base_radii[::-1], line, line - here[edge], law.where[:, None], end)[:, 0]
+        angle = opening(
+            article_pair.base_radii[::-1], line, line - here[edge], law.touched_rho[:, None], end
+        )[:, 0]
         leaning = np.zeros((2, len(on)))
         leaning[0, edge] = angle
         bulk = article_bodies.bulk(first, second, leaning)

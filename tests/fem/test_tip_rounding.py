@@ -67,7 +67,7 @@ def test_a_small_contact_on_the_arc_is_hertz(article_pair, article_bodies):
     star = article_bodies.pinion.law.plane_poisson
     # own compliance of the wheel's tip where the arc is nearest, distance by the flanks' angle
     turn = (profile.flank_rho[1] - (article_pair.line_of_action - place[0])) / article_pair.base_radii[1]
-    flank = (law.where[0] - place[0]) / article_pair.base_radii[0]
+    flank = (law.touched_rho[0] - place[0]) / article_pair.base_radii[0]
     distance = one.start - radius * (flank - turn)
     strips = article_bodies.tips[1]
     from fem.influence.strip_contact import flat_kernel
@@ -76,7 +76,7 @@ def test_a_small_contact_on_the_arc_is_hertz(article_pair, article_bodies):
     leaning = strips.leaning(angle)[0] - strips.hub_windup * strips.lever(angle[0]) ** 2
     regular = leaning - flat_kernel(strips.distance, strips.width, strips.law, m)
     own = np.interp(np.log(distance), np.log(strips.distance), np.diag(regular))
-    R = 1 / (1 / radius + 1 / law.where[0])
+    R = 1 / (1 / radius + 1 / law.touched_rho[0])
     for load in (30e3, 100e3):  # N/m: half-widths of 6 and 10 um
         a = np.sqrt(8 * load * R / (np.pi * modulus))
         hertz = 2 * 2 / (np.pi * modulus) * (np.log(2 * m / a) + 0.5 - 0.5 * (1 + star))

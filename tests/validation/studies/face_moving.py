@@ -50,7 +50,7 @@ def deflection(found: ContactState) -> float:
 def figures(found: ContactState) -> tuple[float, float, float, float]:
     """Deflection from where the gears touch [um], tangent [N/um], face-load factor, greatest force on a cell."""
     assert not found.refusal(0), found.refusal(0)
-    forces = found.face.forces[0, 0, 0] / found.kappa[0][:, None]
+    forces = found.face.forces[0, 0, 0] / found.lever_ratios[0][:, None]
     return (
         1e6 * float(found.share.transmission_error[0, 0, 0]),
         1e-6 * float(found.share.stiffness[0, 0, 0]),

@@ -46,9 +46,9 @@ def ours(bodies, position, torque, moving=False, strained=True):
         found = solve_contact(given, bodies, force, None, EdgeTables(given, bodies))
     finally:
         moving_contact._energies = energies
-    share = found.share.forces[0, 0, 0] / found.kappa[0] / bodies.pair.face_width / 1e3
+    share = found.share.forces[0, 0, 0] / found.lever_ratios[0] / bodies.pair.face_width / 1e3
     approach = found.share.transmission_error[0, 0, 0] + found.touch[0, 0]
-    return float(approach), dict(zip(found.where.offset.tolist(), share.tolist(), strict=True))
+    return float(approach), dict(zip(found.candidates.offset.tolist(), share.tolist(), strict=True))
 
 
 def show(place, name, approach, per_mm, wanted=None):
