@@ -54,19 +54,19 @@ def accessible_saddles(oscillator: GearOscillator, states: Array, longest: int) 
     flow, cover = exact_flow(oscillator), Cover.of(states)
     size = float(np.max(np.ptp(states, axis=0)))
     met: list[Orbit] = []
-    left = stayed = 0
+    escaped = stayed = 0
     for start in states[:: max(1, len(states) // (2 * MOTIONS))]:
         motion = _leaving(flow, start, cover)
         if motion is None:
             stayed += 1
-            if stayed >= STAYING and left == 0:
+            if stayed >= STAYING and escaped == 0:
                 break
             continue
-        left += 1
+        escaped += 1
         _saddles(oscillator, motion, size, longest, met)
-        if left >= MOTIONS:
+        if escaped >= MOTIONS:
             break
-    if left == 0:
+    if escaped == 0:
         allowed = "must be just past the end of the chaotic attractor, whose motions stay"
         raise InputError.at(
             "oscillator", f"{LONGEST * STRETCH} periods", allowed, "take the value from chaos_end"
@@ -75,9 +75,9 @@ def accessible_saddles(oscillator: GearOscillator, states: Array, longest: int) 
     apart_by: Array = np.asarray(tree.query(states[:: len(states) // SAMPLED], k=2)[0]).reshape(-1, 2)
     spacing = float(np.quantile(apart_by[:, 1], 0.9))
     ranked = sorted(
-        ((float(np.min(tree.query(one.points)[0])), one) for one in met), key=lambda pair: pair[0]
+        ((float(np.min(tree.query(saddle.points)[0])), saddle) for saddle in met), key=lambda pair: pair[0]
     )
-    return [one for distance, one in ranked if distance > SPACED * spacing]
+    return [saddle for distance, saddle in ranked if distance > SPACED * spacing]
 
 
 def _leaving(flow: Flow, start: Array, cover: Cover) -> Array | None:
@@ -108,7 +108,8 @@ def _saddles(oscillator: GearOscillator, states: Array, size: float, longest: in
             if not near or not is_direct_saddle(orbit.multipliers):
                 continue
             known = any(
-                one.periods == orbit.periods and apart(orbit.state, one.points) < 1e-7 * size for one in met
+                saddle.periods == orbit.periods and apart(orbit.state, saddle.points) < 1e-7 * size
+                for saddle in met
             )
             if not known:
                 met.append(orbit)

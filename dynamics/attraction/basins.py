@@ -133,31 +133,31 @@ def basins(
     flow = long_flow(oscillator, tolerance)
     starts = _starts(oscillator, np.stack(np.meshgrid(xs, vs, indexing="ij"), axis=-1), plane, through)
     labels = np.full(len(starts), UNDECIDED, dtype=np.int64)
-    found = _Found(oscillator, flow, longest, near, wait)
+    search = _Found(oscillator, flow, longest, near, wait)
     sample = np.unique(np.linspace(0, len(starts) - 1, min(len(starts), SEEDS)).astype(np.int64))
     for i in sample:
-        labels[i] = found.follow(starts[i], wait)
+        labels[i] = search.follow(starts[i], wait)
         if progress is not None:
             progress(int(np.sum(labels != UNDECIDED)), len(labels))
-    for some in np.array_split(np.arange(len(starts)), min(len(starts), 16)):
-        mine, there = labels[some], starts[some]
-        found.settle(there, wait, mine)
-        if any(orbit is not None for orbit in found.orbits):
-            found.settle(there, 2 * wait, mine)  # transient chaos outlives damping
+    for chunk in np.array_split(np.arange(len(starts)), min(len(starts), 16)):
+        mine, there = labels[chunk], starts[chunk]
+        search.settle(there, wait, mine)
+        if any(orbit is not None for orbit in search.orbits):
+            search.settle(there, 2 * wait, mine)  # transient chaos outlives damping
         for i in np.flatnonzero(mine == UNDECIDED):
-            mine[i] = found.follow(there[i], 0)
-        if any(orbit is not None for orbit in found.orbits):
-            found.settle(there, PATIENCE * wait, mine, UNSETTLED)
-        labels[some] = mine
+            mine[i] = search.follow(there[i], 0)
+        if any(orbit is not None for orbit in search.orbits):
+            search.settle(there, PATIENCE * wait, mine, UNSETTLED)
+        labels[chunk] = mine
         if progress is not None:
-            progress(int(some[-1]) + 1, len(labels))
+            progress(int(chunk[-1]) + 1, len(labels))
     last = labels == UNSETTLED  # of the first starts: there were fewer known attractors
-    if np.any(last) and any(orbit is not None for orbit in found.orbits):
+    if np.any(last) and any(orbit is not None for orbit in search.orbits):
         mine, there = labels[last], starts[last]
-        found.settle(there, (PATIENCE + 1) * wait, mine, UNSETTLED)
+        search.settle(there, (PATIENCE + 1) * wait, mine, UNSETTLED)
         labels[last] = mine
     labels[labels == UNSETTLED] = UNDECIDED
-    attractors = found.attractors(labels)
+    attractors = search.attractors(labels)
     lost = float(np.mean(labels == UNDECIDED))
     error = lost + max((a.share_error for a in attractors), default=0.0)
     message = f"{len(attractors)} attractors"
@@ -165,7 +165,7 @@ def basins(
         message += f"; {np.mean(labels == UNBOUNDED):.3g} of the starts grow without bound"
     if lost:
         message += f"; {lost:.3g} of the starts unsettled: raise limit"
-    cost = Cost(watch.seconds, 2, found.iterations, found.periods)
+    cost = Cost(watch.seconds, 2, search.iterations, search.periods)
     return BasinResult(
         xs, vs, labels.reshape(len(xs), len(vs)), attractors, error, cost, lost == 0.0, message
     )
@@ -280,12 +280,12 @@ class _Found:
     def settle(self, starts: Array, limit: int, labels: Integers, which: int = UNDECIDED) -> None:
         """Follow all starts with the label `which` until they arrive at a known periodic attractor."""
         if which != UNDECIDED:
-            some = labels == which
-            if np.any(some):
-                mine, there = np.full(int(np.sum(some)), UNDECIDED, dtype=np.int64), starts[some]
+            rows = labels == which
+            if np.any(rows):
+                mine, there = np.full(int(np.sum(rows)), UNDECIDED, dtype=np.int64), starts[rows]
                 self.settle(there, limit, mine)
                 mine[mine == UNDECIDED] = which
-                labels[some], starts[some] = mine, there
+                labels[rows], starts[rows] = mine, there
             return
         known = [None if orbit is None else p for orbit, p in zip(self.orbits, self.points, strict=True)]
         homes = KnownAttractors(self.flow, known, self.near)

@@ -133,8 +133,8 @@ def basin_boundary(
     --------
     >>> from dynamics import FourierStiffness, GearOscillator, basin_boundary, basins
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
-    >>> found = basins(osc, (-1.0, 1.0, 8), (-1.0, 1.0, 8), limit=500)
-    >>> edge = basin_boundary(osc, found.attractors, ((-1.0, 1.0), (-1.0, 1.0)), cells=4, levels=2)
+    >>> reached = basins(osc, (-1.0, 1.0, 8), (-1.0, 1.0, 8), limit=500)
+    >>> edge = basin_boundary(osc, reached.attractors, ((-1.0, 1.0), (-1.0, 1.0)), cells=4, levels=2)
     >>> edge.counts
     array([16, 45, 97])
     """

@@ -141,8 +141,8 @@ def boundary_crisis(
     ends = {side: (search.overshoot(low, side), search.overshoot(high, side)) for side in (1, -1)}
     sides = [side for side, (a, b) in ends.items() if a * b < 0.0]
     if len(sides) != 1:
-        found = ", ".join(f"{a:.3g} and {b:.3g}" for a, b in ends.values())
-        message = f"no crisis of this saddle: overshoots at the bounds {found}"
+        overshoots = ", ".join(f"{a:.3g} and {b:.3g}" for a, b in ends.values())
+        message = f"no crisis of this saddle: overshoots at the bounds {overshoots}"
         cost = Cost(watch.seconds, 2, 0, search.periods)
         return Crisis(saddle, cost, message)
     return _closed_in(search, (low, high), ends[sides[0]], sides[0], watch)
@@ -196,14 +196,14 @@ def boundary_crises(
     """
     with Faults() as faults:
         number = faults.whole("values", values, 2, 10**6, "200 is usual")
-        some = faults.whole("points", points, 10, 10**6, "300 is usual")
+        stretch_points = faults.whole("points", points, 10, 10**6, "300 is usual")
         longest = faults.whole("periods", periods, 1, 10**6, "90 is usual")
         most = faults.whole("max_period", max_period, 1, 1000, "4 is usual")
     spacing = (diagram.bounds[1] - diagram.bounds[0]) / number
     runs = [(branch, run) for branch in diagram.branches if branch.periods <= most for run in _runs(branch)]
-    found = []
+    crises = []
     for done, (branch, run) in enumerate(runs, start=1):
-        search = HomoclinicSearch(diagram.oscillator, branch, run, some, longest)
+        search = HomoclinicSearch(diagram.oscillator, branch, run, stretch_points, longest)
         low, high = float(search.values[0]), float(search.values[-1])
         looked = max(LEAST, math.ceil((high - low) / spacing) + 1)
         at = np.linspace(low, high, looked)[1:-1]  # at its ends a saddle is none
@@ -212,10 +212,10 @@ def boundary_crises(
             for k in np.flatnonzero([a * b < 0.0 for a, b in pairwise(seen)]):
                 crisis = _again(search, (float(at[k]), float(at[k + 1])), side)
                 if crisis is not None and crisis.converged:
-                    found.append(crisis)
+                    crises.append(crisis)
         if progress is not None:
             progress(done, len(runs))
-    return sorted(found, key=lambda c: c.parameter)
+    return sorted(crises, key=lambda c: c.parameter)
 
 
 def _again(search: HomoclinicSearch, bounds: tuple[float, float], side: int) -> Crisis | None:
@@ -251,7 +251,11 @@ def _closed_in(
 
 
 def _confirmed(
-    search: HomoclinicSearch, bounds: tuple[float, float], found: tuple[float, float], side: int, closed: int
+    search: HomoclinicSearch,
+    bounds: tuple[float, float],
+    bracket: tuple[float, float],
+    side: int,
+    closed: int,
 ) -> tuple[float, float, int]:
     """Bracket with room for rounding, at whose ends twice the points, between the others, give the same signs.
 
@@ -259,7 +263,7 @@ def _confirmed(
     is that of further values looked at.
     """
     fine = replace(search, points=2 * search.points, phase=OTHER_PHASE, periods=0)
-    a, b = found
+    a, b = bracket
     low, high = max(bounds[0], a - (b - a)), min(bounds[1], b + (b - a))
     sign = -1.0 if closed == 0 else 1.0
     trials = 2

@@ -65,8 +65,8 @@ class Diagram(AsArray):
         stable : bool, optional
             Only stable or only unstable ones.
         """
-        found = [s for b in self.branches for s in stretches(b) if stable is None or s.stable is stable]
-        return sorted(found, key=lambda s: (s.low, s.high))
+        selected = [s for b in self.branches for s in stretches(b) if stable is None or s.stable is stable]
+        return sorted(selected, key=lambda s: (s.low, s.high))
 
     def table(self) -> list[tuple[int, str, float, str, float, float]]:
         """Rows branch, kind, parameter, label, X, V of every special point, branch by branch."""
@@ -167,10 +167,10 @@ def diagram(
     --------
     >>> from dynamics import FourierStiffness, GearOscillator, diagram
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
-    >>> found = diagram(osc, "frequency", (0.6, 0.68), periods=(1,), searches=1, swept=0)
-    >>> found.message
+    >>> folds = diagram(osc, "frequency", (0.6, 0.68), periods=(1,), searches=1, swept=0)
+    >>> folds.message
     '2 branches; 1 saddle-node, 0 period-doublings, 1 grazing'
-    >>> [round(point.parameter, 6) for point in found.special("saddle-node")]
+    >>> [round(point.parameter, 6) for point in folds.special("saddle-node")]
     [0.655576]
     """
     watch = Stopwatch()
@@ -205,11 +205,11 @@ def _follow_searched(
     """Follow what searches find; values at which something may be missing."""
     unsure = []
     for value in at:
-        found = find_orbits(oscillator.with_parameter(builder.parameter, value), periods, batches=0)
-        builder.periods += found.cost.periods
-        if not found.converged and any(c.expected is not None for c in found.counts):
+        orbit_set = find_orbits(oscillator.with_parameter(builder.parameter, value), periods, batches=0)
+        builder.periods += orbit_set.cost.periods
+        if not orbit_set.converged and any(c.expected is not None for c in orbit_set.counts):
             unsure.append(value)
-        for orbit in found.orbits:
+        for orbit in orbit_set.orbits:
             if not builder.holds(orbit):
                 builder.follow(orbit, Origin(None, value))
     return unsure

@@ -75,8 +75,8 @@ def edge_saddles(
     --------
     >>> from dynamics import FourierStiffness, GearOscillator, basins, edge_saddles
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
-    >>> found = basins(osc, (-1.0, 1.0, 8), (-1.0, 1.0, 8), limit=500)
-    >>> [saddle.label for saddle in edge_saddles(osc, found.attractors[0], rays=2)]
+    >>> reached = basins(osc, (-1.0, 1.0, 8), (-1.0, 1.0, 8), limit=500)
+    >>> [saddle.label for saddle in edge_saddles(osc, reached.attractors[0], rays=2)]
     ['U1-1-0']
     """
     with Faults() as faults:

@@ -179,8 +179,8 @@ def chaos_end(
             stays = middle
         if _needed(looked, stays, gone) > budget:
             break
-    looked.sort(key=lambda one: one[0], reverse=bounds[1] < bounds[0])
-    values, escapes, followed = (np.array(one, dtype=np.float64) for one in zip(*looked, strict=True))
+    looked.sort(key=lambda row: row[0], reverse=bounds[1] < bounds[0])
+    values, escapes, followed = (np.array(column, dtype=np.float64) for column in zip(*looked, strict=True))
     needed = _needed(looked, stays, gone) if good else math.nan
     used = int(followed.sum()) + COVERED + wait
     said = (

@@ -40,6 +40,6 @@ class KnownAttractors:
 
         The starts are replaced by their last states. Those with a label other than -1 already are left alone.
         """
-        found = np.full(len(starts), -1, dtype=np.int64) if labels is None else labels
-        self.periods += self.flow.settle(starts, self.rows, self.radius, limit, found)
-        return found
+        indices = np.full(len(starts), -1, dtype=np.int64) if labels is None else labels
+        self.periods += self.flow.settle(starts, self.rows, self.radius, limit, indices)
+        return indices

@@ -213,9 +213,12 @@ class _Grower:
             wide = (step > self.gap) & (inside[:-1] | inside[1:]) & (np.diff(share) > SPLIT)
             if not np.any(wide) or len(at) > self.most:
                 return share, at
-            where = np.flatnonzero(wide)
-            middle = 0.5 * (share[where] + share[where + 1])
-            share, at = np.insert(share, where + 1, middle), np.insert(at, where + 1, images(middle), axis=0)
+            positions = np.flatnonzero(wide)
+            middle = 0.5 * (share[positions] + share[positions + 1])
+            share, at = (
+                np.insert(share, positions + 1, middle),
+                np.insert(at, positions + 1, images(middle), axis=0),
+            )
 
     def _carry(self, at: Array, rounds: int) -> Array:
         self.periods += len(at) * rounds * self.round

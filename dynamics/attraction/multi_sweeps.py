@@ -118,8 +118,8 @@ def multi_sweep(
     --------
     >>> from dynamics import FourierStiffness, GearOscillator, multi_sweep
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
-    >>> found = multi_sweep(osc, "frequency", [0.58, 0.6, 0.62], seeds=1, starts=3)
-    >>> [motion.label for motion in found.at(0.6)]
+    >>> sweeps = multi_sweep(osc, "frequency", [0.58, 0.6, 0.62], seeds=1, starts=3)
+    >>> [motion.label for motion in sweeps.at(0.6)]
     ['1-0-0', '1-1-1']
     """
     watch = Stopwatch()
@@ -134,9 +134,9 @@ def multi_sweep(
         i = int((done + 0.5) / number * len(grid))
         here = met.at(i)
         (x0, x1), (v0, v1) = reach(here)
-        found = basins(here, (x0, x1, side), (v0, v1, side), limit=limit, max_period=max_period)
-        met.periods += found.cost.periods
-        for attractor in found.attractors:
+        reached = basins(here, (x0, x1, side), (v0, v1, side), limit=limit, max_period=max_period)
+        met.periods += reached.cost.periods
+        for attractor in reached.attractors:
             if attractor.share > 0.0 and not met.knows(i, attractor.label, attractor.states):
                 for direction in ("up", "down"):
                     met.follow(direction, i, attractor.states[-1], whole=False)
@@ -164,16 +164,16 @@ class _Met:
         path = np.arange(i, len(self.grid)) if direction == "up" else np.arange(i, -1, -1)
         self.sweeps += 1
         for part in np.split(path, range(CHUNK, len(path), CHUNK)):
-            found = sweep(
+            swept = sweep(
                 self.oscillator, self.parameter, self.grid[part], direction, initial=state, max_period=self.longest,
                 keep=max(64, 2 * self.longest),
             )  # fmt: skip
-            self.periods += found.cost.periods
-            self.error, self.bounded = max(self.error, found.error), self.bounded and found.converged
-            new = [self._note(int(k), found, j, direction) for j, k in enumerate(part)]
+            self.periods += swept.cost.periods
+            self.error, self.bounded = max(self.error, swept.error), self.bounded and swept.converged
+            new = [self._note(int(k), swept, j, direction) for j, k in enumerate(part)]
             if not (whole or any(new)):
                 return
-            state = found.states[-1, -1]
+            state = swept.states[-1, -1]
             if not _bounded(state, self.size):
                 if not whole:
                     return
@@ -183,16 +183,16 @@ class _Met:
         """Whether a motion has been met at a value."""
         return any(_same(m, label, states) for m in self.motions[i])
 
-    def _note(self, i: int, found: SweepResult, j: int, direction: str) -> bool:
+    def _note(self, i: int, swept: SweepResult, j: int, direction: str) -> bool:
         """Note a motion; whether it is new."""
-        here, label, n = self.motions[i], found.labels[j], int(found.periods[j])
-        if not _bounded(found.states[j], self.size):
+        here, label, n = self.motions[i], swept.labels[j], int(swept.periods[j])
+        if not _bounded(swept.states[j], self.size):
             label, n, self.bounded = DIVERGED, 0, False
         for k, motion in enumerate(here):
-            if _same(motion, label, found.states[j]):
+            if _same(motion, label, swept.states[j]):
                 here[k] = replace(motion, directions=motion.directions | {direction})
                 return False
-        here.append(Motion(float(self.grid[i]), label, n, found.states[j], frozenset({direction})))
+        here.append(Motion(float(self.grid[i]), label, n, swept.states[j], frozenset({direction})))
         return True
 
     def result(self, watch: Stopwatch) -> MultiSweep:
@@ -229,5 +229,5 @@ def _overlap(a: Array, b: Array) -> float:
     """Part that the boxes around two sets of states share, of that which they cover together."""
     low, high = np.maximum(a.min(axis=0), b.min(axis=0)), np.minimum(a.max(axis=0), b.max(axis=0))
     shared = float(np.prod(np.maximum(high - low, 0.0)))
-    both = sum(float(np.prod(np.ptp(s, axis=0))) for s in (a, b)) - shared
-    return shared / both if both > 0.0 else 1.0
+    union = sum(float(np.prod(np.ptp(s, axis=0))) for s in (a, b)) - shared
+    return shared / union if union > 0.0 else 1.0

@@ -12,12 +12,12 @@ from dynamics.branches.branch import Branch
 from dynamics.flow.flows import flow_of
 
 
-def returns(found: Diagram) -> Array:
+def returns(diagram: Diagram) -> Array:
     """Follow the orbits of a diagram from tau = 0 through their periods.
 
     Parameters
     ----------
-    found : Diagram
+    diagram : Diagram
 
     Returns
     -------
@@ -34,8 +34,8 @@ def returns(found: Diagram) -> Array:
     """
     pieces = [
         np.column_stack([np.full(len(rows), number), rows])
-        for number, branch in enumerate(found.branches)
-        if len(rows := branch_returns(branch, found.oscillator))
+        for number, branch in enumerate(diagram.branches)
+        if len(rows := branch_returns(branch, diagram.oscillator))
     ]
     return np.concatenate(pieces) if pieces else np.empty((0, 6))
 

@@ -96,10 +96,10 @@ class _Walker(Tracer):
         self.missed: list[float] = []
         self.iterations = 0
 
-    def stride(self, left: int) -> bool:
+    def stride(self, remaining: int) -> bool:
         """Take steps that need no look many at a time, where the flow has a loop for that."""
         heading = Heading(self.tangent, self.bend, self.half, self.step)
-        taken = self.problem.march(self.points[-1], heading, self.steps, self.phases, self.sizes, left)
+        taken = self.problem.march(self.points[-1], heading, self.steps, self.phases, self.sizes, remaining)
         if taken is None:
             return False
         self.tangent, self.bend, self.half, self.step = taken.heading
@@ -233,29 +233,31 @@ class _Walker(Tracer):
                 self._end_at(rejoining_point(self.problem, last))
             return None
         chord = new.u - last.u
-        found = [p for p, _ in looked if p is not None]
+        special_points = [p for p, _ in looked if p is not None]
         self.refused = "special points lie close together"
-        if patient and _astride(last, new, found):
+        if patient and _astride(last, new, special_points):
             return None
-        found.sort(key=lambda p: float((self.problem.unknowns(p.state, p.parameter) - last.u) @ chord))
-        return _Step(new, tangent, half, found, explained and arrived)
+        special_points.sort(
+            key=lambda p: float((self.problem.unknowns(p.state, p.parameter) - last.u) @ chord)
+        )
+        return _Step(new, tangent, half, special_points, explained and arrived)
 
-    def accept(self, last: MapPoint, found: _Step) -> None:
+    def accept(self, last: MapPoint, reached: _Step) -> None:
         """Take a point and what lies before it, choose the next step."""
-        new = found.point
+        new = reached.point
         length = math.dist(new.u, last.u)
-        if not found.complete:
+        if not reached.complete:
             self.missed.append(new.value)
-        self.special += found.special
+        self.special += reached.special
         self.points.append(new)
         self.states.append(new.u[: new.size] * self.problem.scale)
         self.iterations += new.iterations
         self.behind = _tests(last)
         # half the curvature, for the predictor: none from so short a step that the difference is rounding
         self.bend = (
-            0.5 / length * (found.tangent - self.tangent) if length > STRAIGHT else 0.0 * found.tangent
+            0.5 / length * (reached.tangent - self.tangent) if length > STRAIGHT else 0.0 * reached.tangent
         )
-        self.tangent, self.half = found.tangent, found.half
+        self.tangent, self.half = reached.tangent, reached.half
         if new.iterations <= EASY:
             self.step = min(LONGER * self.step, self.steps.most)
         if self.progress is not None:
@@ -267,10 +269,10 @@ def _tests(point: MapPoint) -> tuple[float, float]:
     return point.fold, point.flip
 
 
-def _astride(last: MapPoint, new: MapPoint, found: list[SpecialPoint]) -> bool:
+def _astride(last: MapPoint, new: MapPoint, special_points: list[SpecialPoint]) -> bool:
     """Whether special points of one kind lie on either side of a grazing between neighbours, which show none."""
     sides = [_tests(last), _tests(new)]
-    for point in found:
+    for point in special_points:
         if point.kind == "grazing":
             signs = (float(np.prod(1.0 + sign * point.multipliers).real) for sign in (-1.0, 1.0))
             if any(a * b > 0.0 > a * c for a, b, c in zip(*sides, signs, strict=True)):
@@ -278,8 +280,8 @@ def _astride(last: MapPoint, new: MapPoint, found: list[SpecialPoint]) -> bool:
     return False
 
 
-def _off(one: Array, other: Array) -> float:
-    return float(np.max(np.abs(one - other)))
+def _off(here: Array, there: Array) -> float:
+    return float(np.max(np.abs(here - there)))
 
 
 def _joined(walkers: list[_Walker], watch: Stopwatch) -> Branch:

@@ -186,7 +186,7 @@ def stretches(branch: Branch) -> tuple[Stretch, ...]:
     >>> [stretch.label for stretch in stretches(branch)]
     ['1-0-0', '1-1-0', 'U1-1-0']
     """
-    found, first = [], 0
+    pieces, first = [], 0
     for label, run in groupby(branch.labels):
         count = len(list(run))
         last = first + count - 1
@@ -196,14 +196,14 @@ def stretches(branch: Branch) -> tuple[Stretch, ...]:
         marks = [p.parameter for p in (begins, ends) if p is not None]
         low, high = min([*values.tolist(), *marks]), max([*values.tolist(), *marks])
         middle = first + int(np.argmin(np.abs(values - 0.5 * (low + high))))
-        found.append(
+        pieces.append(
             Stretch(
                 label, bool(branch.stable[middle]), branch.periods, low, high, begins, ends,
                 float(branch.values[middle]), branch.states[middle].copy(),
             )
         )  # fmt: skip
         first += count
-    return tuple(found)
+    return tuple(pieces)
 
 
 def _between(branch: Branch, i: int) -> SpecialPoint | None:

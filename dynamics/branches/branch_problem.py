@@ -326,10 +326,10 @@ class Steps:
 
 
 def checked_range(
-    faults: Faults, where: str, bounds: tuple[float, float], start: str, parameter: str, value: float
+    faults: Faults, path: str, bounds: tuple[float, float], start: str, parameter: str, value: float
 ) -> tuple[float, float]:
     """Bounds as numbers; notes if they are none, out of order, or do not hold the value of the start."""
-    low, high = ordered(faults, where, bounds)
+    low, high = ordered(faults, path, bounds)
     if not low <= value <= high:
         faults.add(start, value, f"must have its {parameter} within bounds", "widen the bounds")
     return low, high

@@ -146,7 +146,7 @@ class _Course:
         self.rates = problem.rates(last.extrema_slope, heading.tangent)
         self.counts, self.extrema = list(last.counts), last.extrema.tolist()
         self.passed: list[tuple[float, float, float, float, float, int, int, int]] = []
-        self.found: Any = None
+        self.trial: Any = None
 
     def size(self) -> float:
         """Size of the motion through the last point, over the scale, as of `BranchProblem.size_of`."""
@@ -226,7 +226,7 @@ class _Course:
         for place in self.places:
             if (place[0] - x) ** 2 + (place[1] - v) ** 2 + (place[2] - p) ** 2 <= FAR * square:
                 return LEAVE
-        self.found = u, tangent, trace, trends, determinant, play, counts, extrema, rates, half, length
+        self.trial = u, tangent, trace, trends, determinant, play, counts, extrema, rates, half, length
         return TAKE
 
     def _grazes(self, extrema: Rows, rates: list[float], play: float, ahead: float, length: float) -> bool:
@@ -256,7 +256,7 @@ class _Course:
 
     def accept(self, most: float) -> None:
         """Take the step that was tried, choose the next."""
-        u, tangent, trace, trends, determinant, play, counts, extrema, rates, half, length = self.found
+        u, tangent, trace, trends, determinant, play, counts, extrema, rates, half, length = self.trial
         bent = 0.5 / length if length > STRAIGHT else 0.0
         self.bend = [bent * (n - t) for n, t in zip(tangent, self.tangent, strict=True)]
         self.u, self.tangent, self.half = u, tangent, half

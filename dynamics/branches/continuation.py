@@ -128,8 +128,8 @@ def orbits_over(
     if isinstance(oscillator, DriveOscillator):
         return DriveProblem(oscillator, (parameter,), periods, low, high, scale)
     if isinstance(oscillator, SmoothOscillator):
-        given = TOLERANCE if tolerance is None else tolerance
-        return FlowProblem(oscillator, (parameter,), periods, low, high, scale, given)
+        step_tolerance = TOLERANCE if tolerance is None else tolerance
+        return FlowProblem(oscillator, (parameter,), periods, low, high, scale, step_tolerance)
     raise unserved(oscillator)
 
 
@@ -184,13 +184,13 @@ def doubled_orbit(
     along /= np.linalg.norm(along)
     origin = problem.unknowns(point.state, point.parameter)
     for amplitude in AMPLITUDES:
-        found = problem.correct(origin + amplitude * along, along)
-        if found is None or not 0.0 <= found.u[-1] <= 1.0 or abs(found.u[-1] - origin[-1]) > 0.1:
+        doubled = problem.correct(origin + amplitude * along, along)
+        if doubled is None or not 0.0 <= doubled.u[-1] <= 1.0 or abs(doubled.u[-1] - origin[-1]) > 0.1:
             continue
-        if float(np.max(np.abs(problem.half_way(found) - found.u[:-1]))) < 0.5 * amplitude:
+        if float(np.max(np.abs(problem.half_way(doubled) - doubled.u[:-1]))) < 0.5 * amplitude:
             continue  # the orbit of half the period
-        there = oscillator.with_parameter(parameter, found.value)
-        orbit = find_orbit(there, found.u[:-1] * scale, periods=2 * n, tolerance=tolerance)
+        there = oscillator.with_parameter(parameter, doubled.value)
+        orbit = find_orbit(there, doubled.u[:-1] * scale, periods=2 * n, tolerance=tolerance)
         if orbit.converged and orbit.periods == 2 * n:
             return orbit
     return None

@@ -122,8 +122,8 @@ class OrbitProblem(BranchProblem):
 
     def rates(self, slopes: Array, tangent: Array) -> list[float]:
         """Slopes of extrema along the branch of one parameter, over the scale."""
-        found: list[float] = (slopes @ tangent).tolist()
-        return found
+        slopes_along: list[float] = (slopes @ tangent).tolist()
+        return slopes_along
 
     @cached_property
     def widening(self) -> float:

@@ -24,14 +24,14 @@ Crossing = tuple[Condition, Condition]  # as it is at the one and at the other o
 
 def find_crossings(a: MapPoint, b: MapPoint) -> tuple[list[Crossing], bool]:
     """Changes of sign between two neighbours, and whether the grazings explain the change of the counts."""
-    found: list[Crossing] = [
+    crossings: list[Crossing] = [
         (Condition(kind),) * 2
         for kind, product in PRODUCTS.items()
         if getattr(a, product) * getattr(b, product) < 0.0
     ]
     levels_a, levels_b = a.levels.tolist(), b.levels.tolist()
     if len(levels_a) == 2 and min(levels_a[0], levels_b[0]) == 0.0:
-        return found, True
+        return crossings, True
     change = [0, 0]
     rows_a, rows_b = a.extrema.tolist(), b.extrema.tolist()
     for i, j in match_extrema(a, b):
@@ -41,9 +41,9 @@ def find_crossings(a: MapPoint, b: MapPoint) -> tuple[list[Crossing], bool]:
             before, after = x_a - level_a, x_b - level_b
             if before * after < 0.0 or (after == 0.0 and before != 0.0):
                 touch = Condition("grazing", (1, -1)[surface], kindred, phase_a)
-                found.append((touch, replace(touch, phase=phase_b)))
+                crossings.append((touch, replace(touch, phase=phase_b)))
                 change[surface] += kindred if before > 0.0 else -kindred
-    return found, change == [b.counts[0] - a.counts[0], b.counts[1] - a.counts[1]]
+    return crossings, change == [b.counts[0] - a.counts[0], b.counts[1] - a.counts[1]]
 
 
 def between(crossing: Crossing, fraction: float) -> Condition:
@@ -63,8 +63,8 @@ def bracketed_orbit(
     def measure(point: MapPoint, fraction: float) -> float:
         return between(crossing, fraction).measure(problem, point)
 
-    found = along_chord(problem.correct, measure, ends[0], ends[1], xtol)
-    return None if found is None else (found[0], between(crossing, found[1]))
+    root = along_chord(problem.correct, measure, ends[0], ends[1], xtol)
+    return None if root is None else (root[0], between(crossing, root[1]))
 
 
 def special_point(
@@ -96,10 +96,10 @@ class ExactBranch(OrbitProblem):
         fraction = at_a / (at_a - at_b) if at_a != at_b else 0.5
         point = special_orbit(self, between(crossing, fraction), last.u + fraction * chord)
         if point is None or not -0.02 <= float((point.u - last.u) @ chord / (chord @ chord)) <= 1.02:
-            found = bracketed_orbit(self, (last, new), crossing, 1e-15)
-            if found is None:
+            located = bracketed_orbit(self, (last, new), crossing, 1e-15)
+            if located is None:
                 return None, False
-            point = found[0]
+            point = located[0]
         condition = between(crossing, 0.5)
         error = self._error(point, condition)
         special = special_point(self, point, condition, (last, new), error)

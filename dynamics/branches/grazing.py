@@ -151,8 +151,8 @@ def contact_grazing(
     --------
     >>> from dynamics import FourierStiffness, GearOscillator, contact_grazing
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
-    >>> found = contact_grazing(osc, "frequency", (0.6, 0.7), points=20)
-    >>> round(found.points[0].parameter, 6)
+    >>> grazing = contact_grazing(osc, "frequency", (0.6, 0.7), points=20)
+    >>> round(grazing.points[0].parameter, 6)
     0.633534
     """
     from scipy.optimize import brentq
@@ -175,7 +175,7 @@ def contact_grazing(
     grid = np.linspace(low, high, n)
     gap = np.array([clearance(float(value)) for value in grid])
     scale = max(float(np.max(np.abs(gap[np.isfinite(gap)]), initial=0.0)), 1e-300)
-    found: list[SpecialPoint] = []
+    grazings: list[SpecialPoint] = []
     poles = 0
     for i in range(n - 1):
         if not gap[i] * gap[i + 1] < 0.0:  # also past a resonance, where there is no clearance
@@ -188,15 +188,15 @@ def contact_grazing(
             continue
         slope = (gap[i + 1] - gap[i]) / (grid[i + 1] - grid[i])
         error = max(abs(clearance(root, 2) / slope / root) if root else 0.0, EPS)
-        found.append(
+        grazings.append(
             SpecialPoint(
                 "grazing", root, orbit.state, orbit.multipliers, "1-0-0", error, 1, side, orbit.tau,
                 orbit.acceleration, float(here.stiffness(here.frequency * orbit.tau)),
             )
         )  # fmt: skip
-    if not found and scale <= 64.0 * EPS:
+    if not grazings and scale <= 64.0 * EPS:
         warnings.warn("the contact orbit lies on the limit throughout: no load", RangeWarning, stacklevel=2)
-    message = f"{len(found)} grazings" + (f"; {poles} resonances in the range" if poles else "")
+    message = f"{len(grazings)} grazings" + (f"; {poles} resonances in the range" if poles else "")
     cost = Cost(watch.seconds, 2, evaluations, 3 * evaluations)
-    error = max((p.error for p in found), default=math.nan)
-    return ContactGrazing(tuple(found), grid, gap, error, cost, True, message)
+    error = max((p.error for p in grazings), default=math.nan)
+    return ContactGrazing(tuple(grazings), grid, gap, error, cost, True, message)

@@ -41,27 +41,27 @@ class Tracer(ABC):
     def run(self) -> None:
         """Step until the curve ends."""
         while not self.ended:
-            left = self.steps.points + 1 - len(self.points)
-            if left < 1:
+            remaining = self.steps.points + 1 - len(self.points)
+            if remaining < 1:
                 self.ended = f"{self.steps.points} points: raise max_points"
                 return
-            if self.stride(left):
+            if self.stride(remaining):
                 continue
-            found = self.attempt(self.points[-1])
-            if found is None:
+            reached = self.attempt(self.points[-1])
+            if reached is None:
                 self.step *= 0.5
                 if self.step < self.steps.least and not self.ended:
                     self.ended = self.why(self.points[-1])
                 continue
             last = self.points[-1]
-            self.accept(last, found)
+            self.accept(last, reached)
             new = self.points[-1]
             if len(self.points) > 3 and passes(last.u, new.u, self.phases):  # however small the loop
                 self.ended = "closed"
             elif not {0.0, 1.0}.isdisjoint(new.u[new.size :].tolist()):
                 self.ended = "bound"
 
-    def stride(self, left: int) -> bool:
+    def stride(self, remaining: int) -> bool:
         """Take steps between which nothing happens, so many at most; False if the next is to be an attempt."""
         return False
 
@@ -70,7 +70,7 @@ class Tracer(ABC):
         """A step that may be taken; None if it is too long, or if `ended` has been set."""
 
     @abstractmethod
-    def accept(self, last: Any, found: Any) -> None:
+    def accept(self, last: Any, reached: Any) -> None:
         """Take a step: add its point, choose the next tangent and step."""
 
     @abstractmethod

@@ -97,19 +97,19 @@ class LocusTracer(Tracer):
         self.tangent = self._tangent(again, along)
         return again
 
-    def accept(self, last: Point, found: Point) -> None:
+    def accept(self, last: Point, reached: Point) -> None:
         """Take a point, mark what changes sign before it, choose the next step."""
-        for kind, before, after in self._tests(last, found):
+        for kind, before, after in self._tests(last, reached):
             if before * after < 0.0:
-                self._mark(kind, last, found, before, after)
-        self.null = _cusp(found, self.null)[1]
-        self.points.append(found)
-        self.tangent = self._tangent(found, found.u - last.u)
+                self._mark(kind, last, reached, before, after)
+        self.null = _cusp(reached, self.null)[1]
+        self.points.append(reached)
+        self.tangent = self._tangent(reached, reached.u - last.u)
         if self.condition.kind == "grazing":
-            self.condition = replace(self.condition, phase=self._phase(found))
+            self.condition = replace(self.condition, phase=self._phase(reached))
         self.step = min(1.3 * self.step, self.steps.most)
         if self.progress is not None:
-            self.progress(len(self.points), found.values)
+            self.progress(len(self.points), reached.values)
 
     def why(self, last: Point) -> str:
         """What lies beyond."""
@@ -152,23 +152,23 @@ class LocusTracer(Tracer):
         chord = b.u - a.u
         row = chord / np.linalg.norm(chord)
         seen: list[Point] = []
-        left: list[float] = []
+        residuals: list[float] = []
 
         def measure(share: float) -> float:
             if share in (0.0, 1.0):
                 return before if share == 0.0 else after
-            found = special_orbit(self.problem, self.condition, a.u + share * chord, row)
-            value = math.nan if found is None else self._again(kind, a, found, before)
-            if found is not None and math.isfinite(value):
-                seen.append(found)
-                left.append(value)
+            point = special_orbit(self.problem, self.condition, a.u + share * chord, row)
+            value = math.nan if point is None else self._again(kind, a, point, before)
+            if point is not None and math.isfinite(value):
+                seen.append(point)
+                residuals.append(value)
             return value
 
         root = bracketed(measure, 0.0, 1.0, xtol=1e-15)
         if root is not None:  # if not, the last point says how far it is
             measure(root)
         if seen:
-            last, rest = seen[-1].values, abs(left[-1] / (after - before))
+            last, rest = seen[-1].values, abs(residuals[-1] / (after - before))
             error = float(np.max(rest * np.abs(b.values - a.values) / np.maximum(np.abs(last), 1e-300)))
             self.double.append(DoublePoint(kind, last.copy(), seen[-1].state.copy(), max(error, EPS)))
 

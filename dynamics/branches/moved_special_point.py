@@ -68,13 +68,13 @@ def carried_point(
     done, step = 0.0, FIRST
     while done < 1.0:
         end = min(done + step, 1.0)
-        found = _stepped(mark, way, done, end)
-        if found is None:
+        next_mark = _stepped(mark, way, done, end)
+        if next_mark is None:
             step = 0.5 * (end - done)
             if step < LEAST:
                 return None
             continue
-        mark, done, step = found, end, 2.0 * step
+        mark, done, step = next_mark, end, 2.0 * step
     return _special(mark, point)
 
 
@@ -85,25 +85,25 @@ class _Way:
         order = max(here.order, there.order)
         self.mean = np.array([here.mean, there.mean])
         self.harmonics = np.zeros((2, order), dtype=complex)
-        for row, one in zip(self.harmonics, (here, there), strict=True):
-            row[: one.order] = np.array(one.amplitudes) * np.exp(1j * np.array(one.phases))
+        for row, stiffness in zip(self.harmonics, (here, there), strict=True):
+            row[: stiffness.order] = np.array(stiffness.amplitudes) * np.exp(1j * np.array(stiffness.phases))
 
     def at(self, s: float) -> FourierStiffness:
         """Stiffness a part s of the way on; harmonics of no size yet in the phase that they will have."""
-        found = (1.0 - s) * self.harmonics[0] + s * self.harmonics[1]
-        ahead = np.where(found == 0.0, self.harmonics[1] - self.harmonics[0], found)
+        harmonics = (1.0 - s) * self.harmonics[0] + s * self.harmonics[1]
+        ahead = np.where(harmonics == 0.0, self.harmonics[1] - self.harmonics[0], harmonics)
         mean = float((1.0 - s) * self.mean[0] + s * self.mean[1])
-        return FourierStiffness(mean, tuple(np.abs(found).tolist()), tuple(np.angle(ahead).tolist()))
+        return FourierStiffness(mean, tuple(np.abs(harmonics).tolist()), tuple(np.angle(ahead).tolist()))
 
     def slopes(self, s: float) -> dict[str, float]:
         """Derivatives of mean, amplitudes and phases by s, by the names of the parameters."""
         now, change = self.at(s), self.harmonics[1] - self.harmonics[0]
         turned = change * np.exp(-1j * np.array(now.phases))
-        found = {"stiffness.mean": float(self.mean[1] - self.mean[0])}
+        slopes_by_name = {"stiffness.mean": float(self.mean[1] - self.mean[0])}
         for j, size in enumerate(now.amplitudes):
-            found[f"stiffness.amplitudes[{j}]"] = float(turned[j].real)
-            found[f"stiffness.phases[{j}]"] = float(turned[j].imag) / size if size else 0.0
-        return {name: slope for name, slope in found.items() if slope}
+            slopes_by_name[f"stiffness.amplitudes[{j}]"] = float(turned[j].real)
+            slopes_by_name[f"stiffness.phases[{j}]"] = float(turned[j].imag) / size if size else 0.0
+        return {name: slope for name, slope in slopes_by_name.items() if slope}
 
 
 def _stepped(mark: Mark, way: _Way, done: float, end: float) -> Mark | None:
@@ -112,13 +112,13 @@ def _stepped(mark: Mark, way: _Way, done: float, end: float) -> Mark | None:
     foretold = np.zeros(3)
     if slopes:
         foretold = (end - done) * (mark.slopes(list(slopes)) @ np.array(list(slopes.values())))
-    found = mark.moved(replace(mark.oscillator, stiffness=way.at(end)), foretold)
-    if found is None:
+    moved = mark.moved(replace(mark.oscillator, stiffness=way.at(end)), foretold)
+    if moved is None:
         return None
     size = np.full(3, scale_of(mark.oscillator, mark.place[:2]))
     size[2] = max(abs(mark.value), 1e-300)
-    off: Array = np.abs(found.place - mark.place - foretold) / size
-    return found if float(np.max(off)) <= NEAR else None
+    off: Array = np.abs(moved.place - mark.place - foretold) / size
+    return moved if float(np.max(off)) <= NEAR else None
 
 
 def _special(mark: Mark, like: SpecialPoint) -> SpecialPoint | None:

@@ -42,9 +42,9 @@ def rejoining_point(problem: BranchProblem, last: MapPoint) -> SpecialPoint | No
                 del before[way]
                 continue
             if near.flip * there.flip <= 0.0:
-                found, arrived = parent.locate(near, there, DOUBLING)
-                if found is not None and arrived:
-                    return found
+                doubling, arrived = parent.locate(near, there, DOUBLING)
+                if doubling is not None and arrived:
+                    return doubling
                 del before[way]
                 continue
             before[way] = there
@@ -58,5 +58,5 @@ def _beside(parent: BranchProblem, start: MapPoint, before: MapPoint, off: float
     step = start.u[-1] + off - before.u[-1]
     guess = before.u + (step / along[-1] if along[-1] else 0.0) * along
     guess[-1] = start.u[-1] + off
-    found: MapPoint | None = parent.correct(guess, parent.flat)
-    return found
+    orbit: MapPoint | None = parent.correct(guess, parent.flat)
+    return orbit

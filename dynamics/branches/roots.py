@@ -31,10 +31,10 @@ def bracketed(
     from scipy.optimize import brentq
 
     def known(value: float) -> float:
-        found = measure(value)
-        if not math.isfinite(found):
+        measured = measure(value)
+        if not math.isfinite(measured):
             raise _LostError
-        return found
+        return measured
 
     try:
         return float(brentq(known, low, high, xtol=xtol, rtol=rtol, maxiter=100))

@@ -84,11 +84,11 @@ class Mark:
         problem = OrbitProblem(
             there, (self.parameter,), self.periods, np.zeros(1), np.array([max(abs(guess[2]), 1e-3)]), scale
         )
-        found = special_orbit(problem, self.condition, problem.unknowns(guess[:2], guess[2:]))
-        if found is None:
+        point = special_orbit(problem, self.condition, problem.unknowns(guess[:2], guess[2:]))
+        if point is None:
             return None
-        place = np.append(found.state, found.value)
-        return replace(self, oscillator=there, condition=self._refreshed(found), place=place)
+        place = np.append(point.state, point.value)
+        return replace(self, oscillator=there, condition=self._refreshed(point), place=place)
 
     def _refreshed(self, point: Point) -> Condition:
         """Condition with the phase of the extremum as it is now."""

@@ -41,10 +41,10 @@ def touches_twice(
     """
     side = 1.0
     for level, after in zip(*levels, strict=True):
-        one, other = (x - level) / scale, (later - after) / scale
+        here, there = (x - level) / scale, (later - after) / scale
         begin, end = rise - side * widening[0], climb - side * widening[1]
-        near = min(abs(one), abs(other)) <= SWAY * length * (abs(begin) + abs(end))
-        if near and one * other > 0.0 and hides(one, begin, other, end, length):
+        near = min(abs(here), abs(there)) <= SWAY * length * (abs(begin) + abs(end))
+        if near and here * there > 0.0 and hides(here, begin, there, end, length):
             return True
         side = -1.0
     return False

@@ -45,10 +45,10 @@ class PeriodMap(BranchProblem):
 
     def locate(self, last: MapPoint, new: MapPoint, crossing: Crossing) -> tuple[SpecialPoint | None, bool]:
         """Special point of a crossing; a determinant of 1 with real multipliers is none, and that is no failure."""
-        found = bracketed_orbit(self, (last, new), crossing, XTOL)
-        if found is None:
+        located = bracketed_orbit(self, (last, new), crossing, XTOL)
+        if located is None:
             return None, False
-        point, condition = found
+        point, condition = located
         if condition.kind == "neimark-sacker" and not point.turning:
             return None, True
         finer, error = self.refined(), math.inf

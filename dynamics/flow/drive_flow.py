@@ -185,10 +185,10 @@ class DriveFlow(Flow):
 
         table = self.in_strides
 
-        def some(first: int, last: int) -> int:
+        def settle_block(first: int, last: int) -> int:
             return int(settle(table, moved[first:last], places, near, limit, labels[first:last]))
 
-        used = in_blocks(len(moved), some, int(np.count_nonzero(labels == -1)))
+        used = in_blocks(len(moved), settle_block, int(np.count_nonzero(labels == -1)))
         starts[:] = osc.lifted(moved, np.zeros(len(moved)))
         return used
 

@@ -148,14 +148,14 @@ class ExactFlow(Flow):
         """Follow starts until they stay near known attractors."""
         from dynamics.kernels.searching import settle
 
-        def some(first: int, last: int) -> int:
+        def settle_block(first: int, last: int) -> int:
             return int(
                 settle(
                     self.arrays, self.space(), starts[first:last], homes, radius, limit, labels[first:last]
                 )
             )
 
-        return in_blocks(len(starts), some, int(np.count_nonzero(labels == -1)))
+        return in_blocks(len(starts), settle_block, int(np.count_nonzero(labels == -1)))
 
 
 def sufficient_degree(oscillator: GearOscillator, tolerance: float) -> int:
@@ -164,10 +164,10 @@ def sufficient_degree(oscillator: GearOscillator, tolerance: float) -> int:
     A cell is half a radian of the fastest time scale, so that the series of the speeds are cut at (1/4)^n/n!; a period
     adds at most as many of these as it has cells. The factor 4 is for the three series together.
     """
-    left, degree = 4.0 * oscillator.cells * 0.25**6 / math.factorial(6), 6
-    while left > tolerance and degree < DEGREE:
+    remainder, degree = 4.0 * oscillator.cells * 0.25**6 / math.factorial(6), 6
+    while remainder > tolerance and degree < DEGREE:
         degree += 1
-        left *= 0.25 / degree
+        remainder *= 0.25 / degree
     return degree
 
 

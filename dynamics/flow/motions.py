@@ -248,8 +248,8 @@ def force_range(
     --------
     >>> from dynamics import FourierStiffness, GearOscillator, find_orbit
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
-    >>> found = force_range(osc, find_orbit(osc, (0.35, 0.0)).state)
-    >>> round(found.least, 3), round(found.greatest, 3)
+    >>> forces = force_range(osc, find_orbit(osc, (0.35, 0.0)).state)
+    >>> round(forces.least, 3), round(forces.greatest, 3)
     (0.182, 2.277)
     """
     with Faults() as faults:

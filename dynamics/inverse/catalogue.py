@@ -118,9 +118,9 @@ class Catalogue:
         """Orbits with the label of an event."""
         there = here.with_parameter(self.problem.parameter, value)
         periods = range(1, LONGEST + 1) if event.periods is None else (event.periods,)
-        found = find_orbits(there, tuple(periods))
-        self.tally.periods += found.cost.periods
-        return [orbit for orbit in found.orbits if event.names(orbit.label)]
+        orbit_set = find_orbits(there, tuple(periods))
+        self.tally.periods += orbit_set.cost.periods
+        return [orbit for orbit in orbit_set.orbits if event.names(orbit.label)]
 
     def _gather(self, gathered: BranchTree, orbits: Iterable[Orbit]) -> None:
         """Follow orbits that lie on no branch yet."""
@@ -137,9 +137,9 @@ class Catalogue:
             near = THERE * float(np.max(np.abs(motion.state)))
             if orbit.converged and float(np.max(np.abs(orbit.state - motion.state))) <= near:
                 return [orbit]
-        found = find_orbits(there, (1,))
-        self.tally.periods += found.cost.periods
-        return list(found.orbits)
+        orbit_set = find_orbits(there, (1,))
+        self.tally.periods += orbit_set.cost.periods
+        return list(orbit_set.orbits)
 
     def _around(self, gathered: BranchTree, event: Event) -> None:
         """Follow the orbits of an event's label to either side of it, until one has such a point."""

@@ -77,7 +77,7 @@ class Event:
         parts = label.removeprefix("U").split("-")
         return all(mine in ("*", theirs) for mine, theirs in zip(self.fields, parts, strict=True))
 
-    def loss(self, found: float, width: float) -> float:
+    def loss(self, computed: float, width: float) -> float:
         r"""What a difference costs: :math:`t \ln(1 + |\mu - \mu_e| / u)`, no partner as much as the whole width.
 
         The logarithm is, but for a constant, minus that of a density :math:`1 / (u + |\mu - \mu_e|)`: small errors are
@@ -85,12 +85,12 @@ class Event:
 
         Parameters
         ----------
-        found : float
+        computed : float
             Computed value; nan if there is none.
         width : float
             Range of the parameter.
         """
-        off = width if math.isnan(found) else min(abs(found - self.value), width)
+        off = width if math.isnan(computed) else min(abs(computed - self.value), width)
         return self.trust * math.log1p(off / self.unit)
 
 
@@ -194,10 +194,10 @@ class Problem:
         """Weight of each event."""
         return np.array([event.trust for event in self.events])
 
-    def misfit(self, found: Sequence[float] | Array, rows: Iterable[int] | None = None) -> float:
+    def misfit(self, computed: Sequence[float] | Array, rows: Iterable[int] | None = None) -> float:
         """Sum of the losses of events (the fitted ones if none are named) with computed values, nan for none."""
         wanted = self.fitted if rows is None else rows
-        return math.fsum(self.events[i].loss(float(found[i]), self.width) for i in wanted)
+        return math.fsum(self.events[i].loss(float(computed[i]), self.width) for i in wanted)
 
 
 def checked(
@@ -237,25 +237,25 @@ def checked(
     return Problem(oscillator, parameter, tuple(events), dict(unknowns), (low, high))
 
 
-def _check_event(faults: Faults, where: str, event: Event, bounds: tuple[float, float]) -> None:
-    faults.choice(f"{where}.kind", event.kind, KINDS)
+def _check_event(faults: Faults, path: str, event: Event, bounds: tuple[float, float]) -> None:
+    faults.choice(f"{path}.kind", event.kind, KINDS)
     parts = event.label.split("-")
     if len(parts) != 3 or not all(p == "*" or p.isdecimal() for p in parts) or parts[0] == "0":
         allowed = "must be n-p-q, with a star for what is not known"
-        faults.add(f"{where}.label", event.label, allowed, 'write "1-1-0" or "2-*-*"')
-    faults.number(f"{where}.trust", event.trust, Limit(0.0, 1.0, low_open=True, remedy="1 is full trust"))
-    faults.whole(f"{where}.digits", event.digits, 0, 15, "give the decimals printed")
-    value = faults.number(f"{where}.value", event.value, NUMBER)
+        faults.add(f"{path}.label", event.label, allowed, 'write "1-1-0" or "2-*-*"')
+    faults.number(f"{path}.trust", event.trust, Limit(0.0, 1.0, low_open=True, remedy="1 is full trust"))
+    faults.whole(f"{path}.digits", event.digits, 0, 15, "give the decimals printed")
+    value = faults.number(f"{path}.value", event.value, NUMBER)
     if not math.isnan(value) and not bounds[0] < value < bounds[1]:
-        faults.add(f"{where}.value", event.value, "must be within bounds", "widen the bounds")
+        faults.add(f"{path}.value", event.value, "must be within bounds", "widen the bounds")
 
 
-def _check_unknown(faults: Faults, where: str, unknown: Unknown) -> None:
+def _check_unknown(faults: Faults, path: str, unknown: Unknown) -> None:
     if isinstance(unknown, OneOf):
         if len(unknown.values) == 0:
-            faults.add(f"{where}.values", (), "must hold at least one value", "give the values to try")
+            faults.add(f"{path}.values", (), "must hold at least one value", "give the values to try")
         for i, value in enumerate(unknown.values):
-            faults.number(f"{where}.values[{i}]", value, NUMBER)
+            faults.number(f"{path}.values[{i}]", value, NUMBER)
         return
-    ordered(faults, where, (unknown.low, unknown.high), "give Ranged(low, high)")
-    faults.whole(f"{where}.trials", unknown.trials, 1, 10_000, "4 is usual")
+    ordered(faults, path, (unknown.low, unknown.high), "give Ranged(low, high)")
+    faults.whole(f"{path}.trials", unknown.trials, 1, 10_000, "4 is usual")

@@ -82,8 +82,8 @@ def identify(
     >>> from dynamics.inverse import Event, OneOf, identify
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.2, 0.2, 0.6, half_backlash=0.2)
     >>> events = [Event("grazing", "1-0-0", 0.6335, digits=4), Event("saddle-node", "1-1-0", 0.6556, digits=4)]
-    >>> found = identify(osc, "frequency", events, {"mean_force": OneOf((0.1,))}, (0.62, 0.67))
-    >>> found.converged, found.best.values
+    >>> identified = identify(osc, "frequency", events, {"mean_force": OneOf((0.1,))}, (0.62, 0.67))
+    >>> identified.converged, identified.best.values
     (True, {'mean_force': 0.1})
     """
     watch = Stopwatch()
@@ -102,22 +102,22 @@ def identify(
     name = solved if solved is not None else solved_name(first)
     catalogue = Catalogue(first, Tally())
     trials = 0
-    found: list[Solution] = []
+    solutions: list[Solution] = []
     for anchor in ranked(first)[:most]:
         scanned = scan(catalogue, anchor, name, progress)
         trials += len(scanned)
         fits = _refined(catalogue, scanned, trials)
         starts = distinct([f.oscillator for f in fits], tuple(first.unknowns))
         for start in starts[:COMPLETED]:
-            found.append(_completed(catalogue, reduction, start, trials))
-            if found[-1].candidate.by_chance < CLEAR:
+            solutions.append(_completed(catalogue, reduction, start, trials))
+            if solutions[-1].candidate.by_chance < CLEAR:
                 break
-        found.sort(key=lambda s: s.fit.misfit)
-        if (found and found[0].good) or name is None:
+        solutions.sort(key=lambda s: s.fit.misfit)
+        if (solutions and solutions[0].good) or name is None:
             break
     tally = catalogue.tally
     cost = Cost(watch.seconds, len(unknowns), tally.branches, tally.periods)
-    return identification(problem, reduction.message, found, trials, cost)
+    return identification(problem, reduction.message, solutions, trials, cost)
 
 
 def _refined(catalogue: Catalogue, scanned: Sequence[Trial], trials: int) -> list[Fit]:
@@ -140,13 +140,13 @@ def _settled(catalogue: Catalogue, start: GearOscillator, depth: int) -> Fit:
     here, best = start, None
     before = np.empty(0)
     for _ in range(ROUNDS):
-        found = fit(catalogue.start(here, depth)[1], names)
-        if best is None or found.misfit < best.misfit:
-            best = found
-        now = np.round(found.values, 10)
+        fitted = fit(catalogue.start(here, depth)[1], names)
+        if best is None or fitted.misfit < best.misfit:
+            best = fitted
+        now = np.round(fitted.values, 10)
         if np.array_equal(now, before, equal_nan=True):
             break
-        here, before = found.oscillator, now
+        here, before = fitted.oscillator, now
     assert best is not None
     return best
 
@@ -177,7 +177,9 @@ def _with_play(catalogue: Catalogue, reduction: Reduction, start: GearOscillator
         tried += [Trial(search.misfit(there, EVERY), there) for there in met]
         if tried and len(events) == 1:
             break
-    found = min(tried, key=lambda trial: trial.misfit).oscillator if tried else here
+    oscillator = min(tried, key=lambda trial: trial.misfit).oscillator if tried else here
     return (
-        scaled(found, whole.oscillator.half_backlash / found.half_backlash) if reduction.rescaled else found
+        scaled(oscillator, whole.oscillator.half_backlash / oscillator.half_backlash)
+        if reduction.rescaled
+        else oscillator
     )

@@ -51,9 +51,9 @@ def _along(events: list[Event], lines: Sequence[Line], width: float, taken: set[
     for line in lines:
         free = [p for p in line if id(p) not in taken]
         for points in (free, free[::-1]):
-            found = _ordered(events, points, width)
-            if found[0] < best[0]:
-                best = found
+            choice = _ordered(events, points, width)
+            if choice[0] < best[0]:
+                best = choice
     return best[1]
 
 

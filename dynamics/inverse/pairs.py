@@ -105,13 +105,13 @@ def by_two_events(
     >>> from dynamics.inverse import Event, OneOf, by_two_events
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.5,), (0.0,)), 0.06, 0.1, 0.4, 0.4, half_backlash=0.8)
     >>> events = Event("grazing", "1-0-0", 0.55869, 5), Event("period-doubling", "1-2-0", 0.63434, 5)
-    >>> found = by_two_events(osc, events, OneOf((0.39, 0.41)), {"damping_ratio": OneOf((0.06,))})
-    >>> found.names, found.values.round(3).tolist()
+    >>> pairs = by_two_events(osc, events, OneOf((0.39, 0.41)), {"damping_ratio": OneOf((0.06,))})
+    >>> pairs.names, pairs.values.round(3).tolist()
     (('damping_ratio', 'frequency', 'mean_force'), [[0.06, 0.4, 0.1]])
     """
     watch = Stopwatch()
     with Faults() as faults:
-        kinds = [(one.kind, one.label) for one in events]
+        kinds = [(event.kind, event.label) for event in events]
         label = events[1].label
         if kinds[0] != ("grazing", "1-0-0") or kinds[1][0] != "period-doubling" or label not in ONE_SIDED:
             allowed = f"must be a grazing of 1-0-0 and a period-doubling of {' or '.join(ONE_SIDED)}"
@@ -120,7 +120,7 @@ def by_two_events(
             faults.choice("unknowns", name, oscillator.parameters, "name parameters of the oscillator")
     grazing, doubling = events
     ratio = doubling.value / grazing.value
-    grid = list(product(*(one.values for one in unknowns.values())))
+    grid = list(product(*(choice.values for choice in unknowns.values())))
     rows: list[tuple[float, ...]] = []
     trials = 0
     for done, values in enumerate(grid, start=1):
@@ -141,17 +141,19 @@ def by_two_events(
         trials += len(seen)
         if progress is not None:
             progress(done, len(grid))
-    found = np.array(rows, dtype=np.float64).reshape(-1, len(unknowns) + 2)
-    off = np.abs(found[:, -2:] / ROUND - np.round(found[:, -2:] / ROUND)) * ROUND
-    rounded = np.all(off <= near * found[:, -2:], axis=1)
-    chance = np.clip(2.0 * near * found[:, -2:] / ROUND, 0.0, 1.0)
+    solutions = np.array(rows, dtype=np.float64).reshape(-1, len(unknowns) + 2)
+    off = np.abs(solutions[:, -2:] / ROUND - np.round(solutions[:, -2:] / ROUND)) * ROUND
+    rounded = np.all(off <= near * solutions[:, -2:], axis=1)
+    chance = np.clip(2.0 * near * solutions[:, -2:] / ROUND, 0.0, 1.0)
     expected = float(np.sum(np.prod(chance, axis=1)))
     hits = int(rounded.sum())
     good = hits > 3.0 * expected and hits > 0
     verdict = "more than chance gives" if good else "no better than chance"
-    said = f"{len(found)} solutions of {trials} trials; {hits} are round, {expected:.2g} by chance: {verdict}"
+    said = f"{len(solutions)} solutions of {trials} trials; {hits} are round, {expected:.2g} by chance: {verdict}"
     names = (*unknowns, "frequency", "mean_force")
-    return PairScan(names, found, rounded, trials, expected, 1e-9, Cost(watch.seconds, 2, trials), good, said)
+    return PairScan(
+        names, solutions, rounded, trials, expected, 1e-9, Cost(watch.seconds, 2, trials), good, said
+    )
 
 
 def _touch(here: GearOscillator) -> float:
@@ -168,8 +170,8 @@ def _touch(here: GearOscillator) -> float:
         high *= 3.0
         if high > 1e5:
             return math.nan
-    found = bracketed(clearance, 0.0, high, xtol=1e-12) if clearance(0.0) > 0.0 else None
-    return math.nan if found is None else found
+    root = bracketed(clearance, 0.0, high, xtol=1e-12) if clearance(0.0) > 0.0 else None
+    return math.nan if root is None else root
 
 
 def _flip(here: GearOscillator, ratio: float, label: str) -> float:

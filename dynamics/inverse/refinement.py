@@ -113,10 +113,10 @@ def fit(start: Fit, names: Sequence[str]) -> Fit:
         trimmed = _least_squares(middle, names, kept)
         if trimmed.misfit >= best.misfit and not trimmed.meets(kept):
             continue
-        found = refit(trimmed, names, rows)
-        if found.misfit < best.misfit:
-            best = found
-        if found.meets(kept):
+        refitted = refit(trimmed, names, rows)
+        if refitted.misfit < best.misfit:
+            best = refitted
+        if refitted.meets(kept):
             break
     return best
 

@@ -53,25 +53,28 @@ def rounded(
         Events that are refined with.
     """
     now, done = start, []
-    left = list(names)
+    remaining = list(names)
     for name in names:
         unknown = start.problem.unknowns[name]
         if not isinstance(unknown, OneOf):
             continue
-        left.remove(name)
+        remaining.remove(name)
         value, worth = _nearest(unknown, now.oscillator.get(name))
-        taken = _with(now, name, value, 0, worth, left, rows)
+        taken = _with(now, name, value, 0, worth, remaining, rows)
         if taken is not None:
             done.append(taken[0])
             now = taken[1]
-    while left:
-        found = [_roundest(now, name, [n for n in left if n != name], left_open[name], rows) for name in left]
-        best = max((f for f in found if f is not None), key=lambda f: f[0].worth, default=None)
+    while remaining:
+        candidates = [
+            _roundest(now, name, [n for n in remaining if n != name], left_open[name], rows)
+            for name in remaining
+        ]
+        best = max((f for f in candidates if f is not None), key=lambda f: f[0].worth, default=None)
         if best is None:
             break
         done.append(best[0])
         now = best[1]
-        left.remove(best[0].parameter)
+        remaining.remove(best[0].parameter)
     return now, tuple(done)
 
 

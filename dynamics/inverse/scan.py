@@ -61,19 +61,19 @@ def anchored(catalogue: Catalogue, here: GearOscillator, event: Event, name: str
     unknown = problem.unknowns[name]
     span = (unknown.low, unknown.high)
     start = here.with_parameter(problem.parameter, event.value)
-    found: list[float] = []
+    values: list[float] = []
     if event.periods in (1, None):
         for end in (span[1], span[0]):
             there = start.with_parameter(name, end)
-            found += catalogue.values_along(find_orbit(there, there.rest_state()), name, span, event)
-            if found:
+            values += catalogue.values_along(find_orbit(there, there.rest_state()), name, span, event)
+            if values:
                 break
-    if not found and event.periods != 1:
+    if not values and event.periods != 1:
         for value in Ranged(*span, trials=GRID).values:
             for orbit in catalogue.orbits_of(start.with_parameter(name, value), event, event.value):
-                found += catalogue.values_along(orbit, name, span, event)
+                values += catalogue.values_along(orbit, name, span, event)
     distinct: list[float] = []
-    for value in found:
+    for value in values:
         if not any(abs(value - other) <= 1e-9 * (span[1] - span[0]) for other in distinct):
             distinct.append(value)
     return [here.with_parameter(name, value) for value in distinct]
@@ -99,17 +99,17 @@ def scan(
     tried = [n for n in problem.unknowns if n != name]
     combinations = list(itertools.product(*(problem.unknowns[n].values for n in tried)))
     depth, looked_at = _depth(problem, anchor)
-    found: list[Trial] = []
+    trials: list[Trial] = []
     for done, values in enumerate(combinations, start=1):
         here = problem.oscillator
         for n, value in zip(tried, values, strict=True):
             here = here.with_parameter(n, float(value))
         event = problem.events[anchor]
         for there in [here] if name is None else anchored(catalogue, here, event, name):
-            found.append(Trial(catalogue.misfit(there, depth, looked_at), there))
+            trials.append(Trial(catalogue.misfit(there, depth, looked_at), there))
         if progress is not None:
             progress(done, len(combinations))
-    return sorted(found, key=lambda trial: trial.misfit)
+    return sorted(trials, key=lambda trial: trial.misfit)
 
 
 def _depth(problem: Problem, anchor: int) -> tuple[int, list[int]]:

@@ -89,20 +89,20 @@ def by_chance(problem: Problem, chance: Array, unknowns: int, trials: int) -> fl
     return float(trials * ways * min(1.0, math.exp(log) * tail))
 
 
-def spread(found: Fit, names: Sequence[str], rows: Sequence[int]) -> dict[str, float]:
+def spread(fit: Fit, names: Sequence[str], rows: Sequence[int]) -> dict[str, float]:
     """What one unit of the last decimal of each of these events leaves open of each unknown, to first order."""
-    matrix = found.sensitivity(names, rows)
+    matrix = fit.sensitivity(names, rows)
     if len(rows) < len(names) or not np.all(np.isfinite(matrix)):
         return dict.fromkeys(names, math.nan)
-    size = _sizes(found, names)
+    size = _sizes(fit, names)
     left_open = size * np.sum(np.abs(np.linalg.pinv(matrix * size, rcond=1e-14)), axis=1)
     return dict(zip(names, left_open.tolist(), strict=True))
 
 
-def directions(found: Fit, names: Sequence[str], rows: Sequence[int]) -> tuple[Direction, ...]:
+def directions(fit: Fit, names: Sequence[str], rows: Sequence[int]) -> tuple[Direction, ...]:
     """Singular directions of the sensitivity of these events to these parameters, the best seen first."""
-    matrix = found.sensitivity(names, rows)
-    matrix = matrix[np.all(np.isfinite(matrix), axis=1)] * _sizes(found, names)
+    matrix = fit.sensitivity(names, rows)
+    matrix = matrix[np.all(np.isfinite(matrix), axis=1)] * _sizes(fit, names)
     matrix = np.vstack([matrix, np.zeros((len(names), len(names)))])
     _, strengths, rows_of_v = np.linalg.svd(matrix, full_matrices=False)
     return tuple(
@@ -111,26 +111,26 @@ def directions(found: Fit, names: Sequence[str], rows: Sequence[int]) -> tuple[D
     )
 
 
-def unseen(found: Fit, rows: Sequence[int], seen: Sequence[Direction]) -> tuple[str, ...]:
+def unseen(fit: Fit, rows: Sequence[int], seen: Sequence[Direction]) -> tuple[str, ...]:
     """Directions that the events do not see, and known parameters on which none of them depends."""
-    unknown = {found.problem.parameter, *(name for direction in seen for name in direction.parts)}
-    known = [name for name in found.oscillator.parameters if name not in unknown]
-    matrix = found.sensitivity(known, rows) * _sizes(found, known)
+    unknown = {fit.problem.parameter, *(name for direction in seen for name in direction.parts)}
+    known = [name for name in fit.oscillator.parameters if name not in unknown]
+    matrix = fit.sensitivity(known, rows) * _sizes(fit, known)
     idle = [n for n, column in zip(known, matrix.T, strict=True) if np.all(np.abs(column) < 1e-6)]
     return (*(str(d) for d in seen if not d.seen), *(idle if len(rows) else ()))
 
 
-def left_out(found: Fit, names: Sequence[str], rows: Sequence[int]) -> tuple[float, ...]:
+def left_out(fit: Fit, names: Sequence[str], rows: Sequence[int]) -> tuple[float, ...]:
     """Difference of each event from what the others say of it, in units; nan where they are too few."""
-    off = [math.nan] * len(found.marks)
+    off = [math.nan] * len(fit.marks)
     for i in range(len(off)):
         if i not in rows:
-            off[i] = float(found.off[i])
+            off[i] = float(fit.off[i])
         elif len(rows) > len(names):
-            off[i] = float(refit(found, names, [j for j in rows if j != i], limit=8).off[i])
+            off[i] = float(refit(fit, names, [j for j in rows if j != i], limit=8).off[i])
     return tuple(off)
 
 
-def _sizes(found: Fit, names: Sequence[str]) -> Array:
+def _sizes(fit: Fit, names: Sequence[str]) -> Array:
     """What a change is measured by: the value itself, 1 rad for phases."""
-    return np.array([1.0 if "phase" in n else max(abs(found.oscillator.get(n)), 1e-3) for n in names])
+    return np.array([1.0 if "phase" in n else max(abs(fit.oscillator.get(n)), 1e-3) for n in names])

@@ -80,26 +80,26 @@ def solution(catalogue: Catalogue, here: GearOscillator, trials: int) -> Solutio
     return Solution(catalogue, fit, candidate)
 
 
-def distinct(found: Sequence[GearOscillator], names: Sequence[str]) -> list[GearOscillator]:
+def distinct(oscillators: Sequence[GearOscillator], names: Sequence[str]) -> list[GearOscillator]:
     """Those that differ from all before them."""
     kept: list[GearOscillator] = []
-    for here in found:
+    for here in oscillators:
         if not any(_alike(here, other, names) for other in kept):
             kept.append(here)
     return kept
 
 
 def identification(
-    problem: Problem, reduction: str, found: Sequence[Solution], trials: int, cost: Cost
+    problem: Problem, reduction: str, solutions: Sequence[Solution], trials: int, cost: Cost
 ) -> Identification:
     """Record of all solutions, the best of them rounded."""
-    if not found:
+    if not solutions:
         message = f"{trials} trials, none has one of the events that were tried: widen the ranges, or try more values"
         return Identification(problem.events, trials, reduction, cost, message)
-    first = found[0]
+    first = solutions[0]
     names = tuple(first.candidate.values)
-    kept = distinct([s.candidate.oscillator for s in found], names)
-    others = [s.candidate for s in found[1:] if any(s.candidate.oscillator is here for here in kept[1:])]
+    kept = distinct([s.candidate.oscillator for s in solutions], names)
+    others = [s.candidate for s in solutions[1:] if any(s.candidate.oscillator is here for here in kept[1:])]
     best, roundings = _rounded(first, trials)
     seen = directions(best.fit, tuple(problem.unknowns), best.rows)
     candidate, by_chance = best.candidate, first.candidate.by_chance

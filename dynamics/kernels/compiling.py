@@ -96,17 +96,17 @@ class _Kept(FunctionCache):
 
 def pieces_of(function: Callable[..., Any], seen: set[int] | None = None) -> list[Callable[[], None]]:
     """What makes ready the pieces, see `called`, that a function or its helpers call."""
-    seen, found = set() if seen is None else seen, []
+    seen, pieces = set() if seen is None else seen, []
     for name in cast(Any, function).__code__.co_names:
         there = cast(Any, function).__globals__.get(name)
         if id(there) in seen:
             continue
         seen.add(id(there))
         if hasattr(there, "ready_piece"):
-            found.append(there.ready_piece)
+            pieces.append(there.ready_piece)
         elif hasattr(there, "py_func"):
-            found += pieces_of(there.py_func, seen)
-    return found
+            pieces += pieces_of(there.py_func, seen)
+    return pieces
 
 
 def helper(function: F) -> F:

@@ -58,7 +58,7 @@ class _Operator(types.Function):
 
     def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
         """Signature for these arguments, whether numbers and indices are literal or not."""
-        plain = tuple([_unliteral(given) for given in args])
+        plain = tuple([_unliteral(argument) for argument in args])
         if kws or None in plain:
             return super().get_call_type(context, args, kws)
         if plain not in self._known:
@@ -70,24 +70,24 @@ register_default(_Operator)(OpaqueModel)
 _KNOWN: dict[types.Function, _Operator] = {}
 
 
-def _unliteral(given: Any) -> Any:
+def _unliteral(argument: Any) -> Any:
     """Type of a number, of an array of numbers or of an index without its value; None of anything else."""
-    if isinstance(given, types.IntegerLiteral):
-        return given.literal_type
-    if isinstance(given, (types.Integer, types.Float, types.Boolean, SliceType)):
-        return given
-    if isinstance(given, types.Array):
-        return given if _numbers(given) else None
-    if isinstance(given, BaseTuple):
-        parts = tuple([_unliteral(part) for part in given])
+    if isinstance(argument, types.IntegerLiteral):
+        return argument.literal_type
+    if isinstance(argument, (types.Integer, types.Float, types.Boolean, SliceType)):
+        return argument
+    if isinstance(argument, types.Array):
+        return argument if _numbers(argument) else None
+    if isinstance(argument, BaseTuple):
+        parts = tuple([_unliteral(part) for part in argument])
         if all(isinstance(part, (types.Integer, SliceType)) for part in parts):
             return BaseTuple.from_types(parts)
     return None
 
 
-def _numbers(given: Any) -> bool:
+def _numbers(argument: Any) -> bool:
     """Whether this is an array of numbers, whose items are all alike."""
-    return isinstance(given, types.Array) and isinstance(given.dtype, types.Number)
+    return isinstance(argument, types.Array) and isinstance(argument.dtype, types.Number)
 
 
 @cache

@@ -30,12 +30,12 @@ def push_at_start(par: FloatArray) -> float:
 def start(x: float, v: float, par: FloatArray) -> tuple[int, float]:
     """Region and coordinate of a state; on a boundary the motion (speed, else push) decides."""
     d = par[HALF_BACKLASH]
-    both = par[SIDES] > 1.5
+    two_sided = par[SIDES] > 1.5
     way = v if v != 0.0 else push_at_start(par)
-    joined = both and d == 0.0
+    joined = two_sided and d == 0.0
     if x > d or (x == d and (way > 0.0 or (joined and way == 0.0))):
         return 1, x - d
-    if both and (x < -d or (x == -d and way < 0.0)):
+    if two_sided and (x < -d or (x == -d and way < 0.0)):
         return -1, x + d
     return 0, x
 

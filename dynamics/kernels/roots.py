@@ -63,8 +63,8 @@ def sole_root(
                 return t, f1
         slope = f1 + step * (2.0 * f2 + step * (3.0 * f3 + 4.0 * step * f4))
         size = step * step
-        left = size * size * (abs(f2) * (f2 * f2 + abs(f1 * f3)) + square * abs(f4))
-        if left <= crude * square or size <= 2e-31 * t * t:
+        remainder = size * size * (abs(f2) * (f2 * f2 + abs(f1 * f3)) + square * abs(f4))
+        if remainder <= crude * square or size <= 2e-31 * t * t:
             return new, slope
         t = new
     return t, slope
@@ -175,14 +175,14 @@ def bernstein(c: FloatArray, first: int, low: float, width: float, b: FloatArray
 @helper
 def variations(b: FloatArray, n: int) -> int:
     """Sign changes in b[0..n]: at least the number of roots inside, and equal to it if 0 or 1."""
-    found = 0
+    changes = 0
     sign = 0
     for i in range(n + 1):
         if b[i] != 0.0:
             now = 1 if b[i] > 0.0 else -1
-            found += now * sign < 0
+            changes += now * sign < 0
             sign = now
-    return found
+    return changes
 
 
 @helper
@@ -216,13 +216,13 @@ def first_exit(c: FloatArray, b: FloatArray, end: float, fresh: int) -> float:
             m += 1
     if m >= degree or end <= 0.0:
         return -1.0
-    left, right, guess, found = 0.0, end, -1.0, False
+    left, right, guess, isolated = 0.0, end, -1.0, False
     if monotone(c, m, end):
         if poly(c, m, end)[0] >= 0.0:
             return -1.0
-        found = True
+        isolated = True
     width = end
-    while not found and left < end:
+    while not isolated and left < end:
         right = end if left + width >= end else left + width
         n = bernstein(c, m, left, right - left, b)
         f_l = b[0]
@@ -230,7 +230,7 @@ def first_exit(c: FloatArray, b: FloatArray, end: float, fresh: int) -> float:
             return left  # the last root lies on the joint of two parts, to rounding
         count = variations(b, n)
         if count == 1 and b[n] < 0.0:
-            found = True
+            isolated = True
         elif count > 0 and right - left > 1e-13 * end:
             for k in range(n):
                 b[k] = b[k + 1] - b[k]
@@ -246,15 +246,15 @@ def first_exit(c: FloatArray, b: FloatArray, end: float, fresh: int) -> float:
             f_t, _, ddf = poly(c, m, turn)
             guess = -1.0
             if f_t < 0.0:
-                found, right = True, turn
+                isolated, right = True, turn
                 if ddf > 0.0:
                     guess = turn - math.sqrt(-2.0 * f_t / ddf)
-        if found and f_l == 0.0:
+        if isolated and f_l == 0.0:
             return left
-        if not found:
+        if not isolated:
             left = right
             width *= 2.0
-    if not found:
+    if not isolated:
         return -1.0
     if guess < 0.0:
         f_l, slope, curve = poly(c, m, left)

@@ -119,12 +119,12 @@ def hunt(
     periods: int,
     limit: int,
     scale: float,
-    found: FloatArray,
+    points: FloatArray,
     known: int,
 ) -> tuple[int, int]:
     """Fixed points of the map over `periods` from many starts by deflated Newton's method.
 
-    `found`, (any, 2), holds `known` points already; new ones are added, all points of an orbit at once. A point found
+    `points`, (any, 2), holds `known` points already; new ones are added, all points of an orbit at once. A point found
     pushes later searches away: the residual is multiplied by 1 + (scale/distance)^2 of each, which scales Newton's
     step by 1/(1 - step . grad log of that factor). Returns the number of points and of periods used.
     """
@@ -154,7 +154,7 @@ def hunt(
             pull = 0.0
             if max(abs(s0), abs(s1)) > 1e-6 * scale:
                 for k in range(known):
-                    d0, d1 = at0 - found[k, 0], at1 - found[k, 1]
+                    d0, d1 = at0 - points[k, 0], at1 - points[k, 1]
                     square = (d0 * d0 + d1 * d1) / (scale * scale) + 1e-300
                     pull -= 2.0 * (d0 * s0 + d1 * s1) / (scale * scale * square * (1.0 + square))
             factor = 1.0 / (1.0 - pull) if abs(1.0 - pull) > 1e-3 else 1.0
@@ -168,17 +168,17 @@ def hunt(
             continue
         new = True
         for k in range(known):
-            if max(abs(found[k, 0] - at0), abs(found[k, 1] - at1)) < 1e-7 * scale:
+            if max(abs(points[k, 0] - at0), abs(points[k, 1] - at1)) < 1e-7 * scale:
                 new = False
         x[0], x[1] = at0, at1
         for _ in range(periods if new else 0):
-            if known == len(found):
+            if known == len(points):
                 return known, used
             old = False
             for k in range(known):
-                old = old or max(abs(found[k, 0] - x[0]), abs(found[k, 1] - x[1])) < 1e-7 * scale
+                old = old or max(abs(points[k, 0] - x[0]), abs(points[k, 1] - x[1])) < 1e-7 * scale
             if not old:
-                found[known, 0], found[known, 1] = x[0], x[1]
+                points[known, 0], points[known, 1] = x[0], x[1]
                 known += 1
             iterate_there(table, space, x, ZERO, ZERO, jac, image, counts)
             used += 1

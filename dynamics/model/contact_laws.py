@@ -130,8 +130,8 @@ class ContactLaw(ABC):
     @property
     def surfaces(self) -> Array:
         """X = D and X = -D."""
-        both = np.array([[1.0, 0.0, 1.0, 0.0], [1.0, 0.0, -1.0, 0.0]])
-        return both[:1] if self.one_sided else both
+        flanks = np.array([[1.0, 0.0, 1.0, 0.0], [1.0, 0.0, -1.0, 0.0]])
+        return flanks[:1] if self.one_sided else flanks
 
     @property
     def size(self) -> float:

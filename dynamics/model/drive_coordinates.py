@@ -80,8 +80,8 @@ def _kept(size: int, entries: bytes) -> Coordinates:
     try:
         factor = np.linalg.cholesky(mass)
     except np.linalg.LinAlgError:
-        allowed, found = "must be positive definite", np.linalg.eigvalsh(mass).tolist()
-        raise InputError.at("mass", found, allowed, "give every freedom a mass") from None
+        allowed, eigenvalues = "must be positive definite", np.linalg.eigvalsh(mass).tolist()
+        raise InputError.at("mass", eigenvalues, allowed, "give every freedom a mass") from None
     inverse = np.linalg.inv(factor)
     k, c = (inverse @ matrix @ inverse.T for matrix in (stiffness, damping))
     g = inverse @ direction

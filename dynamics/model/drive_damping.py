@@ -73,14 +73,14 @@ def modal_damping(mass: npt.ArrayLike, stiffness: npt.ArrayLike, ratios: npt.Arr
     squares, vectors = np.linalg.eigh(factor @ k @ factor.T)
     frequencies = np.sqrt(np.maximum(squares, 0.0))
     moving = np.flatnonzero(frequencies > RIGID * frequencies[-1])
-    given = np.atleast_1d(np.asarray(ratios, dtype=np.float64))
+    modal_ratios = np.atleast_1d(np.asarray(ratios, dtype=np.float64))
     with Faults() as faults:
-        for i, ratio in enumerate(given.tolist()):
+        for i, ratio in enumerate(modal_ratios.tolist()):
             faults.number(f"ratios[{i}]", ratio, NO_NEGATIVE)
-        if len(given) not in (1, len(moving)):
+        if len(modal_ratios) not in (1, len(moving)):
             allowed = f"must be one, or {len(moving)}: one for each mode with a frequency"
-            faults.add("ratios", f"{len(given)} ratios", allowed, "the lowest mode first")
+            faults.add("ratios", f"{len(modal_ratios)} ratios", allowed, "the lowest mode first")
     rates = np.zeros(len(m))
-    rates[moving] = 2.0 * given * frequencies[moving]
+    rates[moving] = 2.0 * modal_ratios * frequencies[moving]
     shapes = np.linalg.inv(factor) @ vectors  # M Phi
     return np.asarray(shapes @ np.diag(rates) @ shapes.T)

@@ -120,8 +120,8 @@ class DriveOscillator(PeriodicOscillator):
             for name in ("frequency", "half_backlash"):
                 values[name] = faults.number(name, getattr(self, name), OSCILLATOR[name])
             for name in ("mesh_damping", "free_mesh_damping"):
-                if (given := getattr(self, name)) is not None:
-                    values[name] = faults.number(name, given, OSCILLATOR["damping_ratio"])
+                if (ratio := getattr(self, name)) is not None:
+                    values[name] = faults.number(name, ratio, OSCILLATOR["damping_ratio"])
             values[AMPLITUDE], values[PHASE] = checked_error(faults, self.error_amplitude, self.error_phase)
             faults.choice("one_sided", self.one_sided, (True, False), "True leaves the second flank out")
         for name, value in values.items():
@@ -282,10 +282,10 @@ class DriveOscillator(PeriodicOscillator):
         return np.asarray(states[:, :n] @ g - error), np.asarray(states[:, n:] @ g - rate)
 
 
-def _array(faults: Faults, name: str, given: npt.ArrayLike, shape: tuple[int, ...] | None) -> Array:
+def _array(faults: Faults, name: str, entries: npt.ArrayLike, shape: tuple[int, ...] | None) -> Array:
     """Finite numbers of a shape, of one dimension if there is none, that nobody can change; faults are noted."""
     try:
-        values = np.array(given, dtype=np.float64)
+        values = np.array(entries, dtype=np.float64)
     except (TypeError, ValueError):
         values = np.full((), np.nan)
     fits = values.ndim == 1 and len(values) > 0 if shape is None else values.shape == shape
@@ -294,7 +294,7 @@ def _array(faults: Faults, name: str, given: npt.ArrayLike, shape: tuple[int, ..
         remedy = (
             "one row and one column for each freedom" if name in MATRICES else "one number for each freedom"
         )
-        faults.add(name, given, f"must be finite numbers of shape {wanted}", remedy)
+        faults.add(name, entries, f"must be finite numbers of shape {wanted}", remedy)
         values = np.zeros(shape or (1,))
     values.flags.writeable = False
     return values

@@ -30,7 +30,7 @@ def checked_error(faults: Faults, amplitude: object, phase: object) -> tuple[Har
         One phase of 0 serves any number of amplitudes.
     """
     sizes, phases = (
-        _numbers(faults, name, given) for name, given in ((AMPLITUDE, amplitude), (PHASE, phase))
+        _numbers(faults, name, harmonics) for name, harmonics in ((AMPLITUDE, amplitude), (PHASE, phase))
     )
     if phases == (0.0,) and not _several(phase):
         phases = phases * len(sizes)
@@ -45,14 +45,18 @@ def checked_error(faults: Faults, amplitude: object, phase: object) -> tuple[Har
     return (sizes[0], phases[0]) if len(sizes) == len(phases) == 1 else (sizes, phases)
 
 
-def _several(given: object) -> bool:
-    return isinstance(given, Sequence | np.ndarray) and not isinstance(given, str) and np.ndim(given) == 1
+def _several(harmonics: object) -> bool:
+    return (
+        isinstance(harmonics, Sequence | np.ndarray)
+        and not isinstance(harmonics, str)
+        and np.ndim(harmonics) == 1
+    )
 
 
-def _numbers(faults: Faults, name: str, given: object) -> tuple[float, ...]:
-    if not isinstance(given, Sequence | np.ndarray) or not _several(given):
-        return (faults.number(name, given, OSCILLATOR[name]),)
-    return numbers(faults, name, given)
+def _numbers(faults: Faults, name: str, harmonics: object) -> tuple[float, ...]:
+    if not isinstance(harmonics, Sequence | np.ndarray) or not _several(harmonics):
+        return (faults.number(name, harmonics, OSCILLATOR[name]),)
+    return numbers(faults, name, harmonics)
 
 
 def as_series(amplitude: Harmonics, phase: Harmonics) -> Array:

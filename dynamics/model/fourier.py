@@ -88,21 +88,21 @@ def fit_fourier(samples: npt.ArrayLike, order: int = 1, positions: npt.ArrayLike
     most = (m - 1) // 2
     n = faults.whole("order", order, 0, most, f"{m} samples resolve {most} harmonics: give more samples")
     midpoints = (np.arange(m) + 0.5) / m
-    where = midpoints if positions is None else np.asarray(positions, dtype=np.float64)
-    if where.shape != k.shape or not np.all(np.isfinite(where)):
+    fractions = midpoints if positions is None else np.asarray(positions, dtype=np.float64)
+    if fractions.shape != k.shape or not np.all(np.isfinite(fractions)):
         allowed = f"must be {m} finite numbers"
-        faults.add("positions", f"shape {where.shape}", allowed, "give one position per sample")
+        faults.add("positions", f"shape {fractions.shape}", allowed, "give one position per sample")
     faults.raise_if_any()
 
-    spacing = np.diff(np.sort(np.mod(where, 1.0)))
+    spacing = np.diff(np.sort(np.mod(fractions, 1.0)))
     equal = bool(np.allclose(spacing, 1.0 / m, rtol=0.0, atol=1e-12))
     resolved = most if equal else n
-    angle = 2.0 * np.pi * where
+    angle = 2.0 * np.pi * fractions
     design = _design(angle, resolved)
     condition = float(np.linalg.cond(design[:, : 2 * n + 1]))
     if not condition < 1e8:
-        found = f"condition number {condition:.1e}"
-        faults.add("positions", found, "must be below 1e8", "spread the positions over the period")
+        stated = f"condition number {condition:.1e}"
+        faults.add("positions", stated, "must be below 1e8", "spread the positions over the period")
     solution = np.linalg.lstsq(design, k, rcond=None)[0]
     mean = float(solution[0])
     if mean == 0.0:
@@ -112,12 +112,12 @@ def fit_fourier(samples: npt.ArrayLike, order: int = 1, positions: npt.ArrayLike
     cosine, sine = solution[1::2], solution[2::2]
     amplitudes = np.hypot(cosine, sine)
     phases = np.arctan2(-sine, cosine)
-    left = (k - design[:, : 2 * n + 1] @ solution[: 2 * n + 1]) / mean
-    rms = float(np.sqrt(np.mean(left**2)))
+    remainder = (k - design[:, : 2 * n + 1] @ solution[: 2 * n + 1]) / mean
+    rms = float(np.sqrt(np.mean(remainder**2)))
     return FourierFit(
         stiffness=FourierStiffness(mean, tuple(amplitudes[:n].tolist()), tuple(phases[:n].tolist())),
         remainder_rms=rms,
-        remainder_max=float(np.max(np.abs(left))),
+        remainder_max=float(np.max(np.abs(remainder))),
         harmonics=tuple((amplitudes / abs(mean)).tolist()),
         condition=condition,
         cost=Cost(watch.seconds, 2 * n + 1),

@@ -60,35 +60,35 @@ TAYLOR_DEGREE = Whole(6, 60, "13 leaves rounding alone")
 
 
 def ordered(
-    faults: Faults, where: str, given: Sequence[float], remedy: str = "give (low, high)"
+    faults: Faults, path: str, bounds: Sequence[float], remedy: str = "give (low, high)"
 ) -> tuple[float, float]:
     """Two finite numbers, the lower first; faults are noted."""
-    low, high = (faults.number(f"{where}[{i}]", given[i], NUMBER) for i in range(2))
+    low, high = (faults.number(f"{path}[{i}]", bounds[i], NUMBER) for i in range(2))
     if not low < high:
-        faults.add(where, tuple(given), "must have the lower value first", remedy)
+        faults.add(path, tuple(bounds), "must have the lower value first", remedy)
     return low, high
 
 
-def whole_numbers(faults: Faults, where: str, given: int | Sequence[int], limit: Whole) -> list[int]:
+def whole_numbers(faults: Faults, path: str, values: int | Sequence[int], limit: Whole) -> list[int]:
     """Different whole numbers in order, of a sequence or one alone; faults are noted."""
-    several = given if isinstance(given, Sequence | np.ndarray | Set) else [given]
-    return sorted({faults.whole(where, number, *limit) for number in several})
+    several = values if isinstance(values, Sequence | np.ndarray | Set) else [values]
+    return sorted({faults.whole(path, number, *limit) for number in several})
 
 
-def checked_grid(faults: Faults, where: str, given: npt.ArrayLike) -> Array:
+def checked_grid(faults: Faults, path: str, grid: npt.ArrayLike) -> Array:
     """Finite numbers in one dimension, at least one; faults are noted."""
-    values = np.atleast_1d(np.asarray(given, dtype=np.float64))
+    values = np.atleast_1d(np.asarray(grid, dtype=np.float64))
     if values.ndim != 1 or len(values) == 0 or not np.all(np.isfinite(values)):
         allowed = "must be finite numbers in one dimension"
-        faults.add(where, f"shape {values.shape}", allowed, "give at least one value")
+        faults.add(path, f"shape {values.shape}", allowed, "give at least one value")
     return values
 
 
-def checked_axis(faults: Faults, where: str, given: tuple[float, float, int]) -> Array:
+def checked_axis(faults: Faults, path: str, axis: tuple[float, float, int]) -> Array:
     """Equally spaced values from (first, last, number); faults are noted."""
-    if len(given) != 3:
-        faults.add(where, given, "must be (first, last, number)", "give three numbers")
+    if len(axis) != 3:
+        faults.add(path, axis, "must be (first, last, number)", "give three numbers")
         return np.zeros(1)
-    low, high = (faults.number(f"{where}[{i}]", given[i], NUMBER) for i in range(2))
-    count = faults.whole(f"{where}[2]", given[2], *STARTS)
+    low, high = (faults.number(f"{path}[{i}]", axis[i], NUMBER) for i in range(2))
+    count = faults.whole(f"{path}[2]", axis[2], *STARTS)
     return np.linspace(low, high, count) if np.isfinite(low + high) else np.zeros(1)

@@ -283,8 +283,8 @@ class PeriodicOscillator(Oscillator):
     @property
     def contact_stiffness(self) -> FourierStiffness:
         """Periodic stiffness in contact."""
-        found: FourierStiffness = getattr(self, self.stiffness_name)
-        return found
+        stiffness: FourierStiffness = getattr(self, self.stiffness_name)
+        return stiffness
 
     def with_contact_stiffness(self, stiffness: FourierStiffness) -> Self:
         """The same with another periodic stiffness in contact."""
@@ -362,8 +362,8 @@ def _refusing(function: Callable[P, R], takes: Callable[[Oscillator], bool], all
 
     @functools.wraps(function)
     def checked(*args: P.args, **kwargs: P.kwargs) -> R:
-        given: Any = args[0] if args else next(iter(kwargs.values()), None)
-        oscillator = given if isinstance(given, Oscillator) else getattr(given, "oscillator", None)
+        argument: Any = args[0] if args else next(iter(kwargs.values()), None)
+        oscillator = argument if isinstance(argument, Oscillator) else getattr(argument, "oscillator", None)
         if isinstance(oscillator, Oscillator) and not takes(oscillator):
             name = type(oscillator).__name__
             raise InputError.at(

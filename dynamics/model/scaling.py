@@ -53,8 +53,8 @@ class Scaling:
         """Check; every fault is listed."""
         with Faults() as faults:
             for name, unit in (("equivalent_mass", "kg"), ("mean_stiffness", "N/m"), ("length", "m")):
-                given = faults.number(f"scaling.{name}", getattr(self, name), POSITIVE.in_unit(1.0, unit))
-                object.__setattr__(self, name, given)
+                number = faults.number(f"scaling.{name}", getattr(self, name), POSITIVE.in_unit(1.0, unit))
+                object.__setattr__(self, name, number)
             teeth = faults.whole(
                 "scaling.cycles_per_revolution",
                 self.cycles_per_revolution,

@@ -25,14 +25,14 @@ def apart(state: npt.ArrayLike, states: Array) -> float:
     return float(np.min(np.max(np.abs(states - np.asarray(state)), axis=1)))
 
 
-def checked_state(state: npt.ArrayLike, where: str = "state", size: int = 2) -> Array:
+def checked_state(state: npt.ArrayLike, path: str = "state", size: int = 2) -> Array:
     """Return a fresh array of X and V, or of so many displacements and speeds, or raise InputError."""
     at = np.array(state, dtype=np.float64)
     if at.shape != (size,) or not np.all(np.isfinite(at)):
         allowed = "must be two finite numbers, X and V"
         if size != 2:
             allowed = f"must be {size} finite numbers, {size // 2} displacements and their speeds"
-        raise InputError.at(where, at.tolist(), allowed, "give the state at tau = 0")
+        raise InputError.at(path, at.tolist(), allowed, "give the state at tau = 0")
     return at
 
 

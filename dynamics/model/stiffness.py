@@ -100,16 +100,16 @@ class FourierStiffness:
         return FourierStiffness(1.0, tuple(k / self.mean for k in self.amplitudes), self.phases)
 
 
-def numbers(faults: Faults, where: str, given: object) -> tuple[float, ...]:
+def numbers(faults: Faults, path: str, values: object) -> tuple[float, ...]:
     """Sequence of numbers as a tuple; what is none is noted."""
-    if isinstance(given, str) or not isinstance(given, Sequence | np.ndarray) or np.ndim(given) != 1:
-        faults.add(where, given, "must be a sequence of numbers", "give one number per harmonic")
+    if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray) or np.ndim(values) != 1:
+        faults.add(path, values, "must be a sequence of numbers", "give one number per harmonic")
         return ()
-    return tuple(faults.number(f"{where}[{j}]", value, NUMBER) for j, value in enumerate(given))
+    return tuple(faults.number(f"{path}[{j}]", value, NUMBER) for j, value in enumerate(values))
 
 
-def check_stiffness(faults: Faults, stiffness: object, where: str = "stiffness") -> None:
+def check_stiffness(faults: Faults, stiffness: object, path: str = "stiffness") -> None:
     """Note a fault of what is no `FourierStiffness`."""
     if not isinstance(stiffness, FourierStiffness):
         remedy = "build one, or fit one with fit_fourier"
-        faults.add(where, stiffness, "must be a FourierStiffness", remedy)
+        faults.add(path, stiffness, "must be a FourierStiffness", remedy)

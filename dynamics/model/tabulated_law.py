@@ -69,10 +69,10 @@ class TabulatedContact(ContactLaw):
         steepness = self.slopes(np.linspace(0.0, 2.0 * np.pi, 128, endpoint=False))
         if not steepness.min() > 0.0:
             turn, at = np.unravel_index(int(np.argmin(steepness)), steepness.shape)
-            where = f"at angle {2 * np.pi * turn / 128:.3f} and interval {at // 4} of {self.intervals}"
+            place = f"at angle {2 * np.pi * turn / 128:.3f} and interval {at // 4} of {self.intervals}"
             faults.add(
                 "samples",
-                f"falling {where}",
+                f"falling {place}",
                 "must give a force that grows with the depth",
                 "fewer harmonics, more samples",
             )

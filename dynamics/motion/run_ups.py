@@ -156,9 +156,9 @@ def run_up(
     --------
     >>> from dynamics import FourierStiffness, GearOscillator, run_up
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
-    >>> found = run_up(osc, (0.6, 0.7), periods=3200)
-    >>> at = found.frequency[int(np.argmax(np.diff(found.rms)))]
-    >>> found.direction, bool(0.65 < at < 0.67)
+    >>> ramp = run_up(osc, (0.6, 0.7), periods=3200)
+    >>> at = ramp.frequency[int(np.argmax(np.diff(ramp.rms)))]
+    >>> ramp.direction, bool(0.65 < at < 0.67)
     ('up', True)
     """
     watch = Stopwatch()

@@ -97,8 +97,8 @@ def motion_spectrum(
     --------
     >>> from dynamics import FourierStiffness, GearOscillator, find_orbit
     >>> osc = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.002, 0.5, half_backlash=0.0)
-    >>> found = motion_spectrum(osc, find_orbit(osc, (0.1, 0.0)).state, highest=2)
-    >>> found.order, (1e3 * found.displacement).round(6)
+    >>> spectrum = motion_spectrum(osc, find_orbit(osc, (0.1, 0.0)).state, highest=2)
+    >>> spectrum.order, (1e3 * spectrum.displacement).round(6)
     (array([1., 2.]), array([0.66519, 0.     ]))
     """
     watch = Stopwatch()
@@ -116,14 +116,14 @@ def motion_spectrum(
     x, force = motion.x[:-1], mesh_force(oscillator, motion)[:-1]
     lines = np.arange(1, math.floor(top * length + 1e-9) + 1)
     curves = [x, force, *(motion.states[:-1] @ rows.T).T]
-    found = [_amplitudes(one, length * per_period, parts)[lines] for one in curves]
-    coarse = [_amplitudes(one[::2], length * per_period // 2, parts)[lines] for one in curves]
-    off = max(_apart(there, here) for here, there in zip(found, coarse, strict=True))
+    amplitudes = [_amplitudes(curve, length * per_period, parts)[lines] for curve in curves]
+    coarse = [_amplitudes(curve[::2], length * per_period // 2, parts)[lines] for curve in curves]
+    off = max(_apart(there, here) for here, there in zip(amplitudes, coarse, strict=True))
     return Spectrum(
         lines / length,
-        found[0],
-        found[1],
-        np.array(found[2:]).reshape(len(rows), len(lines)).T,
+        amplitudes[0],
+        amplitudes[1],
+        np.array(amplitudes[2:]).reshape(len(rows), len(lines)).T,
         float(np.std(x)),
         float(np.std(force)),
         n,
@@ -143,6 +143,6 @@ def _amplitudes(values: Array, length: int, parts: int) -> Array:
     return np.asarray(2.0 * np.sqrt(np.mean(squares, axis=0) / (length * np.sum(window**2))))
 
 
-def _apart(one: Array, other: Array) -> float:
-    largest = float(np.max(other, initial=0.0))
-    return float(np.max(np.abs(one - other), initial=0.0)) / largest if largest > 0.0 else 0.0
+def _apart(coarse: Array, fine: Array) -> float:
+    largest = float(np.max(fine, initial=0.0))
+    return float(np.max(np.abs(coarse - fine), initial=0.0)) / largest if largest > 0.0 else 0.0

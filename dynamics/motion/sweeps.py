@@ -143,7 +143,7 @@ def sweep(
         flow = flow_at(here)
         motion = _settle(here, flow, state, skip, kept, longest, patient=wait is None)
         total += motion.used
-        if motion.found:
+        if motion.bounded:
             states[i], periods[i], labels[i] = motion.states, motion.n, motion.label
             impacts[i] = motion.counts.mean(axis=0)
             error = max(error, _map_error(flow, states[i, -2], states[i, -1]))
@@ -199,7 +199,7 @@ class _Motion(NamedTuple):
     n: int
     label: str
     used: int
-    found: bool
+    bounded: bool
 
 
 def _settle(

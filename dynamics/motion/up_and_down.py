@@ -45,11 +45,11 @@ def up_and_down(
     """
     given_up, one_at_a_time, met = Event(), Lock(), [0, 0]
 
-    def tell(way: int, done: int, every: int) -> None:
+    def tell(way: int, done: int, total: int) -> None:
         if progress is not None:
             with one_at_a_time:
                 met[way] = done
-                progress(sum(met), 2 * every)
+                progress(sum(met), 2 * total)
 
     def up() -> SweepResult:
         try:
@@ -58,7 +58,7 @@ def up_and_down(
                 parameter,
                 values,
                 "up",
-                progress=lambda done, every: tell(0, done, every),
+                progress=lambda done, total: tell(0, done, total),
                 **options,
             )
         except BaseException:  # an interrupt comes here: the other way is not waited for to its end
@@ -68,10 +68,10 @@ def up_and_down(
     def down() -> SweepResult:
         return sweep(oscillator, parameter, values, "down", progress=heed, **options)
 
-    def heed(done: int, every: int) -> None:
+    def heed(done: int, total: int) -> None:
         if given_up.is_set():
             raise InterruptedError("the sweep up has ended early")
-        tell(1, done, every)
+        tell(1, done, total)
 
-    found = side_by_side([up, down])
-    return {"up": found[0], "down": found[1]}
+    swept = side_by_side([up, down])
+    return {"up": swept[0], "down": swept[1]}

@@ -299,13 +299,13 @@ class _Search:
         """Keep the orbits that Newton's method, pushed away from some points, reaches from starts."""
         from dynamics.kernels.searching import hunt
 
-        found = np.empty((4096, 2))
-        found[: len(deflated)] = deflated
+        points = np.empty((4096, 2))
+        points[: len(deflated)] = deflated
         last, used = hunt(
-            self.table.arrays, self.table.space(), starts, n, limit, self.scale, found, len(deflated)
+            self.table.arrays, self.table.space(), starts, n, limit, self.scale, points, len(deflated)
         )
         self.periods += int(used)
-        for point in found[len(deflated) : last]:
+        for point in points[len(deflated) : last]:
             if self._known(point) is None:
                 self._keep(find_orbit(self.oscillator, point, periods=n))
 

@@ -93,8 +93,8 @@ def plane_distance(gap: float) -> tuple[float, float]:
     # ln of the gap is concave: Newton's method climbs to the root from below, where 0 leaves phi(0)
     t = gap - _TOUCHING if gap > _TOUCHING else -math.sqrt(-2.0 * math.log(gap))
     for _ in range(_ROUNDS):
-        left, free = _open(t)
-        step = math.log(gap / left) * left / free
+        opening, free = _open(t)
+        step = math.log(gap / opening) * opening / free
         t += step
         if abs(step) < 1e-12:
             break
@@ -170,8 +170,8 @@ class Roughness:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        with Faults.of(self, LIMITS, "roughness.") as found:
-            found.choice("roughness.law", self.law, LAWS)
+        with Faults.of(self, LIMITS, "roughness.") as faults:
+            faults.choice("roughness.law", self.law, LAWS)
         low, high = ROUGHNESS_NUMBER
         if self.elastic and not low * (1.0 - 1e-9) <= self.number <= high * (1.0 + 1e-9):
             warnings.warn(
@@ -224,12 +224,12 @@ class Roughness:
         >>> round(1e6 * ground.deviation, 3), round(ground.number, 3)
         (0.709, 0.04)
         """
-        with Faults() as found:
+        with Faults() as faults:
             if (mean is None) == (peaks is None):
-                found.add("roughness", "", "must have Ra or Rz, one of them", "give mean or peaks")
-            given = peaks if mean is None else mean
-            both = given if isinstance(given, tuple) else (given, given)
-            each = [found.number("roughness", one, DRAWN) for one in both if given is not None]
+                faults.add("roughness", "", "must have Ra or Rz, one of them", "give mean or peaks")
+            drawn = peaks if mean is None else mean
+            heights = drawn if isinstance(drawn, tuple) else (drawn, drawn)
+            each = [faults.number("roughness", height, DRAWN) for height in heights if drawn is not None]
         scale = MEAN_OVER_DEVIATION * (PEAKS_OVER_MEAN if mean is None else 1.0)
         return cls.of_deviation(math.hypot(*each) / scale, density, tip_radius, law, offset)
 
@@ -309,8 +309,8 @@ class Roughness:
         Of E' [Pa]; where the film ratio decides, of the Hertz pressure [Pa].
         """
         if not self.elastic:
-            found = share_by_ratio(gap, self.deviation)
-            return hertz * found.share, hertz * found.share * found.steep
+            ratio_share = share_by_ratio(gap, self.deviation)
+            return hertz * ratio_share.share, hertz * ratio_share.share * ratio_share.steep
         distance, follow = self.planes(gap)
         pressure, slope = self.pressure(distance, reduced_modulus)
         return float(pressure), float(slope * follow)

@@ -89,9 +89,9 @@ class LineContact:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        with Faults.of(self, LIMITS) as found:
+        with Faults.of(self, LIMITS) as faults:
             if not isinstance(self.lubricant, Lubricant):
-                found.add("lubricant", self.lubricant, "must be a Lubricant", "build one with ehl.Lubricant")
+                faults.add("lubricant", self.lubricant, "must be a Lubricant", "build one with ehl.Lubricant")
 
     @classmethod
     def from_moes(
@@ -123,10 +123,10 @@ class LineContact:
         reduced_modulus, radius : float
             E' [Pa] and R [m].
         """
-        with Faults() as found:
-            found.numbers(_MOES_LIMITS, (M, L, roelands_z, pressure_viscosity, reduced_modulus, radius))
-            if not found.found and 0.0 < L < 1e-6:
-                found.add("L", L, "must be 0 or at least 1e-6", "give L = 0 for a constant viscosity")
+        with Faults() as faults:
+            faults.numbers(_MOES_LIMITS, (M, L, roelands_z, pressure_viscosity, reduced_modulus, radius))
+            if not faults.found and 0.0 < L < 1e-6:
+                faults.add("L", L, "must be 0 or at least 1e-6", "give L = 0 for a constant viscosity")
         alpha = pressure_viscosity if L > 0 else 0.0
         speed = (L / (alpha * reduced_modulus)) ** 4 if L > 0 else _SPEED_PARAMETER
         viscosity = math.exp(pressure_viscosity * ROELANDS_PRESSURE / roelands_z + ROELANDS_LN_VISCOSITY)

@@ -168,8 +168,10 @@ def fluxes(
     from ehl.kernels.film_kernels import reynolds
 
     state = plain_oil(groups, P) if fluid is None else fluid
-    found: tuple[Array, Array] = reynolds(grid.nodes, P, H, faces, *state[:5], groups.lam, grid.upstream)
-    return found
+    flux_and_slopes: tuple[Array, Array] = reynolds(
+        grid.nodes, P, H, faces, *state[:5], groups.lam, grid.upstream
+    )
+    return flux_and_slopes
 
 
 class Residual(NamedTuple):

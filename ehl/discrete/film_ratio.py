@@ -62,5 +62,5 @@ def share_by_ratio(gap: float, deviation: float) -> RatioShare:
     B, C = constants(deviation)
     bare = B * (gap / deviation) ** C
     steep = C * bare / gap
-    left = -math.expm1(-bare)
-    return RatioShare(math.exp(-bare), -steep, -bare - math.log(left), -steep / left)
+    film_share = -math.expm1(-bare)
+    return RatioShare(math.exp(-bare), -steep, -bare - math.log(film_share), -steep / film_share)

@@ -133,8 +133,8 @@ def _between(rigid: float, elastic: float, rigid_piezo: float, elastic_piezo: fl
     film = (rigid ** (7 / 3) + elastic ** (7 / 3)) ** (3 * s / 7)
     if rigid_piezo > 0.0:
         film += (rigid_piezo**-3.5 + elastic_piezo**-3.5) ** (-2 * s / 7)
-    found: float = film ** (1 / s)
-    return found
+    thickness: float = film ** (1 / s)
+    return thickness
 
 
 def moes_central(contact: LineContact) -> float:
@@ -195,8 +195,8 @@ class FormulaFilm:
 
         ``"dowson-central"``: 10 w/h_c. ``"dowson-minimum"``: w/(0.13 h_m). Other names raise InputError.
         """
-        with Faults() as found:
-            found.choice("definition", definition, _DEFINITIONS, "solve the contact for the others")
+        with Faults() as faults:
+            faults.choice("definition", definition, _DEFINITIONS, "solve the contact for the others")
         return formula_stiffness(self.contact, definition)
 
 

@@ -69,8 +69,8 @@ def surface_heating(edges: Array, speed: float, solid: Solid, depth: float) -> A
     from ehl.kernels.heat_kernels import source_differences
 
     middle = 0.5 * (edges[1:] + edges[:-1])
-    found: Array = source_differences(drift * middle, drift * edges, _source_table(), _LN_LEAST, _LN_STEP)
-    return found / (drift * math.pi * solid.conductivity)
+    integrals: Array = source_differences(drift * middle, drift * edges, _source_table(), _LN_LEAST, _LN_STEP)
+    return integrals / (drift * math.pi * solid.conductivity)
 
 
 @cache

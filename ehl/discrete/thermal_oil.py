@@ -78,15 +78,15 @@ class ThermalOil:
         self.temperature = np.tile(self.undisturbed, (cells, 1))
         self.into, self.sigma = np.zeros((2, cells)), np.zeros(cells)
         if self.solids is not None:
-            both = zip(self.contact.surface_speeds, self.solids, strict=True)
+            surfaces = zip(self.contact.surface_speeds, self.solids, strict=True)
             depth = self.contact.radius
-            self.bodies = np.array([surface_heating(self.x, u, solid, depth) for u, solid in both])
+            self.bodies = np.array([surface_heating(self.x, u, solid, depth) for u, solid in surfaces])
 
     @property
     def undisturbed(self) -> Array:
         """Temperature of the oil between surfaces at their bulk temperatures (m,) [K]."""
-        found: Array = self.bulk[0] + (self.bulk[1] - self.bulk[0]) * (self.across.zeta + 0.5)
-        return found
+        temperature: Array = self.bulk[0] + (self.bulk[1] - self.bulk[0]) * (self.across.zeta + 0.5)
+        return temperature
 
     def start_from(self, old: ThermalOil) -> None:
         """Take temperatures, fluxes and shear over from another grid."""
@@ -163,10 +163,10 @@ class ThermalOil:
     def at_nodes(self, values: Array) -> Array:
         """Take values of cells (n-1, ...) to the nodes, linearly."""
         left = self.left if values.ndim == 1 else self.left[:, None]
-        found = np.empty((values.shape[0] + 1, *values.shape[1:]))
-        found[0], found[-1] = values[0], values[-1]
-        found[1:-1] = values[1:] + left * (values[:-1] - values[1:])
-        return found
+        nodal = np.empty((values.shape[0] + 1, *values.shape[1:]))
+        nodal[0], nodal[-1] = values[0], values[-1]
+        nodal[1:-1] = values[1:] + left * (values[:-1] - values[1:])
+        return nodal
 
     def _moved(self, P: Array, H: Array) -> Array:
         """Mass flow over rho0 u a^2/R that the pressure moves upstream through every cell.
@@ -180,17 +180,17 @@ class ThermalOil:
             state = plain_oil(self.groups, P)
             if self.begun is not None:
                 state = state._replace(shear=self.begun)
-        found: Array = pressure_flow(
+        flow: Array = pressure_flow(
             grid.nodes, P, H, grid.quick, state.ln_viscosity, state.density, state.shear, self.groups.lam
         )
         if self.before is None:
-            return found
+            return flow
         held, steep = state.shear[:, 2], state.shear[:, 3]
         with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = found / held
+            ratio = flow / held
             more = held * (1.0 + steep * (ratio - 1.0))
             less = held / (1.0 + steep * (1.0 / ratio - 1.0))
-        moved: Array = np.where(ratio > 1.0, more, np.where(ratio > 0.0, less, found))
+        moved: Array = np.where(ratio > 1.0, more, np.where(ratio > 0.0, less, flow))
         return moved
 
     def _sheared(self, p: Array, gap: Array, ratio: Array, packed: Array, moved: Array) -> Sheared:
@@ -208,7 +208,7 @@ class ThermalOil:
             np.full(middle.size, _UNLIMITED) if share is None else np.maximum(share * pressed, _LEAST_STRESS)
         )
         viscosity = np.exp(ln_ratio) * oil.viscosity
-        found = flow_across(
+        profiles = flow_across(
             viscosity,
             middle,
             limit,
@@ -221,7 +221,7 @@ class ThermalOil:
             across.sum_up,
             self.sigma,
         )
-        return Sheared(middle, density, cooling, fall, viscosity, *found)
+        return Sheared(middle, density, cooling, fall, viscosity, *profiles)
 
     def _warm(self, p: Array) -> None:
         """Sweep for the temperatures, against the flow too where some runs back."""

@@ -170,8 +170,8 @@ class Film:
         InputError
             For any other name.
         """
-        with Faults() as found:
-            found.choice("definition", definition, DEFINITIONS)
+        with Faults() as faults:
+            faults.choice("definition", definition, DEFINITIONS)
         without_formula = definition.startswith("dowson") and (self.contact.G == 0.0 or self.starved)
         if not self.converged or without_formula:
             return math.nan

@@ -125,7 +125,9 @@ def film_response(film: Film, frequency: ArrayLike) -> FilmResponse:
         import ehl.kernels.film_kernels  # noqa: F401  numba
     watch = Stopwatch()
     levels = [_Linear.of(level, film.supply) for level in (film.state.coarse, film.state.fine)]
-    coarse, fine = (np.array([one.answer(w) for w in at.ravel()]).reshape(*at.shape, 3) for one in levels)
+    coarse, fine = (
+        np.array([linear.answer(w) for w in at.ravel()]).reshape(*at.shape, 3) for linear in levels
+    )
     # waves of the film may leave the separation as it is by accident: the central film's change counts as well
     changes = np.abs(coarse - fine)[..., :2].sum(axis=-1)
     still = film.errors.approach_stiffness * abs(film.separation_slope)
@@ -147,19 +149,19 @@ def film_response(film: Film, frequency: ArrayLike) -> FilmResponse:
 def _checked(film: Film, frequency: ArrayLike) -> Array:
     """Raise every fault of the arguments; return the frequencies."""
     at = np.zeros(0)
-    with Faults() as found:
+    with Faults() as faults:
         refused = _why_not(film)
         if refused:
-            found.add("film", film, *refused)
+            faults.add("film", film, *refused)
         try:
             at = np.asarray(frequency, dtype=float)
         except (TypeError, ValueError):
-            found.add("frequency", frequency, "must be numbers", "give the angular frequency in rad/s")
+            faults.add("frequency", frequency, "must be numbers", "give the angular frequency in rad/s")
         else:
             if at.size == 0:
-                found.add("frequency", frequency, "must hold a frequency", "give one in rad/s")
+                faults.add("frequency", frequency, "must hold a frequency", "give one in rad/s")
             for value in at.ravel():
-                found.number("frequency", float(value), _FREQUENCY)
+                faults.number("frequency", float(value), _FREQUENCY)
     return at
 
 
@@ -190,8 +192,8 @@ def _why_not(film: object) -> tuple[str, str] | None:
 def _not_slower(frequency: Array, contact: LineContact) -> Array:
     """Frequencies, those near 0 so far from it that damping can be distinguished from rounding."""
     least = _SLOWEST * contact.entrainment / contact.half_width
-    found: Array = np.where(np.abs(frequency) < least, least, frequency)
-    return found
+    frequencies: Array = np.where(np.abs(frequency) < least, least, frequency)
+    return frequencies
 
 
 @dataclass(frozen=True)
@@ -213,21 +215,21 @@ class _Linear:
         """Linearise about the steady film, on nodes that follow the load."""
         from ehl.kernels.film_kernels import newton_matrix
 
-        grid, groups, found = level.grid, level.groups, level.found
-        before = Residual.of(grid, groups, found.P, found.H0)
+        grid, groups, solution = level.grid, level.groups, level.solution
+        before = Residual.of(grid, groups, solution.P, solution.H0)
         heavier, moved = heavier_by_step(level, supply)
         own = explicit(level, before, heavier, moved)
         influence = -groups.compliance * grid.potential
-        free = np.flatnonzero(found.P[1:-1] > 0.0) + 1
+        free = np.flatnonzero(solution.P[1:-1] > 0.0) + 1
         system = newton_matrix(before.slopes, influence, grid.weights, free)
         scale = system[:-1, -1]
-        storage = Storage.of(grid, groups, found.P, found.H)
+        storage = Storage.of(grid, groups, solution.P, solution.H)
         seconds = groups.length / level.contact.entrainment
         stored = np.zeros((free.size + 1, free.size + 1))
         stored[:-1] = seconds * scale[:, None] * storage.rows(influence, free)
         after = level.groups.on(heavier, moved)
-        content = Content.of(grid, groups, found.P, found.H0)
-        swept = by_parameter(content, Content.of(moved, after, found.P, found.H0), STEP)
+        content = Content.of(grid, groups, solution.P, solution.H0)
+        swept = by_parameter(content, Content.of(moved, after, solution.P, solution.H0), STEP)
         swept /= groups.gap * level.contact.entrainment
         return cls(
             level=level,
@@ -251,18 +253,18 @@ class _Linear:
         centre = dH0 - groups.compliance * (grid.centre @ dP)
         film = self.thinned + groups.gap * (dH0 - groups.compliance * (grid.potential @ dP))
         least = np.interp(figures(level).minimum_position / groups.length, grid.nodes, film)
-        found: Complex = np.array(
+        derivatives: Complex = np.array(
             [self.separation + groups.gap * dH0, self.central + groups.gap * centre, least]
         )
-        return found / level.contact.load
+        return derivatives / level.contact.load
 
 
 def _thinned(level: Level, heavier: LineContact, moved: Grid) -> Array:
     """Differentiate the gap at fixed places by ln w, with P and H0 of the moving nodes held [m]."""
-    grid, groups, found = level.grid, level.groups, level.found
+    grid, groups, solution = level.grid, level.groups, level.solution
     after = groups.on(heavier, moved)
     x, x_moved = grid.nodes * groups.length, moved.nodes * after.length
-    film = found.H * groups.gap
-    carried = film_gap(moved, after, found.P, found.H0) * after.gap
+    film = solution.H * groups.gap
+    carried = film_gap(moved, after, solution.P, solution.H0) * after.gap
     change: Array = (carried - film - np.gradient(film, x) * (x_moved - x)) / STEP
     return change

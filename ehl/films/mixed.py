@@ -104,11 +104,11 @@ def solve_mixed(
     options = Options(tolerance, supply=supply).checked(contact)
     search = _Search(contact, roughness, options, start)
     try:
-        found = search.solved()
+        mixed = search.solved()
     except _NoFilmError as reason:
         return search.failed(str(reason))
-    warn_of_range(found.film.contact)
-    return found
+    warn_of_range(mixed.film.contact)
+    return mixed
 
 
 class _NoFilmError(Exception):
@@ -118,7 +118,7 @@ class _NoFilmError(Exception):
 class _Balance(NamedTuple):
     """A film under the share of the load that its asperities leave to it."""
 
-    found: Found
+    film: Found
     odds: float
     by: Response  # derivatives by the odds
 
@@ -141,12 +141,12 @@ class _Search:
 
     def film_at(self, odds: float) -> Found:
         """Film that carries what the asperities leave, at odds ln[s/(1-s)] of their share."""
-        self.last = found = solve_checked(eased(self.contact, share_of(-odds)), self.options, self.state)
-        self.cost += found.run.cost() + Cost(0.0, counts={"films": 1})
-        if not found.converged:
-            raise _NoFilmError(found.film().message)
-        self.state = found.state.bare()
-        return found
+        self.last = film = solve_checked(eased(self.contact, share_of(-odds)), self.options, self.state)
+        self.cost += film.run.cost() + Cost(0.0, counts={"films": 1})
+        if not film.converged:
+            raise _NoFilmError(film.film().message)
+        self.state = film.state.bare()
+        return film
 
     def solved(self) -> MixedFilm:
         """Share the load, with the asperities' stiffness at the contact's width and both derivatives."""
@@ -158,15 +158,15 @@ class _Search:
         balance = self.balance()
         if balance is None:
             return self.smooth(self.film_at(-math.inf))
-        film, share, by = balance.found.film(), share_of(balance.odds), balance.by
+        film, share, by = balance.film.film(), share_of(balance.odds), balance.by
         contact, roughness, gap = self.contact, self.roughness, film.central_thickness
         pressure, slope = roughness.under_film(gap, contact.reduced_modulus, contact.peak_pressure)
         closer = roughness.planes(gap)[1]  # planes by gap
         stiffness = -share * contact.load * slope / pressure / closer
         # the excess stays 0 as film, share and load change: that gives the odds by the load
         at = excess(contact, roughness, gap, balance.odds)
-        left = share_of(-balance.odds)
-        separation_w, central_w = left * film.separation_slope, left * film.central_slope
+        film_share = share_of(-balance.odds)
+        separation_w, central_w = film_share * film.separation_slope, film_share * film.central_slope
         follow = -(at.by_load / contact.load + at.by_gap * central_w)
         follow /= at.by_gap * by.central + at.by_odds
         central = central_w + by.central * follow
@@ -183,18 +183,18 @@ class _Search:
     def likely_odds(self, start: MixedFilm) -> float:
         """Odds that a neighbour makes likely: its film, changed as Moes' formula has it; behind a layer as it is."""
         share, near = start.asperity_share, start.film.contact
-        left, supply = 1.0 - share, self.options.supply
+        film_share, supply = 1.0 - share, self.options.supply
         ratio = 1.0
         if not isinstance(supply, OilLayer):
-            ratio = moes_central(eased(self.contact, left)) / moes_central(near)
-        grows = usual_growth(self.contact, left, supply)
+            ratio = moes_central(eased(self.contact, film_share)) / moes_central(near)
+        grows = usual_growth(self.contact, film_share, supply)
         known = KnownGap(ratio * start.central_thickness, odds_of(share), grows)
         return foreseen(self.contact, self.roughness, known)
 
-    def growth(self, found: Found) -> float:
+    def growth(self, film: Found) -> float:
         """Power of what is left to it with which a film grows, by its derivative."""
-        by = by_share(found.fine, found.run.supply)
-        return by.central / figures(found.fine).central_thickness
+        by = by_share(film.fine, film.run.supply)
+        return by.central / figures(film.fine).central_thickness
 
     def balance(self) -> _Balance | None:
         """Share at which the asperities carry what is asked, from film to film in its odds between bounds.
@@ -207,12 +207,12 @@ class _Search:
         odds, low, high = self.odds, -math.inf, math.inf
         last: KnownGap | None = None
         for _ in range(_TRIES):
-            found = self.film_at(odds)
-            gap = figures(found.fine).central_thickness
+            film = self.film_at(odds)
+            gap = figures(film.fine).central_thickness
             more = excess(self.contact, self.roughness, gap, odds).value
             if abs(more) < _BALANCED:
-                by = by_share(found.fine, found.run.supply).scaled(-share_of(odds))  # ln(1 - s) falls by s
-                return _Balance(found, odds, by)
+                by = by_share(film.fine, film.run.supply).scaled(-share_of(odds))  # ln(1 - s) falls by s
+                return _Balance(film, odds, by)
             low, high = (odds, high) if more > 0.0 else (low, odds)
             if high <= NOTHING:
                 return None
@@ -220,7 +220,7 @@ class _Search:
                 raise _NoFilmError(
                     "the asperities carry all but a millionth of the load: take the contact as dry"
                 )
-            last = KnownGap(gap, odds, self.grows(found, gap, odds, last))
+            last = KnownGap(gap, odds, self.grows(film, gap, odds, last))
             ahead = foreseen(self.contact, self.roughness, last) - odds
             step = max(-_REACH, min(_REACH, ahead))
             if high - low < min(abs(step), _CLOSE):
@@ -229,16 +229,16 @@ class _Search:
             odds = target if low < target < high else 0.5 * (max(low, NOTHING) + min(high, ALL))
         raise _NoFilmError("no share of the load on which film and asperities agree was found")
 
-    def grows(self, found: Found, gap: float, odds: float, last: KnownGap | None) -> float:
+    def grows(self, film: Found, gap: float, odds: float, last: KnownGap | None) -> float:
         """Power with which the film grows: by its derivative first, then from film to film where they differ."""
         if last is None:
-            return self.growth(found)
+            return self.growth(film)
         between = math.log(share_of(-odds) / share_of(-last.odds))
         return math.log(gap / last.gap) / between if abs(between) > _APART else last.grows
 
-    def smooth(self, found: Found) -> MixedFilm:
+    def smooth(self, film_alone: Found) -> MixedFilm:
         """Return a film that carries all."""
-        film = found.film()
+        film = film_alone.film()
         return self.result(film, 0.0, 0.0, film.separation_slope, film.central_slope)
 
     def result(self, film: Film, *figures: float) -> MixedFilm:

@@ -111,10 +111,10 @@ def solve_mixed_thermal(
     (True, True)
     """
     watch = Stopwatch()
-    with Faults() as found:
-        found.number("boundary_friction", boundary_friction, BOUNDARY)
+    with Faults() as faults:
+        faults.number("boundary_friction", boundary_friction, BOUNDARY)
         if not isinstance(roughness, Roughness):
-            found.add("roughness", shorten(roughness), "must be a Roughness", "build one with ehl.Roughness")
+            faults.add("roughness", shorten(roughness), "must be a Roughness", "build one with ehl.Roughness")
     oil = contact.lubricant
     bulk = bulk_temperatures or (oil.temperature, oil.temperature)
     # the warm film of the whole load checks what remains of the arguments

@@ -30,7 +30,7 @@ def film_error(coarse: Level, fine: Level) -> float:
     before, after = figures(coarse), figures(fine)
     at = coarse.grid.nodes
     weights = np.where(np.abs(at) <= 1.0, coarse.grid.weights, 0.0)
-    change = coarse.found.H / np.interp(at, fine.grid.nodes, fine.found.H) - 1.0
+    change = coarse.solution.H / np.interp(at, fine.grid.nodes, fine.solution.H) - 1.0
     profile = math.sqrt(float(weights @ change**2 / weights.sum()))
     names = ("central_thickness", "minimum_thickness", "separation")
     changes = [abs(float(getattr(before, name)) / getattr(after, name) - 1.0) for name in names]
@@ -40,9 +40,9 @@ def film_error(coarse: Level, fine: Level) -> float:
 def pressure_error(coarse: Level, fine: Level) -> float:
     """Mean change of the pressure between two grids over its mean, and the teeth before the spike on the finer."""
     at, weights = coarse.grid.nodes, coarse.grid.weights
-    change = np.abs(coarse.found.P - np.interp(at, fine.grid.nodes, fine.found.P))
-    return float(weights @ change / (weights @ coarse.found.P)) + teeth(fine.found.P) / float(
-        fine.found.P.max()
+    change = np.abs(coarse.solution.P - np.interp(at, fine.grid.nodes, fine.solution.P))
+    return float(weights @ change / (weights @ coarse.solution.P)) + teeth(fine.solution.P) / float(
+        fine.solution.P.max()
     )
 
 
@@ -107,7 +107,7 @@ def above(error: float, tolerance: float, nodes: int) -> str:
 
 def film_of(run: GridSearch, coarse: Level, fine: Level, error: float, inlet: float) -> Film:
     """Return the film in SI."""
-    contact, found, supply = run.contact, fine.found, run.supply
+    contact, solution, supply = run.contact, fine.solution, run.supply
     shown, before = figures(fine), figures(coarse)
     slope, slope_before = slopes(fine, supply), slopes(coarse, supply)
     lost = _SEPARATION_LOSS * inlet
@@ -126,19 +126,19 @@ def film_of(run: GridSearch, coarse: Level, fine: Level, error: float, inlet: fl
     )
     groups = fine.groups
     message = "converged"
-    if found.P[-2] > 0.0:
+    if solution.P[-2] > 0.0:
         message = "converged; the film reaches the outlet of the domain, which cuts it off there"
         warnings.warn(message, RangeWarning, stacklevel=5)
     return Film(
         **_frame(run, fine),
         **vars(shown),
-        pressure=found.P * groups.pressure,
-        thickness=found.H * groups.gap,
+        pressure=solution.P * groups.pressure,
+        thickness=solution.H * groups.gap,
         separation_slope=slope.separation / contact.load,
         central_slope=slope.central / contact.load,
         flow=fine.flow,
-        flux_error=found.flux_error,
-        load_error=found.load_error,
+        flux_error=solution.flux_error,
+        load_error=solution.load_error,
         errors=errors,
         converged=True,
         message=message,

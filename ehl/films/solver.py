@@ -160,9 +160,9 @@ def _starved(contact: LineContact, options: Options, supply: Supply, start: Stat
     if held is not None and full is not None:
         expected = full.fine.flow * _moes_flow(contact) / _moes_flow(full.fine.contact)
         if supply.thickness < _SURELY * expected:
-            found = _held(contact, options, supply, expected, held, full, None)
-            if found.converged:
-                return found
+            starved = _held(contact, options, supply, expected, held, full, None)
+            if starved.converged:
+                return starved
     flooded = solve_checked(contact, replace(options, supply=None, spike=None), full)
     if not flooded.converged:
         return flooded
@@ -221,7 +221,7 @@ def _solve(run: GridSearch, options: Options, old: State | None) -> Found:
     while (
         options.nodes is None
         and n < _MOST_FIRST_NODES
-        and not (coarse.found.converged and fine.found.converged)
+        and not (coarse.solution.converged and fine.solution.converged)
         and not run.exhausted
     ):
         half, n = n, 2 * n - 1
@@ -239,26 +239,26 @@ def _refine(run: GridSearch, coarse: Level, fine: Level, options: Options) -> Fo
 
     A grid that fails is passed over: the next one is compared with the last that gave in.
     """
-    given = options.nodes is not None
+    prescribed = options.nodes is not None
     inlet = run.plan.inlet_error
-    if options.sharp and coarse.found.converged and fine.found.converged:
-        if not given and film_error(coarse, fine) + inlet <= options.tolerance and options.spike is None:
+    if options.sharp and coarse.solution.converged and fine.solution.converged:
+        if not prescribed and film_error(coarse, fine) + inlet <= options.tolerance and options.spike is None:
             return Found(run, coarse, fine, film_error(coarse, fine) + inlet, inlet)
-        n = fine.grid.nodes.size if given else _SHARP_NODES
+        n = fine.grid.nodes.size if prescribed else _SHARP_NODES
         coarse = run.sharpened(fine, (n + 1) // 2)
         fine = run.sharpened(coarse, n)
     off = math.inf
     while True:
         n = 2 * fine.grid.nodes.size - 1
-        if not (coarse.found.converged and fine.found.converged):
-            if coarse.found.converged and not given and n <= run.most_cold and not run.exhausted:
+        if not (coarse.solution.converged and fine.solution.converged):
+            if coarse.solution.converged and not prescribed and n <= run.most_cold and not run.exhausted:
                 fine = run.warm(coarse, None, n)
                 continue
-            failed = fine if coarse.found.converged else coarse
-            return Found(run, coarse, fine, math.nan, inlet, failed.found.message)
+            failed = fine if coarse.solution.converged else coarse
+            return Found(run, coarse, fine, math.nan, inlet, failed.solution.message)
         worst = film_error(coarse, fine) + inlet
         before, off = off, spike_error(coarse, fine)
-        if given or (worst <= options.tolerance and (options.spike is None or off <= options.spike)):
+        if prescribed or (worst <= options.tolerance and (options.spike is None or off <= options.spike)):
             return Found(run, coarse, fine, worst, inlet)
         if options.spike is not None and max(before, off) < math.inf and off > _SETTLING * before:
             unsettled = f"error {off:.2g} of the spike, which does not settle"
@@ -268,6 +268,6 @@ def _refine(run: GridSearch, coarse: Level, fine: Level, options: Options) -> Fo
             if options.spike is None and worst < WORST:
                 note = f"{above(worst, options.tolerance, nodes)}: {remedy(run, fine.plan)}"
                 return Found(run, coarse, fine, worst, inlet, note=note, supply=run.supply)
-            left = f"error {worst:.2g}" if worst > options.tolerance else f"error {off:.2g} of the spike"
-            return Found(run, coarse, fine, worst, inlet, f"{left} left on {nodes} nodes")
+            remaining = f"error {worst:.2g}" if worst > options.tolerance else f"error {off:.2g} of the spike"
+            return Found(run, coarse, fine, worst, inlet, f"{remaining} left on {nodes} nodes")
         coarse, fine = fine, run.sharpened(fine, n) if options.sharp else run.warm(fine, None, n)

@@ -65,10 +65,10 @@ def stiffness_table(
     dowson-central 3.45e+11 N/m
     dowson-minimum 3.53e+11 N/m
     """
-    with Faults() as found:
-        found.number("face_width", face_width, _FACE_WIDTH)
+    with Faults() as faults:
+        faults.number("face_width", face_width, _FACE_WIDTH)
         if bodies is not None:
-            found.number("bodies", bodies, _BODIES)
+            faults.number("bodies", bodies, _BODIES)
     errors = {"approach": film.errors.approach_stiffness, "tangent": film.errors.tangent_stiffness}
     rows = []
     for definition in DEFINITIONS:

@@ -156,30 +156,30 @@ def solve_thermal(
     warn_of_range(contact)
     watch = Stopwatch()
     search = Search(contact, solids, bulk, tolerance, supply if isinstance(supply, Meniscus) else None)
-    found = None
+    compared = None
     if search.supply is None and start is not None and start.state is not None and start.oils is not None:
-        found = search.from_neighbour(start.state, start.oils, nodes)
-    if found is None:
-        found = search.from_nothing(nodes)
+        compared = search.from_neighbour(start.state, start.oils, nodes)
+    if compared is None:
+        compared = search.from_nothing(nodes)
     oil = contact.lubricant
     if (
-        found is None
+        compared is None
         and supply is None
         and oil.eyring_stress is None
         and oil.limiting_shear_ratio is not None
     ):
-        found = _yielding(search, nodes)
+        compared = _yielding(search, nodes)
     layer = supply.thickness if isinstance(supply, OilLayer) else math.inf
-    if found is not None and layer < found.fine.flow * (1.0 - found.error):
+    if compared is not None and layer < compared.fine.flow * (1.0 - compared.error):
         search.supply = supply
-        found = search.from_nothing(nodes)
-    if found is not None and found.oil.temperature.max() > _HOTTEST:
-        hottest = found.oil.temperature.max()
-        search.left, found = f"the oil would reach {hottest:.0f} K, which no liquid does", None
-    if found is None:
+        compared = search.from_nothing(nodes)
+    if compared is not None and compared.oil.temperature.max() > _HOTTEST:
+        hottest = compared.oil.temperature.max()
+        search.reason, compared = f"the oil would reach {hottest:.0f} K, which no liquid does", None
+    if compared is None:
         return _failed(search, watch)
-    _warn_of_range(found)
-    return replace(_film(search, found, watch, given=nodes is not None), supply=supply)
+    _warn_of_range(compared)
+    return replace(_film(search, compared, watch, prescribed=nodes is not None), supply=supply)
 
 
 def _yielding(search: Search, nodes: int | None) -> Compared | None:
@@ -199,10 +199,10 @@ def _yielding(search: Search, nodes: int | None) -> Compared | None:
     return near
 
 
-def _warn_of_range(found: Compared) -> None:
+def _warn_of_range(compared: Compared) -> None:
     """Warn where oils no longer are what the model takes them for."""
-    oil, hottest = found.oil, float(found.oil.temperature.max())
-    pressure = oil.groups.pressure * float(found.fine.found.P.max())
+    oil, hottest = compared.oil, float(compared.oil.temperature.max())
+    pressure = oil.groups.pressure * float(compared.fine.solution.P.max())
     stress = float(np.abs(oil.shear.flow[: oil.last + 1, 0]).max())
     if stress > _STRONGEST * pressure:
         message = (
@@ -229,63 +229,65 @@ def _checked(
     contact: LineContact, solids: object, bulk: tuple[float, float] | None, tolerance: float
 ) -> tuple[float, float]:
     """Raise every fault of the arguments; return the bulk temperatures."""
-    given = bulk
-    with Faults() as found:
+    temperatures = bulk
+    with Faults() as faults:
         if not isinstance(contact, LineContact):
-            found.add("contact", contact, "must be a LineContact", "build one with ehl.LineContact")
+            faults.add("contact", contact, "must be a LineContact", "build one with ehl.LineContact")
             return (0.0, 0.0)
         two = isinstance(solids, tuple) and len(solids) == 2 and all(isinstance(s, Solid) for s in solids)
         if not two and solids is not None:
-            found.add("solids", solids, "must be two of ehl.Solid, or None", "(STEEL, STEEL) is the default")
-        if given is None:
-            given = (contact.lubricant.temperature, contact.lubricant.temperature)
-        if len(given) != 2:
-            found.add("bulk_temperatures", given, "must be two temperatures", "give both bodies' in K")
-        for value in given:
-            found.number("bulk_temperatures", value, _TEMPERATURE)
+            faults.add("solids", solids, "must be two of ehl.Solid, or None", "(STEEL, STEEL) is the default")
+        if temperatures is None:
+            temperatures = (contact.lubricant.temperature, contact.lubricant.temperature)
+        if len(temperatures) != 2:
+            faults.add(
+                "bulk_temperatures", temperatures, "must be two temperatures", "give both bodies' in K"
+            )
+        for value in temperatures:
+            faults.number("bulk_temperatures", value, _TEMPERATURE)
             table = contact.lubricant.table
             if table is not None and not table.knows(value):
                 allowed = (
                     f"must lie in the oil's table, {table.temperature[0]:g} to {table.temperature[-1]:g} K"
                 )
-                found.add("bulk_temperatures", value, allowed, "measure the oil there, or take a law")
-        found.number("tolerance", tolerance, _TOLERANCE)
-    return (float(given[0]), float(given[1]))
+                faults.add("bulk_temperatures", value, allowed, "measure the oil there, or take a law")
+        faults.number("tolerance", tolerance, _TOLERANCE)
+    return (float(temperatures[0]), float(temperatures[1]))
 
 
-def _film(search: Search, found: Compared, watch: Stopwatch, *, given: bool) -> ThermalFilm:
-    """Return the film in SI; `given` grids have no tolerance to meet."""
-    level, oil, contact = found.fine, found.oil, search.contact
+def _film(search: Search, compared: Compared, watch: Stopwatch, *, prescribed: bool) -> ThermalFilm:
+    """Return the film in SI; `prescribed` grids have no tolerance to meet."""
+    level, oil, contact = compared.fine, compared.oil, search.contact
     shown, warmer = figures(level), rises(oil)
     nodes, message = level.grid.nodes.size, "converged"
-    if not given and found.error > search.tolerance:
-        message = above(found.error, search.tolerance, nodes)
+    if not prescribed and compared.error > search.tolerance:
+        message = above(compared.error, search.tolerance, nodes)
     return ThermalFilm(
         contact=contact,
         x=oil.x,
         inlet=float(oil.x[0]),
         **vars(shown),
-        pressure=level.found.P * oil.groups.pressure,
-        thickness=level.found.H * oil.groups.gap,
+        pressure=level.solution.P * oil.groups.pressure,
+        thickness=level.solution.H * oil.groups.gap,
         flow=level.flow,
-        flux_error=level.found.flux_error,
-        load_error=level.found.load_error,
-        errors=FilmErrors(film=found.error, inlet=found.inlet),
+        flux_error=level.solution.flux_error,
+        load_error=level.solution.load_error,
+        errors=FilmErrors(film=compared.error, inlet=compared.inlet),
         cost=search.cost(watch.seconds),
         converged=True,
         message=message,
-        state=found.state,
+        state=compared.state,
         solids=search.solids,
         traction_coefficient=traction(oil),
         oil_temperature_rise=warmer[0],
         surface_temperature_rise=warmer[1],
-        rolling_friction=rolling(oil, level.found.P),
+        rolling_friction=rolling(oil, level.solution.P),
         losses=Losses(**losses(oil)),
         temperature=oil.at_nodes(oil.temperature),
-        shear_stress=stresses(oil, level.found.P),
-        traction_error=found.traction_error,
-        temperature_error=found.temperature_error,
-        oils=(found.before, oil),
+        shear_stress=stresses(oil, level.solution.P),
+        traction_error=compared.traction_error,
+        temperature_error=compared.temperature_error,
+        oils=(compared.before, oil),
     )
 
 
@@ -305,6 +307,6 @@ def _failed(search: Search, watch: Stopwatch) -> ThermalFilm:
         errors=FilmErrors(math.nan),
         cost=search.cost(watch.seconds),
         converged=False,
-        message=f"{search.left}: {remedy}",
+        message=f"{search.reason}: {remedy}",
         solids=search.solids,
     )

@@ -80,9 +80,9 @@ class Compared:
         """
         if self.before.solids is None:
             return 0.0
-        found = self.coarse.found
+        solution = self.coarse.solution
         with np.errstate(all="ignore"):
-            wider = np.array(rises(self.before.farther(found.P, found.H)))
+            wider = np.array(rises(self.before.farther(solution.P, solution.H)))
         warm = np.array(rises(self.before))
         ahead = 2.0 * np.abs(wider - warm) / np.maximum(warm, 1.0)
         return float(np.max(ahead)) + abs(losses(self.oil)["closure"])
@@ -95,8 +95,8 @@ class Compared:
         """
         top, climb = _climb(self.fine, self.oil)
         change = climb - _climb(self.coarse, self.before)[1]
-        left = max(_CLIMB_LEFT * climb, 2.0 * change)
-        return max(0.0, top + left - float(self.oil.temperature.max()))
+        remainder = max(_CLIMB_LEFT * climb, 2.0 * change)
+        return max(0.0, top + remainder - float(self.oil.temperature.max()))
 
     @property
     def state(self) -> State:
@@ -113,7 +113,7 @@ def _out_of_balance(powers: dict[str, float]) -> float:
 
 def _climb(level: Level, oil: ThermalOil) -> tuple[float, float]:
     """Maximum temperature under the spike and its rise above the coldest oil between the middle and there [K]."""
-    P, hottest = level.found.P, oil.temperature.max(axis=1)
+    P, hottest = level.solution.P, oil.temperature.max(axis=1)
     tops = np.flatnonzero((P[1:-1] >= P[:-2]) & (P[1:-1] > P[2:])) + 1
     middle = int(np.searchsorted(oil.middles, 0.0))
     if tops.size == 0 or tops[-1] <= middle:
@@ -134,13 +134,13 @@ class Neighbour:
         """Start the finer level and its oil from the old one and from what has changed on the coarser."""
         (old, old_oil), (new, new_oil) = self.coarse, solved
         at, places = level.grid.nodes, old.grid.nodes
-        P = self.fine[0].found.P + np.interp(at, places, new.found.P - old.found.P)
-        H0 = self.fine[0].found.H0 + new.found.H0 - old.found.H0
+        P = self.fine[0].solution.P + np.interp(at, places, new.solution.P - old.solution.P)
+        H0 = self.fine[0].solution.H0 + new.solution.H0 - old.solution.H0
         oil.start_from(self.fine[1])
         oil.add(new_oil, old_oil)
-        last = int(np.flatnonzero(new.found.P > 0.0)[-1])
+        last = int(np.flatnonzero(new.solution.P > 0.0)[-1])
         P[at > places[last]] = 0.0
-        return replace(level, found=replace(level.found, P=np.maximum(P, 0.0), H0=H0))
+        return replace(level, solution=replace(level.solution, P=np.maximum(P, 0.0), H0=H0))
 
 
 class Search:
@@ -158,7 +158,7 @@ class Search:
         self.supply = supply
         self.isothermal = at_bulk(contact, bulk)
         self.reach = max(REACH, (10.0 / tolerance) ** (1.0 / 3.0))
-        self.iterations, self.restarts, self.nodes, self.left = 0, 0, 0, ""
+        self.iterations, self.restarts, self.nodes, self.reason = 0, 0, 0, ""
 
     def from_nothing(self, nodes: int | None) -> Compared | None:
         """Start from the isothermal, Newtonian film."""
@@ -169,7 +169,7 @@ class Search:
             if film.converged:
                 base = film.state.bare().fine if n == _FIRST_NODES else film.state.bare().coarse
                 return self._refine(base, None, nodes)
-        self.left = f"without heat and shear: {film.film().message}"
+        self.reason = f"without heat and shear: {film.film().message}"
         return None
 
     def from_neighbour(
@@ -178,11 +178,11 @@ class Search:
         """Start from both levels of a similar contact and their oils."""
         plan = Plan.of(self.isothermal, "graded", None, self.reach)
         if old.plan.serves(plan):
-            both = Neighbour((old.coarse, oils[0]), (old.fine, oils[1]))
-            return self._refine(old.coarse, both, nodes)
+            neighbour = Neighbour((old.coarse, oils[0]), (old.fine, oils[1]))
+            return self._refine(old.coarse, neighbour, nodes)
         moved = replace(old.fine, plan=plan, grid=plan.grid(old.fine.grid.nodes.size))
         P, H0 = transfer(old.fine, self.contact, plan, moved.grid)
-        return self._refine(replace(moved, found=replace(old.fine.found, P=P, H0=H0)), None, nodes)
+        return self._refine(replace(moved, solution=replace(old.fine.solution, P=P, H0=H0)), None, nodes)
 
     def _refine(self, base: Level, old: Neighbour | None, nodes: int | None) -> Compared | None:
         """Double the grid until the estimate meets what is asked; a grid that fails is passed over.
@@ -202,13 +202,13 @@ class Search:
             fine = self._level(level, n)
             last = self._fed(self._on(fine, oil, old if before is not None else None, before))
             if before is not None and last is not None:
-                found = Compared(before, last, self.tolerance)
-                if n == nodes or (nodes is None and found.error <= self.tolerance):
-                    return found
-                self.left = f"error {found.error:.2g} left on {n} nodes"
-                nearest = found if nearest is None or found.error < nearest.error else nearest
+                compared = Compared(before, last, self.tolerance)
+                if n == nodes or (nodes is None and compared.error <= self.tolerance):
+                    return compared
+                self.reason = f"error {compared.error:.2g} left on {n} nodes"
+                nearest = compared if nearest is None or compared.error < nearest.error else nearest
             if last is None:
-                self.left = "Newton's method did not converge"
+                self.reason = "Newton's method did not converge"
             before, old = last or before, None
         return nearest if nearest is not None and nearest.error < WORST else None
 
@@ -227,7 +227,7 @@ class Search:
             plan = level.plan.with_inlet(-1.0 - search.distance)
             grid = plan.grid(level.grid.nodes.size)
             P, H0 = transfer(level, self.contact, plan, grid)
-            moved = Level(self.contact, plan, grid, replace(level.found, P=P, H0=H0))
+            moved = Level(self.contact, plan, grid, replace(level.solution, P=P, H0=H0))
             trial = self._newton(moved, self._oil(moved, 1.0, oil))
             if trial is None:
                 self.restarts += 1
@@ -242,20 +242,20 @@ class Search:
         same = base.grid.nodes.size == n
         grid = base.grid if same else base.plan.grid(n)
         P, H0 = transfer(base, self.contact, base.plan, grid)
-        return Level(self.contact, base.plan, grid, replace(base.found, P=P, H0=H0))
+        return Level(self.contact, base.plan, grid, replace(base.solution, P=P, H0=H0))
 
     def _on(
         self,
         level: Level,
         known: ThermalOil | None,
         old: Neighbour | None = None,
-        found: Solved | None = None,
+        coarser: Solved | None = None,
     ) -> Solved | None:
         """Solve on a level's grid from its pressures and from another solution's temperatures."""
         self.nodes = max(self.nodes, level.grid.nodes.size)
         oil = self._oil(level, 1.0, known)
-        if old is not None and found is not None and old.fine[0].grid.nodes.size == level.grid.nodes.size:
-            level = old.carry(found, replace(level, grid=old.fine[0].grid), oil)
+        if old is not None and coarser is not None and old.fine[0].grid.nodes.size == level.grid.nodes.size:
+            level = old.carry(coarser, replace(level, grid=old.fine[0].grid), oil)
         solved = self._newton(level, oil)
         if solved is not None:
             return solved
@@ -277,14 +277,14 @@ class Search:
         return oil
 
     def _newton(self, level: Level, oil: ThermalOil) -> Solved | None:
-        found = level.found
+        solution = level.solution
         try:
             with np.errstate(all="ignore"):
                 solved = newton(
                     level.grid,
                     oil.groups,
-                    found.P,
-                    found.H0,
+                    solution.P,
+                    solution.H0,
                     oil=oil,
                     done=_DONE * self.tolerance,
                     max_iterations=_MOST_STEPS,
@@ -296,7 +296,7 @@ class Search:
             return None
         if oil.solids is not None and _out_of_balance(losses(oil)) > _BALANCE:
             return None  # heat that goes round in the inlet has run away
-        return replace(level, contact=self.contact, found=solved), oil
+        return replace(level, contact=self.contact, solution=solved), oil
 
     def cost(self, seconds: float) -> Cost:
         """What it took."""

@@ -52,11 +52,11 @@ def with_load_slopes(film: ThermalFilm) -> ThermalFilm:
     >>> f"{with_load_slopes(film).stiffness():.1e}"
     '2.2e+12'
     """
-    with Faults() as found:
+    with Faults() as faults:
         if not isinstance(film, ThermalFilm) or film.state is None or film.oils is None:
-            found.add("film", film, "must be a solved ThermalFilm", "solve_thermal makes one")
+            faults.add("film", film, "must be a solved ThermalFilm", "solve_thermal makes one")
         elif film.state is not None and film.state.plan.fixed:
-            found.add(
+            faults.add(
                 "film", film, "must be flooded", "slopes of starved films with heat are not known: use solve"
             )
     assert film.state is not None
@@ -76,7 +76,7 @@ def with_load_slopes(film: ThermalFilm) -> ThermalFilm:
 
 def _slopes(level: Level, oil: ThermalOil) -> Array:
     """Differences of separation and central film by the load [m2/N]; NaN where a load was not solved."""
-    found = []
+    gaps = []
     for growth in (1.0 - _STEP, 1.0 + _STEP):
         contact = replace(oil.contact, load=growth * oil.contact.load)
         groups = Groups.on(contact, level.grid)
@@ -87,7 +87,7 @@ def _slopes(level: Level, oil: ThermalOil) -> Array:
             solved = newton(level.grid, groups, P, H0, oil=near, done=_DONE, max_iterations=_MOST_STEPS)
         if not solved.converged:
             return np.full(2, math.nan)
-        shown = figures(replace(level, contact=contact, found=solved))
-        found.append((shown.separation, shown.central_thickness))
-    rise: Array = np.diff(found, axis=0)[0] / (2.0 * _STEP * oil.contact.load)
+        shown = figures(replace(level, contact=contact, solution=solved))
+        gaps.append((shown.separation, shown.central_thickness))
+    rise: Array = np.diff(gaps, axis=0)[0] / (2.0 * _STEP * oil.contact.load)
     return rise

@@ -136,17 +136,17 @@ def traction_curve(
     """
     watch = Stopwatch()
     ratios = np.atleast_1d(np.asarray(slide_roll, dtype=float))
-    with Faults() as found:
-        found.number("pressure", pressure, _PRESSURE)
+    with Faults() as faults:
+        faults.number("pressure", pressure, _PRESSURE)
         if ratios.ndim != 1 or ratios.size == 0:
-            found.add("slide_roll", shorten(slide_roll), "must be one or more ratios", "[0, 0.01, 0.1], say")
+            faults.add("slide_roll", shorten(slide_roll), "must be one or more ratios", "[0, 0.01, 0.1], say")
         for ratio in ratios.ravel().tolist():
-            found.number("slide_roll", ratio, _RATIO)
+            faults.number("slide_roll", ratio, _RATIO)
         if not isinstance(lubricant, Lubricant):
-            found.add("lubricant", shorten(lubricant), "must be a Lubricant", "build one with ehl.Lubricant")
+            faults.add("lubricant", shorten(lubricant), "must be a Lubricant", "build one with ehl.Lubricant")
         elif lubricant.eyring_stress is None and lubricant.limiting_shear_ratio is None:
             remedy = "5e6 to 1e7 Pa is usual; a Newtonian oil's friction has no bound"
-            found.add("lubricant.eyring_stress", None, "must be given, or limiting_shear_ratio", remedy)
+            faults.add("lubricant.eyring_stress", None, "must be given, or limiting_shear_ratio", remedy)
     at = lubricant.temperature if temperature is None else float(temperature)
     load = (
         2.0 * math.pi * radius * pressure**2 / reduced_modulus if radius > 0.0 < reduced_modulus else math.nan
@@ -174,14 +174,14 @@ class _Points:
         near = self.near
         if near is not None and near.contact.sliding * sliding.sliding < 0.0:
             near = None  # the other disc is the faster
-        found = solve_thermal(sliding, self.solids, (self.at, self.at), self.tolerance, start=near)
-        if not found.converged and near is not None and halvings > 0:
+        solved = solve_thermal(sliding, self.solids, (self.at, self.at), self.tolerance, start=near)
+        if not solved.converged and near is not None and halvings > 0:
             half = 0.5 * (near.contact.sliding / self.contact.entrainment + ratio)
             if self.film(half, halvings - 1).converged:
                 return self.film(ratio, halvings - 1)
-        if found.converged:
-            self.near = found
-        return found
+        if solved.converged:
+            self.near = solved
+        return solved
 
 
 def _curve(

@@ -243,9 +243,9 @@ class _Run:
             ]
             instants = np.concatenate([*pieces, np.zeros(0)])
             done = coarse.through(instants) and fine.through(instants)
-        for one in (coarse, fine):
-            self.iterations += one.iterations
-            self.rejected += one.rejected
+        for march in (coarse, fine):
+            self.iterations += march.iterations
+            self.rejected += march.rejected
         return (coarse, fine) if done else coarse.message or fine.message
 
     def cost(self, steps: int) -> Cost:
@@ -258,20 +258,20 @@ class _Run:
         fine = pair[1]
         shown = [_shot(fine, at) for at in self.times.tolist()]
         lowest = min(fine.shots, key=lambda shot: shot.figures.minimum_thickness)
-        tops = [np.array([shot.pressure.max() for shot in one.shots]) for one in pair]
+        tops = [np.array([shot.pressure.max() for shot in march.shots]) for march in pair]
         # a spike narrower than its cells grows by about as much with every halving of them
         growth = np.abs(tops[0] / tops[1] - 1.0) * (1.0 + np.array([shot.halvings for shot in fine.shots]))
         return TransientFilm(
             contact=fine.shots[0].contact,
             time=self.times,
-            load=np.array([one.contact.load for one in shown]),
-            least=np.array([one.figures.minimum_thickness for one in shown]),
-            central=np.array([one.figures.central_thickness for one in shown]),
-            separation=np.array([one.figures.separation for one in shown]),
-            greatest_pressure=np.array([one.pressure.max() for one in shown]),
-            x=np.array([one.x for one in shown]),
-            pressure=np.array([one.pressure for one in shown]),
-            thickness=np.array([one.thickness for one in shown]),
+            load=np.array([instant.contact.load for instant in shown]),
+            least=np.array([instant.figures.minimum_thickness for instant in shown]),
+            central=np.array([instant.figures.central_thickness for instant in shown]),
+            separation=np.array([instant.figures.separation for instant in shown]),
+            greatest_pressure=np.array([instant.pressure.max() for instant in shown]),
+            x=np.array([instant.x for instant in shown]),
+            pressure=np.array([instant.pressure for instant in shown]),
+            thickness=np.array([instant.thickness for instant in shown]),
             cost=self.cost(len(fine.shots) - 1),
             converged=True,
             message="converged",
@@ -280,7 +280,7 @@ class _Run:
             grid_error=grid,
             time_error=steps,
             pressure_error=float(np.max(growth)),
-            balance=max(one.balance for one in fine.shots),
+            balance=max(instant.balance for instant in fine.shots),
         )
 
     def failed(self, first: Film, reason: str) -> TransientFilm:
@@ -311,7 +311,7 @@ def _grid_error(coarse: TimeMarch, fine: TimeMarch) -> float:
     worst = 0.0
     for before, after in zip(coarse.shots, fine.shots, strict=True):
         changes = [getattr(before.figures, name) / getattr(after.figures, name) - 1.0 for name in names]
-        worst = max(worst, GRID_FACTOR * math.fsum(abs(float(one)) for one in changes))
+        worst = max(worst, GRID_FACTOR * math.fsum(abs(float(change)) for change in changes))
     return worst
 
 

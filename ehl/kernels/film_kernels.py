@@ -194,17 +194,17 @@ def reynolds(
         kept = 1.0 - upstream[f]
         flux[f] = moved - kept * mean - carried
         # d flux = drive d ln(fluidity) + mobility d(dP) - (drive dw + kept (dv - mean dw))/w - d(carried), v = rho H w
-        both = (kept * mean - drive) / w
+        by_w = (kept * mean - drive) / w
         slopes[f, 1] = -mobility - drive * (0.5 - tilt) * by_pressure * ln_viscosity_slope[f]
         slopes[f, 2] = mobility - drive * (0.5 + tilt) * by_pressure * ln_viscosity_slope[f + 1]
         for k in range(1, 3):
             i = f - 1 + k
             w_end = w_left if k == 1 else w_right
             by_density = density_slope[i] / density[i]
-            slopes[f, k] -= both * w_end * by_density
-            slopes[f, k] += 2.0 * density_slope[i] / density_sum * (both * w_mid - kept * v_mid / w)
-            slopes[f, 3 + k] += (-3.0 * both * w_end + 2.0 * kept / (gap[i] ** 2 * w) + by_gap) / gap[i]
-        by_ln_middle = -3.0 * both * w_mid + 2.0 * kept * v_mid / w
+            slopes[f, k] -= by_w * w_end * by_density
+            slopes[f, k] += 2.0 * density_slope[i] / density_sum * (by_w * w_mid - kept * v_mid / w)
+            slopes[f, 3 + k] += (-3.0 * by_w * w_end + 2.0 * kept / (gap[i] ** 2 * w) + by_gap) / gap[i]
+        by_ln_middle = -3.0 * by_w * w_mid + 2.0 * kept * v_mid / w
         for k in range(3):
             i = f - 1 + k
             if i >= 0:

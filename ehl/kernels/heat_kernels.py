@@ -272,8 +272,8 @@ def _source(s: float, table: Array, ln_least: float, ln_step: float) -> float:
     a = place - k
     b = 1.0 - a
     ends = b * b * (1.0 + 2.0 * a) * table[row, k] + a * a * (1.0 + 2.0 * b) * table[row, k + 1]
-    found: float = ends + ln_step * a * b * (b * table[row + 1, k] - a * table[row + 1, k + 1])
-    return found
+    integral: float = ends + ln_step * a * b * (b * table[row + 1, k] - a * table[row + 1, k + 1])
+    return integral
 
 
 @njit(cache=True, error_model="numpy")

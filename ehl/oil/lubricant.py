@@ -127,17 +127,17 @@ class Lubricant:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        with Faults.of(self, LIMITS) as found:
+        with Faults.of(self, LIMITS) as faults:
             if not isinstance(self.compressible, bool | np.bool_):
-                found.add("compressible", self.compressible, "must be True or False")
+                faults.add("compressible", self.compressible, "must be True or False")
             for name, limit in STRESS_LIMITS.items():
                 if getattr(self, name) is not None:
-                    found.number(name, getattr(self, name), limit)
-            self._check_laws(found)
-            derived = not found.found and self.viscosity_law is None and self.roelands_z is None
+                    faults.number(name, getattr(self, name), limit)
+            self._check_laws(faults)
+            derived = not faults.found and self.viscosity_law is None and self.roelands_z is None
             if derived and self.pressure_viscosity > 0 and math.log(self.viscosity) <= ROELANDS_LN_VISCOSITY:
                 allowed = "must be more than 6.3e-5 Pa s where Roelands' index is derived from it"
-                found.add("viscosity", self.viscosity, allowed, "give roelands_z")
+                faults.add("viscosity", self.viscosity, allowed, "give roelands_z")
         if isinstance(self.law, Roelands) and not 0.2 <= self.z <= 1.0:
             warnings.warn(
                 f"Roelands index z = {self.z:.3g} lies outside 0.2 to 1, where oils are found; "
@@ -146,20 +146,20 @@ class Lubricant:
                 stacklevel=3,
             )
 
-    def _check_laws(self, found: Faults) -> None:
+    def _check_laws(self, faults: Faults) -> None:
         """Note the faults of given laws."""
         if self.viscosity_law is not None:
             if self.roelands_z is not None:
                 allowed = "must be left out beside a given law"
-                found.add("roelands_z", self.roelands_z, allowed, "put the index into the law")
+                faults.add("roelands_z", self.roelands_z, allowed, "put the index into the law")
             slope = self.viscosity_law.slope
             if not math.isclose(slope, self.pressure_viscosity, rel_tol=1e-6):
                 allowed = f"must be {slope!r}, the slope of the given law at ambient pressure"
                 remedy = "the film's groups are built on it"
-                found.add("pressure_viscosity", self.pressure_viscosity, allowed, remedy)
+                faults.add("pressure_viscosity", self.pressure_viscosity, allowed, remedy)
         if self.density_law is not None and not self.compressible:
             allowed = "must be True beside a given density law"
-            found.add("compressible", False, allowed, "leave one of them out")
+            faults.add("compressible", False, allowed, "leave one of them out")
 
     @cached_property
     def law(self) -> ViscosityLaw:
@@ -255,8 +255,8 @@ class Lubricant:
         exponent = self.viscosity_slope * (self.temperature - _POLE) / above
         from_pole = np.asarray(T, dtype=float) - _POLE
         cooling = (from_pole / (self.temperature - _POLE)) ** -exponent
-        left = (above + np.asarray(ratio, dtype=float)) * cooling
-        return left - above, cooling, exponent * left / from_pole
+        above_warm = (above + np.asarray(ratio, dtype=float)) * cooling
+        return above_warm - above, cooling, exponent * above_warm / from_pole
 
     def at_temperature(self, T: float) -> Lubricant:
         """Return the same oil by its numbers at another temperature [K].

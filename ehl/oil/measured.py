@@ -75,31 +75,31 @@ class MeasuredViscosity:
 
     def __post_init__(self) -> None:
         """Check the table."""
-        with Faults() as found:
+        with Faults() as faults:
             for name, values in (("pressure", self.pressure), ("temperature", self.temperature)):
                 for value in values:
-                    found.number(f"table.{name}", value, _LIMITS[name])
+                    faults.number(f"table.{name}", value, _LIMITS[name])
                 if len(values) < 2 or not (np.diff(values) > 0.0).all():
-                    found.add(
+                    faults.add(
                         f"table.{name}", values, "must be two or more increasing values", "sort the table"
                     )
             shape = (len(self.pressure), len(self.temperature))
             if np.shape(self.viscosity) != shape:
                 allowed = f"must have {shape[0]} rows, one for each pressure, of {shape[1]}, one for each temperature"
-                found.add("table.viscosity", np.shape(self.viscosity), allowed, "leave no value out")
+                faults.add("table.viscosity", np.shape(self.viscosity), allowed, "leave no value out")
                 return
             for value in np.ravel(self.viscosity).tolist():
-                found.number("table.viscosity", value, _LIMITS["viscosity"])
+                faults.number("table.viscosity", value, _LIMITS["viscosity"])
             if self.pressure[0] > _AMBIENT:
-                found.add(
+                faults.add(
                     "table.pressure", self.pressure[0], "must begin at ambient pressure", "add a row for 0 Pa"
                 )
             rows = np.array(self.viscosity)
             if not ((np.diff(rows, axis=0) > 0.0).all() and (np.diff(rows, axis=1) < 0.0).all()):
                 allowed = "must rise with every pressure and fall with every temperature"
-                found.add("table.viscosity", "", allowed, "look for a swapped or mistyped value")
+                faults.add("table.viscosity", "", allowed, "look for a swapped or mistyped value")
             if self.at is not None and not self.knows(self.at):
-                found.add("table.at", self.at, self._range(), "take a temperature of the table")
+                faults.add("table.at", self.at, self._range(), "take a temperature of the table")
 
     @classmethod
     def from_csv(cls, path: Any, at: float | None = None) -> MeasuredViscosity:
@@ -174,8 +174,8 @@ class MeasuredViscosity:
 
     def log_ratio(self, p: ArrayLike) -> tuple[Array, Array]:
         """Return ln(eta/eta0) and its derivative by p [1/Pa] at the pressures p [Pa] and the reference temperature."""
-        found = self.read(p, self.reference)
-        return found.ln_viscosity - math.log(self._ambient), found.by_pressure
+        reading = self.read(p, self.reference)
+        return reading.ln_viscosity - math.log(self._ambient), reading.by_pressure
 
     def viscosity_at(self, p: float, T: float) -> float:
         """Viscosity [Pa s] at a pressure [Pa] and a temperature [K]."""

@@ -113,8 +113,8 @@ def walther(temperature: float, nu_40: float, nu_100: float) -> float:
         At 40 and 100 degC [mm^2/s].
     """
     at_40, slope = _line(nu_40, nu_100)
-    found: float = 10.0 ** (10.0 ** (at_40 - slope * (math.log10(temperature) - math.log10(_T40)))) - 0.7
-    return found
+    viscosity: float = 10.0 ** (10.0 ** (at_40 - slope * (math.log10(temperature) - math.log10(_T40)))) - 0.7
+    return viscosity
 
 
 def walther_slope(temperature: float, nu_40: float, nu_100: float) -> float:
@@ -167,8 +167,8 @@ def viscosity_index(nu_40: float, nu_100: float) -> float:
     if nu_40 >= H:
         return 100.0 * (L - nu_40) / (L - H)
     N = math.log(H / nu_40) / math.log(nu_100)
-    found: float = (10.0**N - 1.0) / 0.00715 + 100.0
-    return found
+    index: float = (10.0**N - 1.0) / 0.00715 + 100.0
+    return index
 
 
 def _nu_100(nu_40: float, index: float) -> float:
@@ -195,8 +195,8 @@ def gold_coefficient(kinematic_viscosity: float, base: str = "mineral") -> float
     software that cites it.
     """
     oil = _BASES[base]
-    found: float = 1e-9 * oil.s * kinematic_viscosity**oil.t
-    return found
+    coefficient: float = 1e-9 * oil.s * kinematic_viscosity**oil.t
+    return coefficient
 
 
 def graded_oil(
@@ -238,11 +238,11 @@ def graded_oil(
     RangeWarning
         Where ``vg`` is no grade of ISO 3448.
     """
-    with Faults() as found:
-        found.numbers(LIMITS, (vg, temperature, index))
-        found.choice("base", base, BASES, "choose the nearest")
+    with Faults() as faults:
+        faults.numbers(LIMITS, (vg, temperature, index))
+        faults.choice("base", base, BASES, "choose the nearest")
         if density_15 is not None:
-            found.number("density_15", density_15, LIMITS["density_15"])
+            faults.number("density_15", density_15, LIMITS["density_15"])
     nu_100 = _nu_100(vg, index)
     if math.isnan(nu_100):
         allowed = f"must be at least {viscosity_index(vg, 2.0):.0f} for VG {vg:g}"

@@ -67,8 +67,8 @@ class GridSearch:
 
     def count(self, level: Level) -> Level:
         """Add a level to the cost."""
-        self.iterations += level.found.iterations
-        self.work += level.found.iterations * level.grid.nodes.size / _STEP_NODES
+        self.iterations += level.solution.iterations
+        self.work += level.solution.iterations * level.grid.nodes.size / _STEP_NODES
         self.most_nodes = max(self.most_nodes, level.grid.nodes.size)
         return level
 
@@ -80,7 +80,7 @@ class GridSearch:
         grid = self.plan.grid(n)
         for thickness in _STARTS:
             level = self.count(cold(self.contact, self.plan, grid, thickness * self.plan.H_c))
-            if level.found.converged:
+            if level.solution.converged:
                 return level
             self.restarts += 1
             if self.exhausted:
@@ -90,10 +90,10 @@ class GridSearch:
     def pair(self, half: int, n: int) -> tuple[Level, Level]:
         """Solve a coarse and a fine grid from nothing, the one that gives in first before the other."""
         coarse = self.cold(half)
-        if coarse.found.converged:
+        if coarse.solution.converged:
             return coarse, self.warm(coarse, None, n)
         fine = self.cold(n)
-        return (self.warm(fine, None, half) if fine.found.converged else coarse), fine
+        return (self.warm(fine, None, half) if fine.solution.converged else coarse), fine
 
     def descend(self, failed: Level) -> Level:
         """Continue in the load, from a contact soft enough to be solved from cold, on the failed grid."""
@@ -103,14 +103,16 @@ class GridSearch:
             easier = replace(self.contact, load=load)
             level = self.count(cold(easier, plan, grid, _STARTS[-1] * plan.H_c / factor))
             step = 1.5
-            while level.found.converged and load < self.contact.load and step > 1.01 and not self.exhausted:
+            while (
+                level.solution.converged and load < self.contact.load and step > 1.01 and not self.exhausted
+            ):
                 target = min(self.contact.load, step * load)
                 trial = self.count(warm(level, replace(self.contact, load=target), plan, grid))
-                if trial.found.converged:
+                if trial.solution.converged:
                     level, load = trial, target
                 else:
                     step = math.sqrt(step)
-            if level.found.converged and load == self.contact.load:
+            if level.solution.converged and load == self.contact.load:
                 return replace(level, contact=self.contact)
             self.restarts += 1
             if self.exhausted:
@@ -120,13 +122,13 @@ class GridSearch:
     def out_of_steps(self, level: Level) -> Level:
         """Return a level that says why nothing more was tried."""
         message = f"no solution within {self.iterations} Newton steps"
-        return replace(level, found=replace(level.found, converged=False, message=message))
+        return replace(level, solution=replace(level.solution, converged=False, message=message))
 
     def warm(self, old: Level, grid_of: Level | None, n: int) -> Level:
         """Solve from another level, on its grid if one is given; from cold where that fails."""
         plan, grid = (self.plan, self.plan.grid(n)) if grid_of is None else (grid_of.plan, grid_of.grid)
         level = self.count(warm(old, self.contact, plan, grid))
-        if level.found.converged:
+        if level.solution.converged:
             return self.fed(level)
         self.restarts += 1
         if self.plan.spike is not None:
@@ -144,19 +146,19 @@ class GridSearch:
 
     def fed(self, level: Level) -> Level:
         """Move the meniscus until the film carries away what the layer brings; the plan is left at the one found."""
-        if not (isinstance(self.supply, OilLayer) and self.plan.fixed and level.found.converged):
+        if not (isinstance(self.supply, OilLayer) and self.plan.fixed and level.solution.converged):
             return level
-        found = LayerSupply(self, level, self.supply.thickness).found()
-        if found.found.converged:
-            self.plan = self.own = replace(found.plan, spike=self.plan.spike)
-        return found
+        supplied = LayerSupply(self, level, self.supply.thickness).solve()
+        if supplied.solution.converged:
+            self.plan = self.own = replace(supplied.plan, spike=self.plan.spike)
+        return supplied
 
     def sharpened(self, level: Level, n: int) -> Level:
         """Lay the grid around the spike that was found, until its width no longer changes the grid."""
         if level.grid.nodes.size != n:
             level = self.warm(level, None, n)
         for _ in range(_SPIKE_ROUNDS):
-            tip = spike_of(level) if level.found.converged else None
+            tip = spike_of(level) if level.solution.converged else None
             if tip is None:
                 return level
             old = self.plan.spike
@@ -169,7 +171,7 @@ class GridSearch:
             before = self.plan
             self.plan = replace(before, spike=(tip.position, width))
             trial = self.count(warm(level, self.contact, self.plan, self.plan.grid(n)))
-            if not trial.found.converged:
+            if not trial.solution.converged:
                 self.plan = before
                 return level
             level = self.fed(trial)

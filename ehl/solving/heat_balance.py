@@ -57,9 +57,9 @@ def stresses(oil: ThermalOil, P: Array) -> Array:
     """Shear stress at both surfaces (n, 2) [Pa]; 0 behind the film."""
     tilt = 0.5 * oil.shear.gap * np.diff(P * oil.groups.pressure) / oil.lengths
     mean = oil.shear.flow[:, 0]
-    found = np.stack([mean - tilt, mean + tilt], axis=1)
-    found[oil.last + 1 :] = 0.0
-    return oil.at_nodes(found)
+    stress = np.stack([mean - tilt, mean + tilt], axis=1)
+    stress[oil.last + 1 :] = 0.0
+    return oil.at_nodes(stress)
 
 
 def losses(oil: ThermalOil) -> dict[str, float]:

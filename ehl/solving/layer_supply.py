@@ -57,7 +57,7 @@ class LayerSupply:
         """Ln of the flow over the layer."""
         return math.log(level.flow / self.layer)
 
-    def found(self) -> Level:
+    def solve(self) -> Level:
         """Give the film that carries away what the layer brings, or one that says that there is none."""
         search = self.search
         for _ in range(_TRIES):
@@ -72,8 +72,8 @@ class LayerSupply:
         if search.done and not self.rough:
             return self.level
         message = f"the meniscus that lets a layer of {self.layer:.3g} m pass was not found"
-        failed = replace(self.level.found, converged=False, message=message)
-        return replace(self.level, found=failed)
+        failed = replace(self.level.solution, converged=False, message=message)
+        return replace(self.level, solution=failed)
 
     def polish(self) -> None:
         """Solve to the end at the place of the last film."""
@@ -84,27 +84,27 @@ class LayerSupply:
 
     def move(self) -> None:
         """Solve at the place to be tried."""
-        search, old, step = self.search, self.level.found, self.search.step
+        search, old, step = self.search, self.level.solution, self.search.step
         plan = self.level.plan.with_inlet(-1.0 - search.distance)
         done = min(max(_FOLLOWED * abs(step), STEP_DONE), _ROUGH)
         trial = self.expected(plan, step, done) if abs(step) < _NEAR else None
         rough = trial is not None and done > STEP_DONE
         if trial is None:
             trial = self.run.count(warm(self.level, self.run.contact, plan, plan.grid(old.P.size)))
-        if not trial.found.converged:
+        if not trial.solution.converged:
             self.run.restarts += 1
             search.failed()
             return
-        self.lead = (trial.found.P - old.P) / step, (trial.found.H0 - old.H0) / step
+        self.lead = (trial.solution.P - old.P) / step, (trial.solution.H0 - old.H0) / step
         self.level, self.rough = trial, rough
         search.solved(self.miss(trial))
 
     def expected(self, plan: Plan, step: float, done: float) -> Level | None:
         """Solve from what a step of the meniscus is expected to change; None where that does not converge."""
-        contact, old = self.run.contact, self.level.found
+        contact, old = self.run.contact, self.level.solution
         grid = moved_grid(self.level, plan)
         P = np.maximum(old.P + step * self.lead[0], 0.0)
         P[-1] = 0.0
-        found = newton(grid, Groups.on(contact, grid), P, old.H0 + step * self.lead[1], done=done)
-        level = self.run.count(Level(contact, plan, grid, found))
-        return level if found.converged else None
+        solution = newton(grid, Groups.on(contact, grid), P, old.H0 + step * self.lead[1], done=done)
+        level = self.run.count(Level(contact, plan, grid, solution))
+        return level if solution.converged else None

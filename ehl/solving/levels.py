@@ -27,7 +27,7 @@ class Level:
     contact: LineContact
     plan: Plan
     grid: Grid
-    found: Iteration
+    solution: Iteration
 
     @cached_property
     def groups(self) -> Groups:
@@ -37,11 +37,11 @@ class Level:
     @property
     def flow(self) -> float:
         """Mass flow over rho0 u [m]."""
-        return -self.found.flux * self.groups.gap
+        return -self.solution.flux * self.groups.gap
 
     def bare(self) -> Level:
         """Return the level without its Newton matrix."""
-        return replace(self, found=replace(self.found, factors=None))
+        return replace(self, solution=replace(self.solution, factors=None))
 
 
 @dataclass(frozen=True)
@@ -84,15 +84,15 @@ class Tip:
 
 def figures(level: Level) -> Figures:
     """Take the headline figures back to SI."""
-    grid, found, groups = level.grid, level.found, level.groups
-    i = int(np.clip(np.argmin(found.H), 1, grid.nodes.size - 2))
-    shift, lowest = _lowest(grid.nodes[i - 1 : i + 2] - grid.nodes[i], found.H[i - 1 : i + 2])
+    grid, solution, groups = level.grid, level.solution, level.groups
+    i = int(np.clip(np.argmin(solution.H), 1, grid.nodes.size - 2))
+    shift, lowest = _lowest(grid.nodes[i - 1 : i + 2] - grid.nodes[i], solution.H[i - 1 : i + 2])
     return Figures(
-        central_thickness=centre_gap(grid, groups, found.P, found.H0) * groups.gap,
+        central_thickness=centre_gap(grid, groups, solution.P, solution.H0) * groups.gap,
         minimum_thickness=lowest * groups.gap,
         minimum_position=float(grid.nodes[i] + shift) * groups.length,
-        outlet=_outlet(grid.nodes, found.P) * groups.length,
-        separation=(found.H0 + dry_approach(grid)) * groups.gap,
+        outlet=_outlet(grid.nodes, solution.P) * groups.length,
+        separation=(solution.H0 + dry_approach(grid)) * groups.gap,
     )
 
 
@@ -124,7 +124,7 @@ def dry_approach(grid: Grid) -> float:
 
 def spike_of(level: Level) -> Tip | None:
     """Find the pressure spike: the last maximum before the outlet, if it is narrow."""
-    P = level.found.P / level.grid.ratio
+    P = level.solution.P / level.grid.ratio
     tops = np.flatnonzero((P[1:-1] >= P[:-2]) & (P[1:-1] > P[2:])) + 1
     if tops.size == 0:
         return None
@@ -160,14 +160,14 @@ def transfer(old: Level, contact: LineContact, plan: Plan, grid: Grid) -> tuple[
     A spike that moves with the inlet zone is carried along, so that it meets the nodes laid for it.
     """
     if old.grid is grid:
-        P = old.found.P
+        P = old.solution.P
     else:
         X = old.grid.nodes * old.grid.ratio
-        P = np.interp(grid.nodes * grid.ratio, X, old.found.P, left=0.0, right=0.0)
+        P = np.interp(grid.nodes * grid.ratio, X, old.solution.P, left=0.0, right=0.0)
         P *= grid.ratio / old.grid.ratio
         P[0] = P[-1] = 0.0
     groups, groups_old = Groups.on(contact, grid), old.groups
-    centre = centre_gap(old.grid, groups_old, old.found.P, old.found.H0)
+    centre = centre_gap(old.grid, groups_old, old.solution.P, old.solution.H0)
     growth = moes_central(contact) / moes_central(old.contact)
     if plan.fixed and old.plan.fixed and plan.domain != old.plan.domain:
         growth *= (plan.H_c / old.plan.H_c) / (growth * groups_old.gap / groups.gap)

@@ -81,16 +81,18 @@ def _asked(contact: LineContact, roughness: Roughness, share: float) -> tuple[fl
     return share * contact.peak_pressure * (1.0 + lowered) ** (-1.0 / 1.70), lowered / (1.0 + lowered)
 
 
-def eased(contact: LineContact, left: float) -> LineContact:
+def eased(contact: LineContact, film_share: float) -> LineContact:
     """Return the contact of the part of load and modulus that asperities leave to the film."""
-    return replace(contact, load=left * contact.load, reduced_modulus=left * contact.reduced_modulus)
+    return replace(
+        contact, load=film_share * contact.load, reduced_modulus=film_share * contact.reduced_modulus
+    )
 
 
-def usual_growth(contact: LineContact, left: float, supply: Supply | None) -> float:
+def usual_growth(contact: LineContact, film_share: float, supply: Supply | None) -> float:
     """Power of what is left to it with which a film grows, by Moes' formula; none behind a layer, which it follows."""
     if isinstance(supply, OilLayer):
         return 0.0
-    here, less = (moes_central(eased(contact, part * left)) for part in (1.0, _LESS))
+    here, less = (moes_central(eased(contact, part * film_share)) for part in (1.0, _LESS))
     return math.log(less / here) / math.log(_LESS)
 
 
@@ -109,8 +111,8 @@ def excess(contact: LineContact, roughness: Roughness, gap: float, odds: float) 
         ln[s/(1-s)] of the asperities' share s.
     """
     if not roughness.elastic:
-        found = share_by_ratio(gap, roughness.deviation)
-        return Excess(found.odds - odds, found.odds_steep, -1.0, 0.0)
+        ratio_share = share_by_ratio(gap, roughness.deviation)
+        return Excess(ratio_share.odds - odds, ratio_share.odds_steep, -1.0, 0.0)
     pressure, slope = roughness.under_film(gap, contact.reduced_modulus, contact.peak_pressure)
     asked, follows = _asked(contact, roughness, share_of(odds))
     return Excess(

@@ -22,7 +22,7 @@ class MeniscusSearch:
     solution, and steps grow again once one succeeds.
     """
 
-    where: float  # ln of the distance of the last solution from the dry contact [half-widths]
+    ln_distance: float  # ln of the distance of the last solution from the dry contact [half-widths]
     miss: float  # ln(flow/layer) there
     low: float = -math.inf  # nearer than the root
     high: float = math.inf  # farther
@@ -45,27 +45,27 @@ class MeniscusSearch:
     @property
     def step(self) -> float:
         """Change of ln(distance) from the last solution to the place to be tried."""
-        return self.target - self.where
+        return self.target - self.ln_distance
 
     @property
     def done(self) -> bool:
         """Whether the flow is that of the layer, to within what the rounding of the place makes of it."""
-        return abs(self.miss) < max(_DONE, abs(self.slope) * _ROUNDED * math.exp(-self.where))
+        return abs(self.miss) < max(_DONE, abs(self.slope) * _ROUNDED * math.exp(-self.ln_distance))
 
     @property
     def stuck(self) -> bool:
         """Whether no place is left to be tried."""
-        return self.reach < _NEAREST or self.target == self.where
+        return self.reach < _NEAREST or self.target == self.ln_distance
 
     def failed(self) -> None:
         """Go half as far."""
-        self.reach = 0.5 * abs(self.target - self.where)
+        self.reach = 0.5 * abs(self.target - self.ln_distance)
         self._aim()
 
     def solved(self, miss: float) -> None:
         """Take the solution at the target."""
-        self.slope = (miss - self.miss) / (self.target - self.where)
-        self.where, self.miss = self.target, miss
+        self.slope = (miss - self.miss) / (self.target - self.ln_distance)
+        self.ln_distance, self.miss = self.target, miss
         self.reach = min(2.0 * self.reach, _FARTHEST)
         self._aim()
 
@@ -76,10 +76,10 @@ class MeniscusSearch:
 
     def _aim(self) -> None:
         if self.miss < 0.0:
-            self.low = self.where
+            self.low = self.ln_distance
         else:
-            self.high = self.where
+            self.high = self.ln_distance
         step = -self.miss / max(self.slope, _FLATTEST)
-        if not self.low < self.where + step < self.high:
-            step = 0.5 * ((self.high if self.miss < 0.0 else self.low) - self.where)
-        self.target = self.where + max(-self.reach, min(self.reach, step))
+        if not self.low < self.ln_distance + step < self.high:
+            step = 0.5 * ((self.high if self.miss < 0.0 else self.low) - self.ln_distance)
+        self.target = self.ln_distance + max(-self.reach, min(self.reach, step))

@@ -42,8 +42,8 @@ class Options:
 
     def checked(self, contact: object) -> Options:
         """Raise every fault at once; otherwise return the options with the article's grid spelt out."""
-        with Faults.of(self, _LIMITS) as found:
-            self._check(contact, found)
+        with Faults.of(self, _LIMITS) as faults:
+            self._check(contact, faults)
         if self.grid == "article":
             return replace(self, grid="uniform", nodes=_ARTICLE_NODES, domain=_ARTICLE_DOMAIN)
         return self
@@ -54,43 +54,43 @@ class Options:
         fine = self.nodes is None and self.tolerance < _SHARP_TOLERANCE
         return self.grid == "graded" and (self.spike is not None or fine)
 
-    def _check(self, contact: object, found: Faults) -> None:
+    def _check(self, contact: object, faults: Faults) -> None:
         if not isinstance(contact, LineContact):
-            found.add("contact", contact, "must be a LineContact", "build one with ehl.LineContact")
+            faults.add("contact", contact, "must be a LineContact", "build one with ehl.LineContact")
         elif contact.lubricant.table is not None:
             last = contact.lubricant.table.pressure[-1]
             if contact.peak_pressure > last:
                 allowed = f"must have a Hertz pressure of at most {last:g} Pa, where the oil's table ends"
                 pressure = f"{contact.peak_pressure:.4g} Pa"
-                found.add("contact", pressure, allowed, "measure farther, or lower the load")
+                faults.add("contact", pressure, allowed, "measure farther, or lower the load")
         if self.nodes is not None:
-            found.whole("nodes", self.nodes, *_NODES)
-        found.choice("grid", self.grid, GRIDS, "'graded' resolves inlet and pressure spike")
+            faults.whole("nodes", self.nodes, *_NODES)
+        faults.choice("grid", self.grid, GRIDS, "'graded' resolves inlet and pressure spike")
         if self.grid == "article" and not (self.nodes is None and self.domain is None):
             remedy = "it has 130 nodes on [-4, 1.2]; take grid='uniform' for others"
-            found.add("grid", repr(self.grid), "must be given without nodes and domain", remedy)
+            faults.add("grid", repr(self.grid), "must be given without nodes and domain", remedy)
         if self.domain is not None and not _in_order(self.domain):
             allowed = "must be (inlet, outlet) in half-widths, inlet at most -1 and outlet more than 0"
-            found.add("domain", self.domain, allowed, "(-15, 2.5) is usual")
+            faults.add("domain", self.domain, allowed, "(-15, 2.5) is usual")
         if self.supply is not None:
-            self._check_supply(contact, found)
+            self._check_supply(contact, faults)
         if self.spike is not None and self.grid != "graded":
             remedy = "only a graded grid follows the spike"
-            found.add("spike", self.spike, "must be left out on uniform grids", remedy)
+            faults.add("spike", self.spike, "must be left out on uniform grids", remedy)
 
-    def _check_supply(self, contact: object, found: Faults) -> None:
+    def _check_supply(self, contact: object, faults: Faults) -> None:
         if not isinstance(self.supply, Meniscus | OilLayer):
             allowed = "must be None (flooded), ehl.Meniscus or ehl.OilLayer"
-            found.add("supply", self.supply, allowed, "say what is held constant")
+            faults.add("supply", self.supply, allowed, "say what is held constant")
         elif self.domain is not None or self.grid == "article":
             allowed = "must be given without domain"
-            found.add("supply", self.supply, allowed, "the supply decides the inlet")
+            faults.add("supply", self.supply, allowed, "the supply decides the inlet")
         elif isinstance(self.supply, Meniscus) and isinstance(contact, LineContact):
             edge = contact.half_width
             if self.supply.position > -edge:
                 allowed = f"must be at most {-edge:.6g} m, the edge of the dry contact at this load"
                 remedy = "nearer in no film forms: move the meniscus out, or take the contact as dry (separation 0)"
-                found.add("supply.position", self.supply.position, allowed, remedy)
+                faults.add("supply.position", self.supply.position, allowed, remedy)
 
 
 def _in_order(domain: object) -> bool:

@@ -104,7 +104,7 @@ def by_share(level: Level, supply: Supply | None) -> Response:
 
 
 def _residual(level: Level) -> Residual:
-    return Residual.of(level.grid, level.groups, level.found.P, level.found.H0)
+    return Residual.of(level.grid, level.groups, level.solution.P, level.solution.H0)
 
 
 def _along(
@@ -147,10 +147,10 @@ def _differentiate(
     level: Level, before: Residual, contact: LineContact, moved: Grid, *, flow: bool = False
 ) -> Response:
     """Differentiate the figures towards another contact on another grid, a step of the parameter away."""
-    found, grid, groups = level.found, level.grid, level.groups
-    assert found.factors is not None, "only a converged level is differentiated"
+    solution, grid, groups = level.solution, level.grid, level.groups
+    assert solution.factors is not None, "only a converged level is differentiated"
     own = explicit(level, before, contact, moved)
-    dP, dH0 = found.factors.solve(-own.net_flux, own.short, found.P.size)
+    dP, dH0 = solution.factors.solve(-own.net_flux, own.short, solution.P.size)
     by_pressure = groups.compliance * float(grid.centre @ dP)
     carried = _flow_slope(level, before, own.flow, dP, dH0) if flow else math.nan
     return Response(
@@ -174,15 +174,15 @@ class Explicit(NamedTuple):
 
 def explicit(level: Level, before: Residual, contact: LineContact, moved: Grid) -> Explicit:
     """Differentiate the residual and the figures towards another contact on another grid, a step away."""
-    found, groups = level.found, level.groups
+    solution, groups = level.solution, level.groups
     after = Groups.on(contact, moved)
-    changed = Residual.of(moved, after, found.P, found.H0)
+    changed = Residual.of(moved, after, solution.P, solution.H0)
     return Explicit(
         net_flux=(np.diff(changed.flux) - np.diff(before.flux)) / STEP,
         short=(changed.short - before.short) / STEP,
         flow=(changed.flux * after.gap - before.flux * groups.gap) / STEP,
         central=(changed.centre - before.centre) / STEP,
-        separation=(found.H0 + dry_approach(level.grid)) * (after.gap - groups.gap) / STEP,
+        separation=(solution.H0 + dry_approach(level.grid)) * (after.gap - groups.gap) / STEP,
     )
 
 
@@ -190,7 +190,7 @@ def _flow_slope(level: Level, before: Residual, explicit: Array, dP: Array, dH0:
     """Differentiate the flow [m], taken as the mean over the second half of the film."""
     dH = dH0 - level.groups.compliance * (level.grid.potential @ dP)
     by = level.groups.gap * before.slopes
-    free = np.flatnonzero(level.found.P[1:-1] > 0.0) + 1
+    free = np.flatnonzero(level.solution.P[1:-1] > 0.0) + 1
     low, high = int(free[free.size // 2]), int(free[-1])
     changes = explicit[low:high].copy()
     for k in range(3):

@@ -41,24 +41,24 @@ class Moment:
     @property
     def film(self) -> Array:
         """Gap at the nodes [m]."""
-        return self.level.found.H * self.level.groups.gap
+        return self.level.solution.H * self.level.groups.gap
 
     @property
     def pressure(self) -> Array:
         """Pressure at the nodes [Pa]."""
-        return self.level.found.P * self.level.groups.pressure
+        return self.level.solution.P * self.level.groups.pressure
 
     @property
     def centre(self) -> float:
         """Gap at x = 0 [m]."""
         level = self.level
-        return centre_gap(level.grid, level.groups, level.found.P, level.found.H0) * level.groups.gap
+        return centre_gap(level.grid, level.groups, level.solution.P, level.solution.H0) * level.groups.gap
 
 
 def steady(time: float, level: Level) -> Moment:
     """Begin with a steady film: behind its end oil fills the gap in part, so that the flow is the same."""
-    content = Content.of(level.grid, level.groups, level.found.P, level.found.H0)
-    end = int(np.flatnonzero(level.found.P > 0.0)[-1])
+    content = Content.of(level.grid, level.groups, level.solution.P, level.solution.H0)
+    end = int(np.flatnonzero(level.solution.P > 0.0)[-1])
     oil = content.oil.copy()
     lengths = level.grid.weights * level.groups.length
     oil[end + 1 :] = np.minimum(oil[end + 1 :], level.flow * lengths[end + 1 :])
@@ -84,7 +84,7 @@ class Laying:
 
 def extrapolated(moments: list[Moment], time: float, values: list[Array]) -> Array:
     """Values at a later time by the parabola through the last three moments', or what fewer give."""
-    times = [one.time for one in moments[-3:]]
+    times = [moment.time for moment in moments[-3:]]
     out = np.zeros_like(values[-1])
     for i, (at, value) in enumerate(zip(times, values[-3:], strict=True)):
         weight = 1.0
@@ -115,7 +115,7 @@ def advance(moments: list[Moment], time: float, contact: LineContact, laying: La
     """Solve the film at a later time; None where Newton's method finds none, or where it breaks ahead of its end."""
     plan, grid = laying.grid(contact)
     groups = Groups.on(contact, grid)
-    now, one, two = backwards(moments, time)
+    now, by_last, by_before = backwards(moments, time)
     last = moments[-1]
     before = moments[-2] if len(moments) > 1 else last
     middles = 0.5 * groups.length * (grid.nodes[1:] + grid.nodes[:-1])
@@ -123,25 +123,25 @@ def advance(moments: list[Moment], time: float, contact: LineContact, laying: La
         grid=grid,
         groups=groups,
         rate=now,
-        past=-one * last.content - two * before.content,
-        velocity=(now * middles + one * last.middles + two * before.middles) / contact.entrainment,
+        past=-by_last * last.content - by_before * before.content,
+        velocity=(now * middles + by_last * last.middles + by_before * before.middles) / contact.entrainment,
         speed=contact.entrainment,
     )
     P, H0 = _start(moments, time, grid, groups)
-    found = newton(grid, groups, P, H0, squeeze=squeeze, max_iterations=_MOST_ITERATIONS, done=_DONE)
-    if not found.converged:
+    solution = newton(grid, groups, P, H0, squeeze=squeeze, max_iterations=_MOST_ITERATIONS, done=_DONE)
+    if not solution.converged:
         return None
-    level = Level(contact, plan, grid, replace(found, factors=None))
+    level = Level(contact, plan, grid, replace(solution, factors=None))
     content = _contents(level, squeeze)
     return None if content is None else Moment(time, level, content, middles)
 
 
 def _start(moments: list[Moment], time: float, grid: Grid, groups: Groups) -> tuple[Array, float]:
     """Pressures and separation to start from, extrapolated from former moments."""
-    pressure = extrapolated(moments, time, [one.pressure for one in moments[-3:]])
+    pressure = extrapolated(moments, time, [moment.pressure for moment in moments[-3:]])
     last = moments[-1].pressure
     P = np.where(last > 0.0, np.clip(pressure, 0.2 * last, 5.0 * last), 0.0) / groups.pressure
-    centre = float(extrapolated(moments, time, [np.array(one.centre) for one in moments[-3:]]))
+    centre = float(extrapolated(moments, time, [np.array(moment.centre) for moment in moments[-3:]]))
     centre = max(centre, 0.5 * moments[-1].centre)
     return P, open_gap(grid, groups, P, centre / groups.gap)
 
@@ -152,13 +152,15 @@ def _contents(level: Level, squeeze: Squeeze) -> Array | None:
     In the cavity oil goes with u, from the node upstream of a middle that is slower, downstream of one that is faster.
     Where bodies part so fast that pressure ahead of the film falls to ambient, the bath keeps the gap full.
     """
-    found: Iteration = level.found
+    solution: Iteration = level.solution
     grid, groups = level.grid, level.groups
-    end = int(np.flatnonzero(found.P > 0.0)[-1])
-    if not (found.P[int(np.argmax(found.P)) : end] > 0.0).all():
+    end = int(np.flatnonzero(solution.P > 0.0)[-1])
+    if not (solution.P[int(np.argmax(solution.P)) : end] > 0.0).all():
         return None  # the film breaks behind its maximum pressure
-    full = Content.under(grid, groups, found.P, found.H).oil
-    flux = fluxes(grid, groups, found.P, found.H, grid.quick)[0] + squeeze.swept(found.P, found.H)[0]
+    full = Content.under(grid, groups, solution.P, solution.H).oil
+    flux = (
+        fluxes(grid, groups, solution.P, solution.H, grid.quick)[0] + squeeze.swept(solution.P, solution.H)[0]
+    )
     scale = groups.gap * squeeze.speed
     lengths = grid.weights * groups.length
     past = squeeze.past  # (n,) so that rate C - past is the change

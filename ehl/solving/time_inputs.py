@@ -29,8 +29,8 @@ def at_time(contact: LineContact, functions: Functions, time: float) -> LineCont
     values: dict[str, Any] = {name: float(function(time)) for name, function in functions.items()}
     try:
         return replace(contact, **values)
-    except InputError as fault:
-        faults = [replace(one, where=f"{one.where} at t = {time:.6g} s") for one in fault.faults]
+    except InputError as error:
+        faults = [replace(fault, where=f"{fault.where} at t = {time:.6g} s") for fault in error.faults]
         raise InputError(faults) from None
 
 
@@ -47,28 +47,28 @@ def checked(
 ) -> tuple[Functions, Array]:
     """Raise every fault of the arguments; return the functions of time and the times."""
     functions: Functions = {}
-    with Faults() as found:
+    with Faults() as faults:
         if not isinstance(contact, LineContact):
-            found.add("contact", contact, "must be a LineContact", "build one with ehl.LineContact")
-        found.number("tolerance", tolerance, _LIMITS["tolerance"])
+            faults.add("contact", contact, "must be a LineContact", "build one with ehl.LineContact")
+        faults.number("tolerance", tolerance, _LIMITS["tolerance"])
         if nodes is not None:
-            found.whole("nodes", nodes, *_NODES)
+            faults.whole("nodes", nodes, *_NODES)
         if step is not None:
-            found.number("step", step, _STEP)
+            faults.number("step", step, _STEP)
         if supply is not None and not isinstance(supply, Meniscus):
             allowed = "must be None (flooded) or ehl.Meniscus"
-            found.add(
+            faults.add(
                 "supply", supply, allowed, "behind a layer the meniscus moves and stores oil: not computed"
             )
-        times = _times(time, found)
-        given = {"load": load, "entrainment": entrainment, "radius": radius}
-        for name, value in given.items():
+        times = _times(time, faults)
+        quantities = {"load": load, "entrainment": entrainment, "radius": radius}
+        for name, value in quantities.items():
             if value is not None or name == "load":
-                _check_function(name, value, times, functions, found)
+                _check_function(name, value, times, functions, faults)
     return functions, times
 
 
-def _times(time: object, found: Faults) -> Array:
+def _times(time: object, faults: Faults) -> Array:
     """Times as an array; two of them where they are faulty."""
     try:
         times = np.asarray(time, dtype=float)
@@ -76,13 +76,13 @@ def _times(time: object, found: Faults) -> Array:
         times = np.zeros(0)
     if times.ndim == 1 and times.size > 1 and np.isfinite(times).all() and (np.diff(times) > 0.0).all():
         return times
-    found.add(
+    faults.add(
         "time", time, "must be two or more increasing times", "give them in s, the first with the steady film"
     )
     return np.array([0.0, 1.0])
 
 
-def _check_function(name: str, value: object, times: Array, functions: Functions, found: Faults) -> None:
+def _check_function(name: str, value: object, times: Array, functions: Functions, faults: Faults) -> None:
     """Add the faults of a quantity over time, or its function."""
     if callable(value):
         functions[name] = value
@@ -92,7 +92,7 @@ def _check_function(name: str, value: object, times: Array, functions: Functions
         except (TypeError, ValueError):
             values = np.zeros(0)
         if values.shape != times.shape:
-            found.add(
+            faults.add(
                 name, value, "must be a function of time, or one value for each time", "lambda t: 1e5, say"
             )
             return
@@ -100,12 +100,12 @@ def _check_function(name: str, value: object, times: Array, functions: Functions
     own = [float(functions[name](at)) for at in times.tolist()]
     if name == "entrainment" and min(own) <= 0.0 < max(own):
         allowed = "must stay positive: where it turns round, inlet and outlet change places"
-        found.add(name, min(own), allowed, "solve the time before and the time after by themselves")
+        faults.add(name, min(own), allowed, "solve the time before and the time after by themselves")
         return
-    for at, one in zip(times.tolist(), own, strict=True):
-        before = len(found.found)
-        found.number(f"{name} at t = {at:.6g} s", one, LIMITS[name])
-        if len(found.found) > before:
+    for at, quantity in zip(times.tolist(), own, strict=True):
+        before = len(faults.found)
+        faults.number(f"{name} at t = {at:.6g} s", quantity, LIMITS[name])
+        if len(faults.found) > before:
             return
 
 

@@ -56,10 +56,12 @@ class Shot:
         """Keep the curves and figures, not the matrices."""
         level = moment.level
         x = level.grid.nodes * level.groups.length
-        found = level.found
+        solution = level.solution
         curves = (x, moment.pressure, moment.film)
-        left = halvings_left(level)
-        return cls(moment.time, moment.unit, level.contact, moment.figures, *curves, found.flux_error, left)
+        halvings = halvings_left(level)
+        return cls(
+            moment.time, moment.unit, level.contact, moment.figures, *curves, solution.flux_error, halvings
+        )
 
 
 def halvings_left(level: Level) -> float:
@@ -114,9 +116,9 @@ class TimeMarch:
 
     def try_step(self, time: float) -> Moment | None:
         """Solve the film at a later time."""
-        found = advance(self.moments, time, self.contact_at(time), self.laying)
-        self.iterations += 1 if found is None else found.level.found.iterations
-        return found
+        moment = advance(self.moments, time, self.contact_at(time), self.laying)
+        self.iterations += 1 if moment is None else moment.level.solution.iterations
+        return moment
 
     def take(self, moment: Moment, error: float) -> None:
         """Go on from a moment."""
@@ -127,11 +129,11 @@ class TimeMarch:
     def through(self, instants: Array) -> bool:
         """Go through given instants; False where a film is not found."""
         for time in instants.tolist():
-            found = self.try_step(time)
-            if found is None:
+            moment = self.try_step(time)
+            if moment is None:
                 self.message = f"no film was found at t = {time:.6g} s ({BREAKS})"
                 return False
-            self.take(found, self.local_error(found))
+            self.take(moment, self.local_error(moment))
         return True
 
     def to(self, times: Array, allowed: float) -> bool:
@@ -139,10 +141,10 @@ class TimeMarch:
         step = FIRST * self.unit
         for target in times.tolist():
             while self.moments[-1].time < target:
-                left = target - self.moments[-1].time
+                remaining = target - self.moments[-1].time
                 step = min(step, LONGEST * self.unit)
-                count = max(1, math.ceil(left / step - 1e-9))
-                step = left / count
+                count = max(1, math.ceil(remaining / step - 1e-9))
+                step = remaining / count
                 wanted = self._next(target if count == 1 else self.moments[-1].time + step, allowed)
                 if not wanted:
                     return False
@@ -158,18 +160,18 @@ class TimeMarch:
             jump = abs(math.log(self.contact_at(time).load / self.moments[-1].level.contact.load)) > JUMP
             if jump and shortest:
                 raise JumpError(start)
-            found = None if jump else self.try_step(time)
-            if found is not None:
-                error = self.local_error(found)
+            moment = None if jump else self.try_step(time)
+            if moment is not None:
+                error = self.local_error(moment)
                 free = len(self.moments) < 3
                 factor = 1.0 if free else min(_GROWTH, _SAFETY * (allowed / max(error, 1e-300)) ** (1 / 3))
                 if free or error <= allowed or shortest:
-                    self.take(found, 0.0 if free else error)
+                    self.take(moment, 0.0 if free else error)
                     return max(factor * step, FIRST * self.unit)
             else:
                 factor = 0.4
             self.rejected += 1
-            if found is None and not jump and shortest:
+            if moment is None and not jump and shortest:
                 self.message = (
                     f"no film was found at t = {time:.6g} s, {step:.2g} s after the one before ({BREAKS})"
                 )
@@ -188,17 +190,17 @@ class TimeMarch:
         if len(self.moments) < 3:
             return 0.0
         three = self.moments[-3:]
-        guess = extrapolated(three, new.time, [np.log(one.film) for one in three])
+        guess = extrapolated(three, new.time, [np.log(moment.film) for moment in three])
         level = new.level
         at = np.abs(level.grid.nodes) * level.grid.ratio <= 1.0
         weights = np.where(at, level.grid.weights, 0.0)
         miss = np.log(new.film) - guess
-        lowest = int(np.argmin(level.found.H))
+        lowest = int(np.argmin(level.solution.H))
         middle = int(np.argmin(np.abs(level.grid.nodes)))
         # of a rigid cylinder the dry contact may lie between two nodes
         profile = math.sqrt(float(weights @ miss**2 / weights.sum())) if weights.any() else 0.0
         worst = max(profile, abs(float(miss[lowest])), abs(float(miss[middle])))
-        s, s1, s2 = (float(one) for one in np.diff([*(one.time for one in three), new.time])[::-1])
+        s, s1, s2 = (float(step) for step in np.diff([*(moment.time for moment in three), new.time])[::-1])
         r = s / s1
         own = s**3 * (1.0 + r) ** 2 / (6.0 * r * (1.0 + 2.0 * r))
         return worst * own / (own + s * (s + s1) * (s + s1 + s2) / 6.0)
@@ -206,13 +208,13 @@ class TimeMarch:
     @property
     def error(self) -> float:
         """Local errors added over the time that oil takes through the contact, at most."""
-        times = np.array([one.time for one in self.shots])
+        times = np.array([shot.time for shot in self.shots])
         sums = np.cumsum(self.errors)
-        transits = _TRANSIT * np.array([one.unit for one in self.shots])
+        transits = _TRANSIT * np.array([shot.unit for shot in self.shots])
         before = np.interp(times - transits, times, sums, left=0.0)
         return float(np.max(sums - before))
 
     @property
     def times(self) -> Array:
         """All instants [s]."""
-        return np.array([one.time for one in self.shots])
+        return np.array([shot.time for shot in self.shots])

@@ -23,7 +23,7 @@ def found(start: float, solvable: Callable[[float, float], bool]) -> MeniscusSea
     for _ in range(MOST):
         if search.done or search.stuck:
             break
-        if solvable(search.where, search.target):
+        if solvable(search.ln_distance, search.target):
             search.solved(flow(search.target))
         else:
             search.failed()
@@ -37,7 +37,7 @@ def test_the_root_is_found_where_starts_reach_but_so_far(off: float, reach: floa
     off = math.copysign(min(abs(off), 8 * reach), off)
     search = found(ROOT + off, lambda where, target: abs(target - where) <= reach)
     assert search.done
-    assert search.where == pytest.approx(ROOT, abs=1e-9)
+    assert search.ln_distance == pytest.approx(ROOT, abs=1e-9)
 
 
 def test_a_place_that_failed_once_is_no_bound_of_the_root():
@@ -50,14 +50,14 @@ def test_a_place_that_failed_once_is_no_bound_of_the_root():
 
     search = found(ROOT - 0.9, solvable)
     assert search.done
-    assert min(tried[:5]) < search.where
+    assert min(tried[:5]) < search.ln_distance
 
 
 def test_the_search_ends_where_no_place_can_be_solved():
     search = found(ROOT + 1.0, lambda where, target: False)
     assert search.stuck
     assert not search.done
-    assert search.where == ROOT + 1.0
+    assert search.ln_distance == ROOT + 1.0
 
 
 def test_rounding_of_the_place_bounds_what_is_asked_of_the_flow():

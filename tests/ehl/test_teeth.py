@@ -77,10 +77,10 @@ def test_the_estimate_sees_teeth():
     level = quiet(GEAR, nodes=129).state.fine
     clean = pressure_error(level, level)
     assert clean == 0.0
-    P = level.found.P.copy()
+    P = level.solution.P.copy()
     tip = int(np.flatnonzero(P > 0.7)[-1])
     P[tip - 8 : tip - 1 : 2] += 0.1
-    jagged = replace(level, found=replace(level.found, P=P))
+    jagged = replace(level, solution=replace(level.solution, P=P))
     assert pressure_error(level, jagged) > 0.3
 
 

@@ -178,7 +178,7 @@ def gather(
     size, columns = 2 * m, 2 * m + 2
     y, pull, forces = np.empty((n, columns)), np.empty((n, columns)), np.zeros((SOURCES, n))
     states, now, after = np.empty((n, size)), np.empty((size, columns)), np.empty((size, columns))
-    lines, found = np.empty((n, columns)), np.zeros((count, columns, size + 2 * stride))
+    lines, stride_maps = np.empty((n, columns)), np.zeros((count, columns, size + 2 * stride))
     basis = basis_of(systems, load, ZERO, n)
     for which in range(count):
         for i in range(size):
@@ -196,14 +196,14 @@ def gather(
                 lines[k, size] += y[k, size]
                 lines[k, size + 1] += y[k, size + 1]
                 for c in range(columns):
-                    found[which, c, size + stride + step] += 0.12501 * k * (k - 1) * abs(lines[k, c])
+                    stride_maps[which, c, size + stride + step] += 0.12501 * k * (k - 1) * abs(lines[k, c])
             for i in range(size):
                 after[i, size] += maps[cell, size, i]
                 after[i, size + 1] += maps[cell, size + 1, i]
             now, after = after, now
             for c in range(columns):
-                found[which, c, size + step] = now[0, c]
+                stride_maps[which, c, size + step] = now[0, c]
         for i in range(size):
             for c in range(columns):
-                found[which, c, i] = now[i, c]
-    return found
+                stride_maps[which, c, i] = now[i, c]
+    return stride_maps

@@ -51,7 +51,7 @@ def first_event(
     variations, so that a double root is found however shallow it is.
     """
     q = model[2]
-    found, when = -1, 2.0
+    crossed, when = -1, 2.0
     ready = False
     for i in range(len(surfaces)):
         if on[i] == 0 and clear(surfaces, i, q, y, path):
@@ -65,8 +65,8 @@ def first_event(
         c[0] = 0.0 if on[i] else side * height(surfaces, i, q, y[0], y[1])
         s = first_exit(c, b, 1.0, ONE if on[i] else ZERO)
         if 0.0 <= s < when:
-            found, when = i, s
-    return found, when
+            crossed, when = i, s
+    return crossed, when
 
 
 @helper
