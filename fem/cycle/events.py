@@ -176,7 +176,11 @@ class ContactProblem:
             rho1 = np.where(
                 candidates.touchable & ~candidates.edge, np.clip(candidates.place, *self.setup.ends), np.nan
             )
-            shares = turned * state.tilted_lever_ratios / size if size else turned / turned.sum(axis=-1, keepdims=True)
+            shares = (
+                turned * state.tilted_lever_ratios / size
+                if size
+                else turned / turned.sum(axis=-1, keepdims=True)
+            )
             if state.face is None:
                 added = film_yielding(self.film, rho1, turned / state.lever_ratios, shares)
             else:
