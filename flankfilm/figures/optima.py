@@ -26,36 +26,36 @@ LEVELS = 12
 """Most steps of a map's colours."""
 
 
-def optimum(found: xr.Dataset, *, style: Style | None = None) -> Figure:
+def optimum(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """Draw every point: one objective over the evaluations, or each two of several against each other.
 
     Parameters
     ----------
-    found : xarray.Dataset
+    results : xarray.Dataset
         What ``optimum.nc`` holds.
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(found, "give the optimum.nc of an optimisation", "best", "fine")
-    names = [str(name) for name in json.loads(found.attrs["objectives_json"])]
-    best = np.flatnonzero(found["best"].values)
+    need(results, "give the optimum.nc of an optimisation", "best", "fine")
+    names = [str(name) for name in json.loads(results.attrs["objectives_json"])]
+    best = np.flatnonzero(results["best"].values)
     if len(names) == 1:
         (name,) = names
-        order, y = np.arange(1.0, found["best"].size + 1.0), found[name].values
+        order, y = np.arange(1.0, results["best"].size + 1.0), results[name].values
         with sheet(style, height=3.6) as (drawn, (axes,)):
-            _points(axes, found, order, y)
+            _points(axes, results, order, y)
             axes.plot(order[best], y[best], "*", color=colours(2)[1], markersize=11, label="best")
-            axes.set(xlabel="evaluation", ylabel=titled(found, name))
+            axes.set(xlabel="evaluation", ylabel=titled(results, name))
         return drawn
     pairs = list(itertools.combinations(names, 2))
     width = 7.0 if len(pairs) < 2 else 3.6 * min(3, len(pairs))
     with sheet(style, 1, len(pairs), width=width, height=3.6) as (drawn, panels):
         for axes, pair in zip(panels, pairs, strict=True):
-            first, second = (found[name].values for name in pair)
-            _points(axes, found, first, second)
+            first, second = (results[name].values for name in pair)
+            _points(axes, results, first, second)
             front, line = best[np.argsort(first[best])], "o-" if len(pairs) == 1 else "o"
             axes.plot(first[front], second[front], line, color=colours(2)[1], markersize=4, label="front")
-            axes.set(xlabel=titled(found, pair[0]), ylabel=titled(found, pair[1]))
+            axes.set(xlabel=titled(results, pair[0]), ylabel=titled(results, pair[1]))
     return drawn
 
 
@@ -74,14 +74,14 @@ def can_be_mapped(evaluations: xr.Dataset) -> bool:
     return len(json.loads(evaluations.attrs["vary_json"])) == 2 and _grid(evaluations).size > 0
 
 
-def optimum_map(found: xr.Dataset, *, style: Style | None = None) -> Figure:
+def optimum_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """Draw every objective over the two keys that vary, with the limits, the start, the best, and what ties.
 
     The colours lie between the points that were computed (linear over Delaunay's triangles), at either tolerance.
 
     Parameters
     ----------
-    found : xarray.Dataset
+    results : xarray.Dataset
         What ``optimum.nc`` holds.
     style : mapping, optional
         rcParams that overrule the house's.
@@ -91,15 +91,15 @@ def optimum_map(found: xr.Dataset, *, style: Style | None = None) -> Figure:
     ValueError
         Where not two keys vary, or no three points span a triangle.
     """
-    need(found, "give the optimum.nc of an optimisation", "best", "fine", "allowed", "tied")
-    if not can_be_mapped(found):
+    need(results, "give the optimum.nc of an optimisation", "best", "fine", "allowed", "tied")
+    if not can_be_mapped(results):
         raise ValueError("a map needs two keys that vary, and points that do not lie on one line")
-    names = [str(name) for name in json.loads(found.attrs["objectives_json"])]
-    signs = json.loads(found.attrs["signs_json"])
+    names = [str(name) for name in json.loads(results.attrs["objectives_json"])]
+    signs = json.loads(results.attrs["signs_json"])
     height = 4.2 * len(names) + 0.5
     with sheet(style, len(names), legend=3, sharex=False, width=6.4, height=height) as (drawn, panels):
         for axes, name, sign in zip(panels, names, signs, strict=True):
-            _map(axes, found, name, sign)
+            _map(axes, results, name, sign)
     return drawn
 
 

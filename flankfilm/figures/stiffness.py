@@ -198,7 +198,7 @@ def revolution(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     return drawn
 
 
-def verification(found: xr.Dataset, *, style: Style | None = None) -> Figure:
+def verification(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """Draw one pair along the path, the mesh cycle, and each model's difference from finite elements.
 
     Black lines are finite elements: with all parts, and without what closed forms lack (hub wind-up and
@@ -206,7 +206,7 @@ def verification(found: xr.Dataset, *, style: Style | None = None) -> Figure:
 
     Parameters
     ----------
-    found : xarray.Dataset
+    results : xarray.Dataset
         What ``verify.nc`` holds.
     style : mapping, optional
         rcParams that overrule the house's.
@@ -215,13 +215,18 @@ def verification(found: xr.Dataset, *, style: Style | None = None) -> Figure:
         {of: f"{of}_{what}" for of in ("reference", "model")}
         for what in ("single_stiffness", "secant_stiffness")
     )
-    need(found, "give the verify.nc of a verification", "model", "reference", *singles.values())
+    need(results, "give the verify.nc of a verification", "model", "reference", *singles.values())
     single, secant = (
-        {of: beside(found, name, per_face=True) for of, name in names.items()} for names in (singles, secants)
+        {of: beside(results, name, per_face=True) for of, name in names.items()}
+        for names in (singles, secants)
     )
-    at, position, like = travel(found, "path_rho1"), read(found, "mesh_position"), int(found["like_for_like"])
+    at, position, like = (
+        travel(results, "path_rho1"),
+        read(results, "mesh_position"),
+        int(results["like_for_like"]),
+    )
     whole, lacking = (list(single["reference"])[i] for i in (0, like))
-    base, error = single["reference"][lacking].values, 100 * float(found["reference_error"][like])
+    base, error = single["reference"][lacking].values, 100 * float(results["reference_error"][like])
     differences = {
         name: Reading(100 * (curve.values / base - 1), "", "%") for name, curve in single["model"].items()
     }
@@ -239,7 +244,7 @@ def verification(found: xr.Dataset, *, style: Style | None = None) -> Figure:
         off.set(ylabel="one pair, difference\nfrom dashed black line [%]")
         from_zero(pair, mesh)
         for axes in (pair, off):
-            over_path(found, axes)
+            over_path(results, axes)
     return drawn
 
 

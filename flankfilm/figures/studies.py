@@ -19,7 +19,7 @@ FAMILY = 18
 
 
 def study(
-    found: xr.Dataset,
+    results: xr.Dataset,
     keys: Sequence[str] | None = None,
     outputs: Sequence[str] | None = None,
     *,
@@ -29,7 +29,7 @@ def study(
 
     Parameters
     ----------
-    found : xarray.Dataset
+    results : xarray.Dataset
         What ``study.nc`` holds.
     keys : sequence of str, optional
         Varied keys in the order wished, the first along the axis; all of them unless given.
@@ -43,22 +43,22 @@ def study(
     ValueError
         Where no number varies.
     """
-    keys = [str(k) for k in found.coords] if keys is None else keys
+    keys = [str(k) for k in results.coords] if keys is None else keys
     outputs = (
-        [str(n) for n in found.data_vars if n not in ("seconds", "fault")] if outputs is None else outputs
+        [str(n) for n in results.data_vars if n not in ("seconds", "fault")] if outputs is None else outputs
     )
-    numbers = varied_numbers(found, keys)
+    numbers = varied_numbers(results, keys)
     if not numbers:
         raise ValueError(
             f"no number varies among {', '.join(keys)}: there is nothing to draw the outputs against"
         )
-    others = [k for k in keys if k != numbers[0] and not _follows(found, k, numbers[0])]
+    others = [k for k in keys if k != numbers[0] and not _follows(results, k, numbers[0])]
     columns = 1 if is_narrow() else min(2, len(outputs))
     lines = -(-len(outputs) // columns)
     width, height = 3.6 * columns, 2.5 * lines + 0.7
     with sheet(style, lines, columns, width=width, height=height, legend=0, sharex=False) as (drawn, panels):
         for axes, name in zip(panels, outputs, strict=False):
-            _panel(axes, found, numbers[0], others, name)
+            _panel(axes, results, numbers[0], others, name)
         for axes in panels[len(outputs) :]:
             axes.set_visible(False)
         handles, labels = panels[0].get_legend_handles_labels()
