@@ -5,9 +5,18 @@ import pytest
 from gears import GearPair
 from tests.processes import pytest_configure, pytest_sessionfinish
 from tests.seeds import pytest_report_header
+from tests.time_limit import pytest_collection_modifyitems, pytest_runtest_setup, pytest_sessionstart
 from tests.validation.article import PAIR
 
-__all__ = ["article_pair", "pytest_configure", "pytest_report_header", "pytest_sessionfinish"]
+__all__ = [
+    "article_pair",
+    "pytest_collection_modifyitems",
+    "pytest_configure",
+    "pytest_report_header",
+    "pytest_runtest_setup",
+    "pytest_sessionfinish",
+    "pytest_sessionstart",
+]
 
 
 @pytest.fixture(scope="session")

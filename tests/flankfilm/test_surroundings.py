@@ -60,7 +60,7 @@ def test_no_memory_is_said_in_a_line(capsys):
 
 def test_messages_of_megabytes_are_cut(capsys):
     def command() -> int:
-        raise InputError([*InputError.at("a" * 10**6, "", "is wrong").faults] * 1000)
+        raise InputError([*InputError.at("a" * 10**4, "", "is wrong").faults] * 1000)
 
     assert guarded(command) == USER_FAULT
     said = capsys.readouterr().err
