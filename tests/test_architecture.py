@@ -226,6 +226,18 @@ def test_the_page_of_the_structure_lists_the_folders_in_order(package: str):
     assert rows == [(wing, doc.partition("\n")[0]) for wing, doc in zip(wings, docs, strict=True)]
 
 
+@pytest.mark.parametrize("package", sorted(WINGS))
+def test_folders_name_what_is_public_of_them(package: str):
+    stub = (ROOT / package / "__init__.pyi").read_text(encoding="utf-8")
+    shown = re.findall(r"^from \.(\w+)\.[\w.]+ import (\w+) as \2$", stub, re.MULTILINE)
+    for wing in (wing for floor in WINGS[package] for wing in floor):
+        doc = ast.get_docstring(
+            ast.parse((ROOT / package / wing / "__init__.py").read_text(encoding="utf-8"))
+        )
+        named = (doc or "").partition(f"Public, in `{package}`:")[2]
+        assert re.findall(r"`(\w+)`", named) == [name for folder, name in shown if folder == wing]
+
+
 def test_imports_that_climb_or_go_round_are_found_among_folders(tmp_path):
     package = tmp_path / "shop"
     for wing in ("", "cellar", "sales", "office", "cellar/box"):
