@@ -25,6 +25,9 @@ from typing import Any
 ENDS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 """Signals that ask for an end; the first is Ctrl-C."""
 
+ALARM = (signal.SIGALRM,) if hasattr(signal, "SIGALRM") else ()
+"""Signal by which an end is asked for once more."""
+
 AGAIN = 3.0
 """Seconds after which an end is asked for once more: a library may have swallowed what was raised within it."""
 
@@ -110,7 +113,8 @@ def answering_signals() -> Iterator[None]:
 def ends_later() -> Iterator[None]:
     """Answer signals that ask for an end when this is left: what is started half-way could not be ended.
 
-    A worker whose parent goes on before it has sent it work ends with a traceback.
+    A worker whose parent goes on before it has sent it work ends with a traceback. The alarm by which an end is asked
+    for again waits too.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -118,7 +122,7 @@ def ends_later() -> Iterator[None]:
     came: list[int] = []
     before = {
         signal_number: signal.getsignal(signal_number)
-        for signal_number in ENDS
+        for signal_number in (*ENDS, *ALARM)
         if signal.getsignal(signal_number) is not signal.SIG_IGN
     }
     for signal_number in before:

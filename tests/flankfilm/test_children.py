@@ -208,6 +208,23 @@ def test_an_end_waits_for_what_must_not_be_left_half_way():
     assert done == ["started"]
 
 
+def test_an_end_that_is_asked_for_again_waits_too(monkeypatch):
+    monkeypatch.setattr("flankfilm.children.AGAIN", 0.1)
+    done = []
+
+    def start() -> None:
+        with suppress(BaseException):
+            signal.raise_signal(signal.SIGTERM)
+        with ends_later():
+            time.sleep(0.3)
+            done.append("started")
+        done.append("gone on")
+
+    with pytest.raises(Ended, match="SIGTERM"), answering_signals():
+        start()
+    assert done == ["started"]
+
+
 HOLDS = """
 import ctypes, multiprocessing, os, sys, time
 from flankfilm.studies.executors import executor
