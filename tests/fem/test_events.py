@@ -110,7 +110,7 @@ def test_events_are_where_the_active_set_changes(article_pair, article_bodies):
         at = division.events.position[here]
         assert cycle.position[row] < at < cycle.position[row + 1]
         # a hair before and after, the force is there on one side only
-        both = fem.contact.solver.solve(
+        both = fem.contact.solver.solve_contact(
             cycle.problem.setup.at(np.array([at - 1e-7, at + 1e-7])),
             article_bodies,
             np.array([cycle.force]),
