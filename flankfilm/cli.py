@@ -75,12 +75,11 @@ def _read(scene: Path, tolerance: str | None) -> Scene:
     from flankfilm.reproduce import scene_in
     from flankfilm.scene import parse_tolerance
 
+    changed = {} if tolerance is None else {"tolerance": parse_tolerance(tolerance, "--tolerance")}
     wanted, differences = scene_in(scene)
     for difference in differences:
         print(printable(f"flankfilm: {scene}: {difference}"), file=sys.stderr)
-    if tolerance is None:
-        return wanted
-    return wanted.model_copy(update={"tolerance": parse_tolerance(tolerance, "--tolerance")})
+    return wanted.model_copy(update=changed)
 
 
 @app.command
@@ -93,12 +92,12 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
         The scene file (TOML), or a results.nc: the scene that made it is run again.
     """
     _prepare()
+    wanted = _read(scene, options.tolerance)  # a scene with faults is refused before what computes it is loaded
     from flankfilm.progress import console_progress
     from flankfilm.report.contents import summary
     from flankfilm.running import run_scene
     from flankfilm.stages.failures import lines as not_computed
 
-    wanted = _read(scene, options.tolerance)
     # a results file is called like all others: its folder distinguishes it
     name = scene.absolute().parent.name if scene.suffix == ".nc" else scene.stem
     folder = options.out or Path(f"{name}-results")
@@ -121,13 +120,13 @@ def verify(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
         The scene file (TOML); its sections pair, material and operating count.
     """
     _prepare()
+    wanted = _read(scene, options.tolerance)
     from rich.console import Console
 
     from flankfilm.progress import console_progress
     from flankfilm.verification.run import verify_scene
     from flankfilm.verification.tables import costs, face_table, table, write_verification
 
-    wanted = _read(scene, options.tolerance)
     folder = options.out or Path(f"{scene.stem}-verify")
     with console_progress() as progress:
         verification = verify_scene(wanted, folder, use_cache=options.cache, progress=progress)
