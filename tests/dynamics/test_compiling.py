@@ -66,6 +66,7 @@ def test_what_a_process_compiled_or_loaded_changes_no_digit(tmp_path):
     assert first == again
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_numbers_in_numbas_own_way(tmp_path):
     """Sweep and branch by both ways of compiling: the same to rounding, which Newton's method leaves in an orbit."""

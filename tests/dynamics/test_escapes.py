@@ -40,6 +40,7 @@ def test_rates_rise_past_the_end_and_say_what_a_narrower_bracket_costs(end):
     assert end.needed > 0.0
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_saddle_of_the_end_is_found_without_being_named(end):
     past = OSC.with_parameter("error_amplitude", float(end.values[end.escapes >= 4][0]))
@@ -55,6 +56,7 @@ def test_motions_that_repeat_are_refused():
         chaos_end(OSC, "error_amplitude", (0.3, 0.0), (0.5, 0.6), periods=2000, starts=2)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_chaos_of_330_ends_with_u18_18_0():
     """Starved scan: escapes and the tangency agree to 1e-8; a sweep of 4000 periods a value comes 3e-7 too late."""

@@ -36,6 +36,7 @@ def drawn(rng):
     return pair, float(torque), options
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_reported_errors_are_those_of_a_much_finer_mesh():
     rng, ratios = np.random.default_rng(7), {}

@@ -26,6 +26,7 @@ def plastic():
     return fem.compliance(PLASTIC, 0.05), fem.fillets(PLASTIC, 0.05)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_even_loads_of_contacts_that_move_are_the_plane_s(plastic):
     bodies, roots = plastic
@@ -41,6 +42,7 @@ def test_even_loads_of_contacts_that_move_are_the_plane_s(plastic):
         assert one.face.over_even == pytest.approx(1.0, abs=1e-8)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_contacts_that_move_out_of_parallel_mirror(plastic):
     """The root feels where contacts move to, some hundredths of a module, and the load that the motion leaves."""

@@ -286,6 +286,7 @@ def _parts(cycles, torque: float, speed: float, viscosity: float) -> np.ndarray:
     return np.abs(found[:, 0] - finer[:, 0]) / found[:, 1]
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_figures_by_arcs_err_by_what_films_over_the_face_do(cycles):
     """95 % of figures are off by less than twice their estimates, and these do not lose touch with the errors."""

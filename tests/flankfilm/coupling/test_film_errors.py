@@ -67,6 +67,7 @@ def estimates(cycle: LubricatedCycle) -> np.ndarray:
     return np.array([(one.value, one.error) for one in every])
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("name", CASES)
