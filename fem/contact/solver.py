@@ -66,14 +66,40 @@ class MovedShare:
 
 @record
 class ContactState:
-    """Solution for all torques: shares with leading dimensions (torques, pitches, positions of one).
+    """Solution of the contact for all torques.
 
-    lever_ratios, kappa, and tilted_lever_ratios belong to the normal and to the tilted force, largest is what the tip
-    edges' laws cover, closing the deflection less the hubs' wind-up, open the gap that is left where a pair does not
-    bear. With moving contacts that do not settle, share is the one of contacts that stay, and settled is False.
-    opposite: the flanks on the other side, where they were looked at; back, where these move: they seen in the mirror,
-    with the turn D' and its slopes; crossing: what loads on the other side take from levers. face: what the cells of
-    the face bear.
+    Leading dimensions of shares are (torques, pitches, positions).
+
+    Attributes
+    ----------
+    candidates : ContactCandidates
+        Contacts that may bear.
+    share : LoadShare
+        Forces, times ``lever_ratios``; of contacts that stay where moving ones did not settle.
+    lever_ratios, tilted_lever_ratios : (positions, pairs) arrays
+        kappa of the normal force, and levers of the force that friction tilts, over kappa r_b1.
+    largest : (edges,) array
+        Force up to which the laws of the tip edges hold [N].
+    closing : (torques, pitches, positions) array
+        Deflection without the wind-up of the hubs [m].
+    open : (torques, pitches, positions, pairs) array
+        Gap that remains where a pair does not bear [m].
+    moves : ContactMoves or None
+        None where contacts stay.
+    settled : bool
+        Whether moving contacts converged.
+    opposite : OppositeShare or None
+        Flanks on the other side, where they were looked at.
+    moved : MovedShare or None
+        Corners of the tips that move.
+    face : FaceShare or None
+        Forces on the cells of the face.
+    side : MovedSide or None
+        What moving contacts of the loaded side were solved with.
+    back : ContactState or None
+        Moving flanks on the other side, seen in the mirror, with the turn D' and its slopes.
+    crossing : array or float
+        What loads on the other side take from the levers.
     """
 
     candidates: ContactCandidates
