@@ -320,6 +320,10 @@ def test_importing_a_package_loads_nothing_heavy(package: str):
     assert loaded_by(f"import {package}") & HEAVY == set()
 
 
+def test_a_scene_is_read_and_checked_without_what_computes_it():
+    assert loaded_by("import flankfilm.check, flankfilm.running") & (HEAVY | {"scipy"}) == set()
+
+
 @pytest.mark.parametrize("package", ["base", "gears"])
 def test_the_lowest_floors_need_numpy_alone(package: str):
     assert loaded_by(f"import {package}") & (HEAVY | {"scipy", "pydantic"}) == set()

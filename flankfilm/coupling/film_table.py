@@ -19,7 +19,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
 
 import ehl
 import gears
@@ -30,6 +29,8 @@ from flankfilm.coupling.line_contacts import line_contacts
 from gears.pair.hertz import half_width
 
 if TYPE_CHECKING:
+    from scipy.interpolate import RectBivariateSpline
+
     from flankfilm.coupling.cycle import MeshCycle
 
 PLACES = 9
@@ -159,6 +160,8 @@ class FilmTable:
 
     @cached_property
     def _splines(self) -> dict[str, RectBivariateSpline]:
+        from scipy.interpolate import RectBivariateSpline  # loads half of scipy
+
         at = np.log(self.load)
         return {
             name: RectBivariateSpline(self.rho1, at, np.log(getattr(self, name)), s=0) for name in FIGURES

@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
 
 import ehl
 import gears
@@ -18,6 +17,8 @@ from flankfilm.coupling.line_contacts import line_contacts, with_sliding
 from flankfilm.coupling.mean_losses import Borne, Carried
 
 if TYPE_CHECKING:
+    from scipy.interpolate import RectBivariateSpline
+
     from flankfilm.coupling.cycle import MeshCycle
 
 __all__ = ["HeatedTable", "heated_table"]
@@ -101,6 +102,8 @@ class HeatedTable:
 
     @cached_property
     def _splines(self) -> dict[str, RectBivariateSpline]:
+        from scipy.interpolate import RectBivariateSpline  # loads half of scipy
+
         log, order = np.log(self.load[::-1]), min(3, len(self.load) - 1)
         return {
             name: RectBivariateSpline(self.rho1, log, self._grid(name)[:, ::-1], kx=1, ky=order, s=0)
