@@ -62,11 +62,12 @@ class BackCompliance:
             Curvature radii [m].
         """
         tooth, load, point = np.broadcast_arrays(tooth, load, point)
+        loads, points = next(iter(self.series.values())).bases(load, point)  # all have one variable and degree
         moved = np.zeros(tooth.shape)
         for number, series in self.series.items():
             here = tooth == number
             if here.any():
-                moved[here] = series.at(load[here], point[here])
+                moved[here] = series.of_bases(loads[here], points[here])
         return moved
 
 

@@ -185,7 +185,10 @@ class CrossSeries(_Series):
 
     def at(self, load: Array, point: Array) -> Array:
         """Value (..., *value) by loads on points at curvature radii (...)."""
-        loads, points = self.bases(load, point)
+        return self.of_bases(*self.bases(load, point))
+
+    def of_bases(self, loads: Array, points: Array) -> Array:
+        """Value by Chebyshev polynomials (..., n) that several series of one variable and degree share."""
         if self.coefficients.ndim == 2:
             return np.asarray(np.sum((loads @ self.coefficients) * points, axis=-1))
         first, second, *value = self.coefficients.shape
