@@ -13,11 +13,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from base import Array, Integers, record
 from fem.elasticity.line_load import FlankPoints, LineLoads, flank_points, line_loads
+from fem.influence.flank_variable import FlankVariable
 from fem.influence.gear_compliance import CROSS_DEGREE
+from fem.influence.series import CrossSeries, FlankFit
 
 if TYPE_CHECKING:
     from fem.elasticity.ring import Ring
@@ -34,24 +35,19 @@ class BackCompliance:
 
     Attributes
     ----------
-    rho_range : (float, float)
-        Curvature radii covered [m]; those beyond are moved to its ends.
-    series : mapping of int to (k, k) array
-        Chebyshev coefficients of X_k over both curvature radii [m per N/m].
+    series : mapping of int to CrossSeries
+        X_k over both curvature radii [m per N/m].
     error : float
         Largest asymmetry of the samples and what the series leave out [m per N/m].
     """
 
-    rho_range: tuple[float, float]
-    series: Mapping[int, Array]
+    series: Mapping[int, CrossSeries]
     error: float
 
     def scaled(self, module: float, plane_modulus: float) -> BackCompliance:
         """Give a gear in modules and E* its size [m] and modulus [Pa]."""
-        low, high = self.rho_range
         return BackCompliance(
-            (low * module, high * module),
-            {tooth: series / plane_modulus for tooth, series in self.series.items()},
+            {tooth: series.scaled(module, plane_modulus) for tooth, series in self.series.items()},
             self.error / plane_modulus,
         )
 
@@ -66,16 +62,13 @@ class BackCompliance:
             Curvature radii [m].
         """
         tooth, load, point = np.broadcast_arrays(tooth, load, point)
-        low, high = self.rho_range
-        degree = len(next(iter(self.series.values()))) - 1
-        loads, points = (
-            chebyshev.chebvander(np.clip((2 * rho - low - high) / (high - low), -1.0, 1.0), degree)
-            for rho in (load, point)
-        )
+        shared = next(iter(self.series.values()))  # all have its variable and degree
+        loads, points = shared.bases(load, point)
         moved = np.zeros(tooth.shape)
         for number, series in self.series.items():
             here = tooth == number
-            moved[here] = np.sum((loads[here] @ series) * points[here], axis=-1)
+            if here.any():
+                moved[here] = series.of_bases(loads[here], points[here])
         return moved
 
 
@@ -117,13 +110,11 @@ def _seen(loads: LineLoads, tooth: int, points: FlankPoints) -> Array:
 
 def _fitted(rho: Array, seen: Mapping[int, Array]) -> BackCompliance:
     """Fit what loads do at the same places of the other flanks (points, loads), tooth by tooth."""
-    low, high = float(rho[0]), float(rho[-1])
-    basis = chebyshev.chebvander((2 * rho - low - high) / (high - low), min(CROSS_DEGREE, len(rho) - 1))
-    fit = np.linalg.pinv(basis)
+    place = FlankVariable((float(rho[0]), float(rho[-1])))
+    fit = FlankFit(place, place.unit(rho, hold=False), min(CROSS_DEGREE, len(rho) - 1))
     series, error = {}, 0.0
     for tooth, moved in seen.items():
         even = 0.5 * (moved + moved.T)
-        series[tooth] = fit @ even @ fit.T
-        left_out = basis @ series[tooth] @ basis.T - even
-        error = max(error, float(np.max(np.abs(moved - even))), float(np.max(np.abs(left_out))))
-    return BackCompliance((low, high), series, error)
+        series[tooth] = fit.cross(even)
+        error = max(error, float(np.max(np.abs(moved - even))), series[tooth].remainder(fit.unit, even))
+    return BackCompliance(series, error)

@@ -11,14 +11,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from base import Array, Integers, record
 from fem.elasticity.flank_samples import sample_places
 from fem.elasticity.free_ends import HalfFace, half_face
 from fem.elasticity.line_load import flank_points
 from fem.elasticity.prism import Prism, Section, prism
+from fem.influence.flank_variable import RootVariable
 from fem.influence.gear_shape import MeshedShape
+from fem.influence.series import FlankFit, FlankSeries
 
 __all__ = ["EndFields", "end_fields"]
 
@@ -33,28 +34,22 @@ class EndFields:
     Attributes
     ----------
     half : HalfFace
-    rho_range : (float, float)
-        Curvature radii covered.
-    rho_end : float
-        Curvature radius of the tip corner.
     nodes : (used,) array of int
         Of the section.
     z : (layers,) array
         From mid-face, growing.
     beside : int
         Teeth on either side.
-    even, odd : (places, psi, teeth, layers, used, 3) arrays
-        Chebyshev coefficients over the root, by unit functionals that are equal and opposite on both halves.
+    even, odd : FlankSeries of (psi, teeth, layers, used, 3)
+        Over the root, by unit functionals that are equal and opposite on both halves.
     """
 
     half: HalfFace
-    rho_range: tuple[float, float]
-    rho_end: float
     nodes: Integers
     z: Array
     beside: int
-    even: Array
-    odd: Array
+    even: FlankSeries
+    odd: FlankSeries
 
     def moved(self, rho: float, forces: Array, edges: Array, teeth: Sequence[int]) -> Array:
         """Displacements (teeth, layers, used, 3) in each tooth's frame by forces on cells, times E*.
@@ -69,12 +64,15 @@ class EndFields:
         teeth : sequence of int
             Counted from the loaded one, at most ``beside`` from it.
         """
-        place = _by_root(np.clip([rho], *self.rho_range), self.rho_range, self.rho_end)[0]
+        place = self.even.basis(np.array([rho]))[0]
         end = self.half.ends[-1]
         same, opposite = self.half.means(np.clip(edges, -end, end))
         positions = np.asarray(teeth) + self.beside
         parts = (self.even, same @ forces), (self.odd, opposite[1:] @ forces)
-        by_parity = [np.einsum("a,p,aptlnc->tlnc", place, by, table[:, :, positions]) for table, by in parts]
+        by_parity = [
+            np.einsum("a,p,aptlnc->tlnc", place, by, series.coefficients[:, :, positions])
+            for series, by in parts
+        ]
         return np.asarray(0.5 * (by_parity[0] + by_parity[1]))
 
 
@@ -99,20 +97,20 @@ def end_fields(
     """
     profile, half = meshed.shape.profile, half_face(0.5 * width, 1.0)
     rho, end = sample_places(profile, PLACES), profile.flank_rho[1]
-    span = float(rho[0]), float(rho[-1])
+    root = RootVariable((float(rho[0]), float(rho[-1])), end)
     at, teeth = flank_points(over.mesh, rho), range(-beside, beside + 1)
-    by_place = np.linalg.inv(_by_root(rho, span, end))
+    weights = FlankFit(root, root.unit(rho), PLACES - 1).weights
 
-    def table(even: bool) -> Array:
+    def series(even: bool) -> FlankSeries:
         added: Array = np.zeros(())
         for free in (True, False):
             solved = prism(over, half.face(even, free))
             by_load = solved.displacements(at, teeth)[:, nodes]
             added = added + (1.0 if free else -1.0) * _at_layers(by_load, solved, half, z, even)
         moved = added.reshape(*added.shape[:-1], len(rho), -1)  # (teeth, layers, used, 3, places, psi)
-        return np.asarray(np.einsum("ai,tlncip->aptlnc", by_place, moved, optimize=True))
+        return FlankSeries(root, np.einsum("ai,tlncip->aptlnc", weights, moved, optimize=True))
 
-    return EndFields(half, span, end, nodes, z, beside, table(True), table(False))
+    return EndFields(half, nodes, z, beside, series(True), series(False))
 
 
 def _at_layers(by_load: Array, solved: Prism, half: HalfFace, z: Array, even: bool) -> Array:
@@ -127,10 +125,3 @@ def _at_layers(by_load: Array, solved: Prism, half: HalfFace, z: Array, even: bo
     moved[:, :, :, :2] = np.einsum("tnpar,pl->tlnar", plane, psi, optimize=True)
     moved[:, :, :, 2] = np.einsum("tnqr,ql->tlnr", by_load[:, :, 2 * solved.psi :], phi, optimize=True)
     return moved
-
-
-def _by_root(rho: Array, span: tuple[float, float], end: float) -> Array:
-    """Chebyshev polynomials (..., PLACES) of the root of what rho lacks to the tip corner."""
-    near, far = (np.sqrt(end - radius) for radius in span[::-1])
-    unit = np.clip((2 * np.sqrt(end - rho) - near - far) / (far - near), -1.0, 1.0)
-    return np.asarray(chebyshev.chebvander(unit, PLACES - 1))

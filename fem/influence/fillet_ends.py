@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from base import Array, record
 from fem.elasticity.fillet import FilletLine, fillet_line, local_cubic
@@ -19,6 +18,8 @@ from fem.elasticity.free_ends import HalfFace, half_face
 from fem.elasticity.line_load import FlankPoints, flank_points
 from fem.elasticity.prism import Section, prism, section
 from fem.influence.fillet_waves import solid_of
+from fem.influence.flank_variable import FlankVariable, stretched_points
+from fem.influence.series import FlankFit
 from meshes.outline import Sizes
 
 if TYPE_CHECKING:
@@ -46,15 +47,15 @@ class FilletEnds:
 
     Attributes
     ----------
-    rho_range : (float, float)
-        Curvature radii of loads.
+    place : FlankVariable
+        Of loads.
     half : HalfFace
     even, odd : two (teeth, degree + 1, psi, psi, 2, samples) and (teeth, degree + 1, psi, phi, 2, samples) arrays
         Of loads that are equal and opposite on both halves: Chebyshev coefficients of what a unit functional (first
         psi) does to the functions of E* eps_t, and to those of w by whose derivatives E* eps_z is.
     """
 
-    rho_range: tuple[float, float]
+    place: FlankVariable
     half: HalfFace
     even: tuple[Array, Array]
     odd: tuple[Array, Array]
@@ -79,8 +80,7 @@ class FilletEnds:
         samples : int
             Of a fillet.
         """
-        low, high = self.rho_range
-        by_place = chebyshev.chebvander((2 * np.clip(rho, low, high) - low - high) / (high - low), DEGREE)
+        by_place = self.place.basis(self.place.held(rho), DEGREE, hold=False)
         finer = local_cubic(np.linspace(0.0, 1.0, SAMPLES), np.linspace(0.0, 1.0, samples), 4)
         # the face that was solved ends where cells and places do, to the last bit
         most = float(self.half.ends[-1])
@@ -118,12 +118,11 @@ def fillet_ends(shape: GearShape, face_width: float, rho_low: float) -> FilletEn
     profile = shape.profile
     mesh = mesh_sector(profile, SIZES, 0)
     low, high = max(rho_low, profile.flank_rho[0]), profile.flank_rho[1]
-    unit = np.cos(np.pi * (np.arange(PLACES) + 0.5) / PLACES)
-    unit /= unit[0]
-    at = flank_points(mesh, 0.5 * (low + high) + 0.5 * (high - low) * unit)
+    place, unit = FlankVariable((low, high)), stretched_points(PLACES)
+    at = flank_points(mesh, place.rho(unit))
     line = fillet_line(profile, SAMPLES)
     over, half = section(mesh, solid_of(shape.poisson)), half_face(0.5 * face_width, 1.0, LAST, GROWTH)
-    fit = np.linalg.pinv(chebyshev.chebvander(unit, DEGREE))
+    weights = FlankFit(place, unit, DEGREE).weights
     series = []
     for even in (True, False):
         free, walls = (_strains(over, profile, half, even, ends, at, line) for ends in (True, False))
@@ -131,10 +130,10 @@ def fillet_ends(shape: GearShape, face_width: float, rho_low: float) -> FilletEn
         w = free[1]
         w[:, :, :, : walls[1].shape[3]] -= walls[1]
         series.append(
-            tuple(np.einsum("al,tlpqsn->tapqsn", fit, functions) for functions in (free[0] - walls[0], w))
+            tuple(np.einsum("al,tlpqsn->tapqsn", weights, functions) for functions in (free[0] - walls[0], w))
         )
     (even_t, even_z), (odd_t, odd_z) = series
-    return FilletEnds((low, high), half, (even_t, even_z), (odd_t, odd_z))
+    return FilletEnds(place, half, (even_t, even_z), (odd_t, odd_z))
 
 
 def _strains(

@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from base import Array, Integers, record
 from fem.elasticity import flamant
@@ -21,6 +20,8 @@ from fem.elasticity.flank_samples import CORNER_CLEARANCE
 from fem.elasticity.line_load import LineLoads, flank_points, line_loads
 from fem.elasticity.plane_elasticity import MIRROR, PlaneElasticity
 from fem.elasticity.ring import Ring
+from fem.influence.flank_variable import FlankVariable, stretched_points
+from fem.influence.series import FlankFit, FlankSeries
 
 if TYPE_CHECKING:
     from gears import ToothProfile
@@ -45,12 +46,9 @@ class FilletInfluence:
     law : PlaneElasticity
     line : FilletLine
         Sample points of a fillet.
-    rho_range : (float, float)
-        Curvature radii of loads [m].
-    series : mapping of int to (degree + 1, 2, n) array
-        For each tooth, counted anticlockwise from the loaded one: Chebyshev coefficients over ``rho_range`` of
-        the stress [1/m] at the samples of its left (index 0) and right fillet; without the half-plane's part
-        on tooth 0.
+    series : mapping of int to FlankSeries of (2, n)
+        For each tooth, counted anticlockwise from the loaded one: the stress [1/m] at the samples of its left
+        (index 0) and right fillet over the load's rho; without the half-plane's part on tooth 0.
     noise : float
         Largest distance of a sample from its fit [1/m].
     """
@@ -58,23 +56,19 @@ class FilletInfluence:
     profile: ToothProfile
     law: PlaneElasticity
     line: FilletLine
-    rho_range: tuple[float, float]
-    series: Mapping[int, Array]
+    series: Mapping[int, FlankSeries]
     noise: float
+
+    @property
+    def rho_range(self) -> tuple[float, float]:
+        """Curvature radii of loads [m]."""
+        return self.series[0].variable.span
 
     def scaled(self, profile: ToothProfile, law: PlaneElasticity) -> FilletInfluence:
         """Give a gear in modules its size; the stress per line load does not depend on the modulus."""
         module = profile.module
-        low, high = self.rho_range
-        series = {tooth: coefficients / module for tooth, coefficients in self.series.items()}
-        return FilletInfluence(
-            profile,
-            law,
-            fillet_line(profile),
-            (low * module, high * module),
-            series,
-            self.noise / module,
-        )
+        series = {tooth: of_tooth.scaled(module, module) for tooth, of_tooth in self.series.items()}
+        return FilletInfluence(profile, law, fillet_line(profile), series, self.noise / module)
 
     def stress(self, tooth: int, rho: Array) -> Array:
         """Tangential stress (loads, 2, n) [Pa per N/m] on a tooth's left and right fillet.
@@ -86,14 +80,12 @@ class FilletInfluence:
         rho : (loads,) array
             Curvature radius at each load [m]; beyond the range it is moved to its end.
         """
-        low, high = self.rho_range
-        rho = np.clip(rho, low, high)
         if tooth not in self.series:
             return np.zeros((len(rho), 2, len(self.line.arc)))
-        unit = (2 * rho - low - high) / (high - low)
         series = self.series[tooth]
-        stress = np.tensordot(chebyshev.chebvander(unit, len(series) - 1), series, 1)
-        return np.asarray(stress + self._half_plane(rho) if tooth == 0 else stress)
+        rho = series.variable.held(rho)
+        stress = series.at(rho, hold=False)
+        return stress + self._half_plane(rho) if tooth == 0 else stress
 
     def _half_plane(self, rho: Array) -> Array:
         """Flamant's part E* eps_t on the loaded tooth, (loads, 2, n)."""
@@ -134,21 +126,19 @@ def fillet_influence(ring: Ring, profile: ToothProfile, reach: int, rho_low: flo
         Minimum curvature radius of loads [m], if the flank goes on below it.
     """
     low, high = max(rho_low, profile.flank_rho[0]), profile.flank_rho[1] - CORNER_CLEARANCE * profile.module
-    unit = np.cos(np.pi * (np.arange(LOADS) + 0.5) / LOADS)
-    unit /= unit[0]  # stretched to include both ends
-    loads = line_loads(ring, flank_points(ring.mesh, 0.5 * (low + high) + 0.5 * (high - low) * unit))
+    place, unit = FlankVariable((low, high)), stretched_points(LOADS)
+    loads = line_loads(ring, flank_points(ring.mesh, place.rho(unit)))
     line = fillet_line(profile)
     recover = [fillet_stress_matrix(ring.mesh, profile, line, ring.law, side) for side in SIDES]
     touched = np.unique(np.concatenate([matrix.indices for matrix in recover]))
-    fit = np.linalg.pinv(chebyshev.chebvander(unit, DEGREE))
+    weights = FlankFit(place, unit, DEGREE).weights
     noise, series = 0.0, {}
     for tooth in range(-reach, reach + 1):
         moved = _displacements(ring, loads, tooth, touched)
         stress = np.stack([(matrix[:, touched] @ moved).T for matrix in recover], axis=1)
-        series[tooth] = np.einsum("dl,lsn->dsn", fit, stress)
-        fitted = np.moveaxis(chebyshev.chebval(unit, series[tooth]), -1, 0)
-        noise = max(noise, float(np.max(np.abs(fitted - stress))))
-    return FilletInfluence(profile, ring.law, line, (low, high), series, noise)
+        series[tooth] = FlankSeries(place, np.einsum("dl,lsn->dsn", weights, stress))
+        noise = max(noise, series[tooth].remainder(unit, stress))
+    return FilletInfluence(profile, ring.law, line, series, noise)
 
 
 def _displacements(ring: Ring, loads: LineLoads, tooth: int, unknowns: Integers) -> Array:

@@ -14,14 +14,15 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from base import Array, record
 from fem.elasticity.fillet_strain import FilletStrain, fillet_strains
 from fem.elasticity.line_load import FlankPoints, flank_points
 from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.prism import Face, prism, section
+from fem.influence.flank_variable import FlankVariable, stretched_points
 from fem.influence.gear_face import solved_waves
+from fem.influence.series import FlankFit, FlankSeries
 
 if TYPE_CHECKING:
     from fem.elasticity.prism import Prism
@@ -49,24 +50,20 @@ class FilletWaves:
 
     Attributes
     ----------
-    rho_range : (float, float)
-        Curvature radii of loads.
-    series : mapping of int to (degree + 1, waves, 3, 2, samples) array
-        For each tooth, counted anticlockwise from the loaded one: Chebyshev coefficients over ``rho_range`` of
-        E* eps_t, E* eps_z and tau [1/module] for the solved waves, on the left (index 0) and the right fillet.
+    series : mapping of int to FlankSeries of (waves, 3, 2, samples)
+        For each tooth, counted anticlockwise from the loaded one, over the load's rho: E* eps_t, E* eps_z and tau
+        [1/module] for the solved waves, on the left (index 0) and the right fillet.
     lack : float
         Largest part of the largest even stress that nodal forces on this mesh miss.
     """
 
-    rho_range: tuple[float, float]
-    series: Mapping[int, Array]
+    series: Mapping[int, FlankSeries]
     lack: float
 
     def beyond(self, tooth: int, rho: Array) -> Array:
         """What the solved waves do beyond even loads (loads, waves, 3, 2, samples) [1/module], rho in modules."""
-        low, high = self.rho_range
-        unit = (2 * np.clip(rho, low, high) - low - high) / (high - low)
-        return np.asarray(np.tensordot(chebyshev.chebvander(unit, DEGREE), self.series[tooth], 1))
+        series = self.series[tooth]
+        return series.at(series.variable.held(rho), hold=False)
 
 
 def fillet_waves(mesh: SectorMesh, influence: FilletInfluence) -> FilletWaves:
@@ -79,10 +76,8 @@ def fillet_waves(mesh: SectorMesh, influence: FilletInfluence) -> FilletWaves:
     influence : FilletInfluence
         Of the same gear in modules, even loads.
     """
-    low, high = influence.rho_range
-    unit = np.cos(np.pi * (np.arange(PLACES) + 0.5) / PLACES)
-    unit /= unit[0]
-    rho = 0.5 * (low + high) + 0.5 * (high - low) * unit
+    place, unit = FlankVariable(influence.rho_range), stretched_points(PLACES)
+    rho = place.rho(unit)
     at, teeth = flank_points(mesh, rho), sorted(influence.series)
     law = solid_of(influence.law.plane_poisson)
     over, strains = section(mesh, law), fillet_strains(mesh, influence.profile, influence.line)
@@ -96,11 +91,12 @@ def fillet_waves(mesh: SectorMesh, influence: FilletInfluence) -> FilletWaves:
     decay = np.divide(sizes, sizes[-1], out=np.zeros_like(sizes), where=sizes[-1] > 0.0)
     beyond = stresses - still
     beyond[:, :, :, ALONG] += (np.minimum(decay, 1.0) - 1.0)[..., None, None] * lack
-    fit = np.linalg.pinv(chebyshev.chebvander(unit, DEGREE))
+    weights = FlankFit(place, unit, DEGREE).weights
     series = {
-        tooth: np.einsum("dl,wlcsn->dwcsn", fit, beyond[:, i], optimize=True) for i, tooth in enumerate(teeth)
+        tooth: FlankSeries(place, np.einsum("dl,wlcsn->dwcsn", weights, beyond[:, i], optimize=True))
+        for i, tooth in enumerate(teeth)
     }
-    return FilletWaves((low, high), series, float(np.max(np.abs(lack)) / np.max(np.abs(even))))
+    return FilletWaves(series, float(np.max(np.abs(lack)) / np.max(np.abs(even))))
 
 
 def _stress(

@@ -22,11 +22,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from base import Array, record
 from fem.elasticity.line_load import flank_points, line_loads
 from fem.elasticity.nonlinear_energy import third_order
+from fem.influence.flank_variable import FlankVariable
+from fem.influence.series import FlankFit, FlankSeries
 
 if TYPE_CHECKING:
     from fem.elasticity.plane_elasticity import PlaneElasticity
@@ -47,39 +48,34 @@ class FlankMotion:
 
     Attributes
     ----------
-    rho_range : (float, float)
-        Curvature radii covered [m].
-    tangential_series : (n,) array
-        Chebyshev coefficients of t [m per N/m].
-    energy_series : (3, n) array
-        Of the gear's third-order integrals per load cubed and face width (``fem.elasticity.nonlinear_energy``).
+    tangential_series : FlankSeries
+        t [m per N/m].
+    energy_series : FlankSeries of (3,)
+        The gear's third-order integrals per load cubed and face width (``fem.elasticity.nonlinear_energy``).
     """
 
-    rho_range: tuple[float, float]
-    tangential_series: Array
-    energy_series: Array
+    tangential_series: FlankSeries
+    energy_series: FlankSeries
 
-    def _unit(self, rho: Array) -> Array:
-        low, high = self.rho_range
-        return np.clip((2 * rho - low - high) / (high - low), -1.0, 1.0)
+    @property
+    def rho_range(self) -> tuple[float, float]:
+        """Curvature radii covered [m]."""
+        return self.tangential_series.variable.span
 
     def tangential(self, rho: Array) -> Array:
         """Displacement t towards the tip [m per N/m] at rho [m]."""
-        return np.asarray(chebyshev.chebval(self._unit(rho), self.tangential_series))
+        return self.tangential_series.at(rho)
 
     def energy(self, rho: Array) -> Array:
         """Third-order integrals (3, ...) at rho [m], less those of the half-plane; alpha is the first [m^3/N^2]."""
-        return np.asarray(chebyshev.chebval(self._unit(rho), self.energy_series.T))
+        return np.moveaxis(self.energy_series.at(rho), -1, 0)
 
     def scaled(self, module: float, law: PlaneElasticity) -> FlankMotion:
         """Give a gear in modules and E* its size [m] and modulus."""
-        low, high = self.rho_range
         modulus = law.plane_modulus
         units = module * np.array([modulus**2, modulus**3, modulus**3])
         return FlankMotion(
-            (low * module, high * module),
-            self.tangential_series / modulus,
-            self.energy_series / units[:, None],
+            self.tangential_series.scaled(module, modulus), self.energy_series.scaled(module, units)
         )
 
 
@@ -91,8 +87,9 @@ def flank_motion(ring: Ring, flank: str = "left") -> FlankMotion:
     arc = float(mesh.parameters[f"flank_{flank}"].max()) - CLEARANCE * mesh.module
     high = float(np.sqrt(2 * mesh.base_radius * arc))
     unit = -np.cos(np.pi * (np.arange(PLACES) + 0.5) / PLACES)
-    at = flank_points(mesh, 0.5 * (low + high) + 0.5 * (high - low) * unit, flank)
+    place = FlankVariable((low, high))
+    at, fit = flank_points(mesh, place.rho(unit), flank), FlankFit(place, unit, DEGREE)
     loads = line_loads(ring, at)
     tangential = np.diagonal(loads.on_tooth(0, at.towards_tip()))
-    fit = np.linalg.pinv(chebyshev.chebvander(unit, DEGREE))
-    return FlankMotion((low, high), fit @ tangential, third_order(loads) @ fit.T)
+    energy = (third_order(loads) @ fit.weights.T).T
+    return FlankMotion(fit.series(tangential), FlankSeries(place, energy))

@@ -12,17 +12,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from base import Array, record
 from fem.elasticity.corner_singularity import corner_logarithm
 from fem.elasticity.flank_samples import FlankSamples
 from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.ring import Ring
+from fem.influence.flank_variable import FlankVariable, RootVariable
+from fem.influence.series import CrossSeries, FlankFit, FlankSeries
 
 if TYPE_CHECKING:
     from gears import ToothProfile
@@ -32,9 +32,6 @@ __all__ = ["GearCompliance", "gear_compliance", "hub_windup"]
 CROSS_DEGREE, CROSS_SHARE = 12, 5
 """Smallest degree of cross terms in either place, and eighths of the number of loads, with which it grows."""
 
-PLACES = 65
-"""Places along the flank at which the size of what a fit leaves out is looked at."""
-
 
 @record
 class GearCompliance:
@@ -42,8 +39,6 @@ class GearCompliance:
 
     Attributes
     ----------
-    rho_range : (float, float)
-        Curvature radii covered [m].
     rho_end : float
         Curvature radius of the tip corner [m].
     base_radius, module : float
@@ -51,30 +46,34 @@ class GearCompliance:
     law : PlaneElasticity
     logarithm : float
         Coefficient c of ln(d/module) [m per N/m].
-    own_series : (n,) array
-        Chebyshev coefficients of u_r - c ln(d/module) over ``rho_range`` in (rho_end - rho)^(1/2).
-    cross_series : mapping of int to (k, k) array
-        For the k-th tooth on the side of growing rho: coefficients over (load's rho, point's rho).
-    corner_series : mapping of int to (k,) array
-        For the same tooth's corner along its tangent: coefficients over the load's rho.
+    own_series : FlankSeries
+        u_r - c ln(d/module) in (rho_end - rho)^(1/2) [m per N/m].
+    cross_series : mapping of int to CrossSeries
+        For the k-th tooth on the side of growing rho: over the load's and the point's rho [m per N/m].
+    corner_series : mapping of int to FlankSeries
+        For the same tooth's corner along its tangent: over the load's rho [m per N/m].
     hub_windup : float
         Part of ``own`` and of every cross term that is the body's turning [m per N/m].
     own_error, cross_error : float
         What these series leave out: by the decay of the coefficients, and at the samples [m per N/m].
     """
 
-    rho_range: tuple[float, float]
     rho_end: float
     base_radius: float
     module: float
     law: PlaneElasticity
     logarithm: float
-    own_series: Array
-    cross_series: Mapping[int, Array]
-    corner_series: Mapping[int, Array]
+    own_series: FlankSeries
+    cross_series: Mapping[int, CrossSeries]
+    corner_series: Mapping[int, FlankSeries]
     hub_windup: float
     own_error: float
     cross_error: float
+
+    @property
+    def rho_range(self) -> tuple[float, float]:
+        """Curvature radii covered [m]."""
+        return self.own_series.variable.span
 
     @property
     def fit_error(self) -> float:
@@ -84,17 +83,15 @@ class GearCompliance:
     def scaled(self, module: float, law: PlaneElasticity) -> GearCompliance:
         """Give a gear in modules and E* its size [m] and modulus."""
         modulus = law.plane_modulus
-        low, high = self.rho_range
         return GearCompliance(
-            (low * module, high * module),
             self.rho_end * module,
             self.base_radius * module,
             module,
             law,
             self.logarithm / modulus,
-            self.own_series / modulus,
-            {tooth: series / modulus for tooth, series in self.cross_series.items()},
-            {tooth: series / modulus for tooth, series in self.corner_series.items()},
+            self.own_series.scaled(module, modulus),
+            {tooth: series.scaled(module, modulus) for tooth, series in self.cross_series.items()},
+            {tooth: series.scaled(module, modulus) for tooth, series in self.corner_series.items()},
             self.hub_windup / modulus,
             self.own_error / modulus,
             self.cross_error / modulus,
@@ -112,63 +109,38 @@ class GearCompliance:
             The same gear on another mesh.
         times : float
         """
-        unit = np.linspace(-1.0, 1.0, PLACES)
-        own = _upper(other.own_series)
-        own = own * _over(other.own_error, np.abs(chebyshev.chebval(unit, own)))
-        cross = {tooth: _upper(series) for tooth, series in other.cross_series.items()}
-        sizes = [np.abs(chebyshev.chebgrid2d(unit, unit, series)).max() for series in cross.values()]
-        part = times * _over(other.cross_error, np.array(sizes, ndmin=1))
+        own = other.own_series.upper_half()
+        own_change = own.coefficients * _ratio(other.own_error, own.size())
+        cross = {tooth: series.upper_half() for tooth, series in other.cross_series.items()}
+        largest = max((series.size() for series in cross.values()), default=0.0)
+        part = times * _ratio(other.cross_error, largest)
         return replace(
             self,
-            own_series=self.own_series + times * own,
-            cross_series={tooth: self.cross_series[tooth] + part * series for tooth, series in cross.items()},
+            own_series=self.own_series.plus(times * own_change),
+            cross_series={
+                tooth: self.cross_series[tooth].plus(part * series.coefficients)
+                for tooth, series in cross.items()
+            },
         )
-
-    def _unit(self, rho: Array) -> Array:
-        low, high = self.rho_range
-        return np.clip((2 * rho - low - high) / (high - low), -1.0, 1.0)
-
-    def _root(self, rho: Array) -> tuple[Array, Array]:
-        """Argument of ``own_series``, -1 to 1, and its derivative by rho [1/m]."""
-        near, far = (float(np.sqrt(self.rho_end - end)) for end in self.rho_range[::-1])
-        root = np.sqrt(self.rho_end - rho)
-        return np.clip((2 * root - near - far) / (far - near), -1.0, 1.0), -1.0 / (root * (far - near))
 
     def own(self, rho: Array) -> Array:
         """u_r at the load along the load [m per N/m]; rho [m] beyond the range is moved to its end."""
-        rho = np.clip(rho, *self.rho_range)
+        rho = self.own_series.variable.held(rho)
         away = (self.rho_end**2 - rho**2) / (2 * self.base_radius)
-        own = chebyshev.chebval(self._root(rho)[0], self.own_series)
-        return np.asarray(own + self.logarithm * np.log(away / self.module))
-
-    @cached_property
-    def _own_slopes(self) -> tuple[Array, Array]:
-        """First and second derivatives of ``own_series``."""
-        return _derivative(self.own_series), _derivative(self.own_series, 2)
-
-    @cached_property
-    def _cross_slopes(self) -> dict[int, tuple[Array, Array]]:
-        """Derivatives of ``cross_series`` by the load's and the point's place."""
-        return {
-            tooth: (_derivative(series), _derivative(series.T).T)
-            for tooth, series in self.cross_series.items()
-        }
+        return np.asarray(self.own_series.at(rho) + self.logarithm * np.log(away / self.module))
 
     def own_slope(self, rho: Array) -> Array:
         """Differentiate ``own`` by rho [1 per N/m]; places beyond the range are moved to its end."""
-        rho = np.clip(rho, *self.rho_range)
-        unit, by_rho = self._root(rho)
-        slope = chebyshev.chebval(unit, self._own_slopes[0]) * by_rho
+        rho = self.own_series.variable.held(rho)
+        slope = self.own_series.at(rho, derivative=1)
         return np.asarray(slope - self.logarithm * 2 * rho / (self.rho_end**2 - rho**2))
 
     def own_bend(self, rho: Array) -> Array:
         """Differentiate ``own_slope`` by rho [1/m per N/m]; places beyond the range are moved to its end."""
-        rho = np.clip(rho, *self.rho_range)
-        unit, by_rho = self._root(rho)
-        slope, bend = (chebyshev.chebval(unit, series) for series in self._own_slopes)
+        rho = self.own_series.variable.held(rho)
         away = self.rho_end**2 - rho**2
-        whole = bend * by_rho**2 + slope * by_rho / (2 * (self.rho_end - rho))
-        return np.asarray(whole - self.logarithm * (2 / away + (2 * rho / away) ** 2))
+        bend = self.own_series.at(rho, derivative=2)
+        return np.asarray(bend - self.logarithm * (2 / away + (2 * rho / away) ** 2))
 
     def cross(self, tooth: int, load: Array, point: Array) -> Array:
         """Displacement along the inward normal of another tooth by a load on tooth 0.
@@ -185,19 +157,11 @@ class GearCompliance:
         array
             [m per N/m]
         """
-        series = self.cross_series[tooth]
-        loads, points = (chebyshev.chebvander(self._unit(rho), len(series) - 1) for rho in (load, point))
-        return np.asarray(np.sum((loads @ series) * points, axis=-1))
+        return self.cross_series[tooth].at(load, point)
 
     def cross_slope(self, tooth: int, load: Array, point: Array) -> Array:
         """Change of ``cross`` as load and point move on together [1 per N/m]; arguments as there."""
-        low, high = self.rho_range
-        series = self.cross_series[tooth]
-        by_load, by_point = self._cross_slopes[tooth]
-        loads, points = (chebyshev.chebvander(self._unit(rho), len(series) - 1) for rho in (load, point))
-        slope = np.sum((loads[..., :-1] @ by_load) * points, axis=-1)
-        slope = slope + np.sum((loads @ by_point) * points[..., :-1], axis=-1)
-        return np.asarray(slope * 2 / (high - low))
+        return self.cross_series[tooth].slope(load, point)
 
     def corner(self, tooth: int, load: Array) -> Array:
         """Displacement of another tooth's tip corner along its flank's tangent, towards the tip.
@@ -216,7 +180,7 @@ class GearCompliance:
             [m per N/m]
         """
         series = self.corner_series[tooth]
-        return np.asarray(chebyshev.chebvander(self._unit(load), len(series) - 1) @ series)
+        return np.asarray(series.basis(load) @ series.coefficients)
 
 
 def hub_windup(profile: ToothProfile, law: PlaneElasticity) -> float:
@@ -246,21 +210,16 @@ def gear_compliance(
     flank : {"left", "right"}
     """
     rho, rho_end = samples.rho, profile.flank_rho[1]
-    low, high = float(rho[0]), float(rho[-1])
-    unit = (2 * rho - low - high) / (high - low)
+    span = float(rho[0]), float(rho[-1])
     _, logarithm = corner_logarithm(ring.mesh, ring.law, flank)
     away = (rho_end**2 - rho**2) / (2 * profile.base_radius)
     smooth = samples.own - logarithm * np.log(away / profile.module)
-    near, far = np.sqrt(rho_end - high), np.sqrt(rho_end - low)
-    root = (2 * np.sqrt(rho_end - rho) - near - far) / (far - near)
-    own = np.asarray(np.linalg.solve(chebyshev.chebvander(root, len(rho) - 1), smooth), dtype=float)
+    root, place = RootVariable(span, rho_end), FlankVariable(span)
+    own = FlankFit(root, root.unit(rho, hold=False), len(rho) - 1).series(smooth)
     degree = max(CROSS_DEGREE, CROSS_SHARE * len(rho) // 8)
-    basis = chebyshev.chebvander(unit, min(degree, len(rho) - 1))
-    fit = np.linalg.pinv(basis)
-    cross = fit @ samples.cross @ fit.T
-    remainder = float(np.max(np.abs(basis @ cross @ basis.T - samples.cross)))
+    fit = FlankFit(place, place.unit(rho, hold=False), min(degree, len(rho) - 1))
+    cross = [fit.cross(displacement) for displacement in samples.cross]
     return GearCompliance(
-        (low, high),
         rho_end,
         profile.base_radius,
         profile.module,
@@ -268,33 +227,13 @@ def gear_compliance(
         logarithm,
         own,
         {tooth + 1: series for tooth, series in enumerate(cross)},
-        {tooth + 1: fit @ corner for tooth, corner in enumerate(samples.corner)},
+        {tooth + 1: fit.series(displacement) for tooth, displacement in enumerate(samples.corner)},
         hub_windup(profile, ring.law),
-        _tail(own),
-        remainder,
+        own.tail(),
+        max(series.remainder(fit.unit, there) for series, there in zip(cross, samples.cross, strict=True)),
     )
 
 
-def _upper(series: Array) -> Array:
-    """Upper half of the degrees of a series of one or two places."""
-    degree = np.max(np.indices(series.shape), axis=0)
-    return np.where(2 * degree > len(series), series, 0.0)
-
-
-def _over(size: float, values: Array) -> float:
-    """Size over the largest of some values; 0 where there are none."""
-    greatest = float(np.max(values, initial=0.0))
-    return size / greatest if greatest > 0.0 else 0.0
-
-
-def _derivative(series: Array, times: int = 1) -> Array:
-    """Coefficients of a series' derivative, by its first place if it has two."""
-    return np.asarray(chebyshev.chebder(series, times), dtype=float)
-
-
-def _tail(series: Array) -> float:
-    """Size of what follows the last coefficients, were they to go on as they decay; twice, for aliasing."""
-    size = np.abs(series)
-    last, before = float(np.max(size[-3:])), float(np.max(size[-9:-6]))
-    ratio = float(min((last / max(before, 1e-300)) ** (1 / 6), 0.9))
-    return 2 * last * ratio / (1 - ratio)
+def _ratio(size: float, largest: float) -> float:
+    """Size over the largest value; 0 where that is 0."""
+    return size / largest if largest > 0.0 else 0.0

@@ -11,6 +11,8 @@ feel long waves alone. Free ends (``fem.elasticity.free_ends``) are looked at on
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.polynomial import chebyshev
 
@@ -20,7 +22,9 @@ from fem.elasticity.free_ends import FreeEnds, HalfFace, free_ends, half_face, o
 from fem.elasticity.line_load import flank_points
 from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.prism import Face, Section, prism, section
+from fem.influence.flank_variable import FlankVariable, RootVariable, stretched_points
 from fem.influence.gear_shape import MeshedShape
+from fem.influence.series import CrossSeries, FlankFit, FlankSeries
 from meshes.outline import Sizes
 
 __all__ = [
@@ -50,52 +54,30 @@ class AxialHarmonics:
 
     Attributes
     ----------
-    rho_range : (float, float)
-        Curvature radii covered.
     rho_end : float
         Curvature radius of the tip corner.
-    own : (places, waves) array
-        Chebyshev coefficients of c(k) - c(0) + ln(1 + (k/kappa)^2)/pi over (rho_end - rho)^(1/2) and s.
-    cross : (reach, places, places, waves) array
-        Coefficients of c(k) - c(0) over the load's and the point's rho and s.
+    own : FlankSeries of (waves,)
+        Chebyshev coefficients in s of c(k) - c(0) + ln(1 + (k/kappa)^2)/pi over (rho_end - rho)^(1/2).
+    cross : mapping of int to CrossSeries of (waves,)
+        For the k-th tooth on the side of growing rho, those of c(k) - c(0) over the load's and the point's rho.
     """
 
-    rho_range: tuple[float, float]
     rho_end: float
-    own: Array
-    cross: Array
+    own: FlankSeries
+    cross: Mapping[int, CrossSeries]
 
     def own_at(self, rho: Array, wavenumber: Array) -> Array:
         """c(k) - c(0) at each load (..., waves) for rho (...) and k (waves,)."""
-        near, far = (np.sqrt(self.rho_end - end) for end in self.rho_range[::-1])
-        root = np.sqrt(self.rho_end - np.clip(rho, *self.rho_range))
-        places = chebyshev.chebvander(
-            np.clip((2 * root - near - far) / (far - near), -1, 1), len(self.own) - 1
-        )
-        smooth = places @ (self.own @ _waves(wavenumber, self.own.shape[1]).T)
+        by_place = self.own.coefficients
+        smooth = self.own.basis(rho) @ (by_place @ _waves(wavenumber, by_place.shape[1]).T)
         return np.asarray(smooth - _logarithm(wavenumber))
 
     def cross_at(self, tooth: int, load: Array, point: Array, wavenumber: Array) -> Array:
         """c(k) - c(0) on a neighbour (..., waves), counted from 1 to the side of growing rho."""
-        size, waves = self.cross.shape[1], self.cross.shape[3]
-        loads, points = (_by_place(rho, self.rho_range, size) for rho in (load, point))
-        by_wave = self.cross[tooth - 1] @ _waves(wavenumber, waves).T
+        series = self.cross[tooth]
+        loads, points = series.bases(load, point)
+        by_wave = series.coefficients @ _waves(wavenumber, series.coefficients.shape[2]).T
         return np.asarray(np.einsum("...i,ijk,...j->...k", loads, by_wave, points, optimize=True))
-
-
-def _by_root(rho: Array, rho_range: tuple[float, float], rho_end: float, count: int) -> Array:
-    """Chebyshev polynomials (..., count) of the root of what rho lacks to the tip corner."""
-    near, far = (np.sqrt(rho_end - end) for end in rho_range[::-1])
-    root = np.sqrt(rho_end - np.clip(rho, *rho_range))
-    unit = np.clip((2 * root - near - far) / (far - near), -1.0, 1.0)
-    return np.asarray(chebyshev.chebvander(unit, count - 1), dtype=float)
-
-
-def _by_place(rho: Array, rho_range: tuple[float, float], count: int) -> Array:
-    """Chebyshev polynomials (..., count) of rho."""
-    low, high = rho_range
-    unit = np.clip((2 * rho - low - high) / (high - low), -1.0, 1.0)
-    return np.asarray(chebyshev.chebvander(unit, count - 1), dtype=float)
 
 
 def _logarithm(wavenumber: Array) -> Array:
@@ -111,8 +93,7 @@ def _waves(wavenumber: Array, count: int) -> Array:
 
 def solved_waves() -> tuple[Array, Array]:
     """Places of the solved waves in the polynomials (WAVES,), -1 to 1, and their wave numbers [1/module]; last 0."""
-    unit = np.cos(np.pi * (np.arange(WAVES) + 0.5) / WAVES)
-    unit /= unit[0]
+    unit = stretched_points(WAVES)
     s = 0.5 * (unit + 1) * SHORTEST / (SHORTEST + BEND)
     wavenumber = BEND * s / (1 - s)
     return unit, np.where(wavenumber > 1e-9, wavenumber, 0.0)
@@ -149,12 +130,22 @@ def axial_harmonics(meshed: MeshedShape) -> AxialHarmonics:
     own = np.array([answer[0][:, 0, 0] - still[0][:, 0, 0] for answer in answers])
     cross = np.array([answer[1][:, :, 0, :, 0] - still[1][:, :, 0, :, 0] for answer in answers])
     own += _logarithm(wavenumber)[:, None]
-    low, high, end = float(rho[0]), float(rho[-1]), profile.flank_rho[1]
+    root, place = _variables(rho, profile.flank_rho[1])
     by_wave = np.linalg.inv(chebyshev.chebvander(unit, WAVES - 1))
-    by_root = np.linalg.inv(_by_root(rho, (low, high), end, PLACES))
-    by_place = np.linalg.pinv(_by_place(rho, (low, high), 2 * PLACES // 3 + 1))
-    series = np.einsum("kw,wrij,ai,bj->rabk", by_wave, cross, by_place, by_place, optimize=True)
-    return AxialHarmonics((low, high), end, by_root @ (by_wave @ own).T, series)
+    by_root = FlankFit(root, root.unit(rho), PLACES - 1).weights
+    by_place = FlankFit(place, place.unit(rho), 2 * PLACES // 3).weights
+    tables = np.einsum("kw,wrij,ai,bj->rabk", by_wave, cross, by_place, by_place, optimize=True)
+    return AxialHarmonics(
+        root.rho_end,
+        FlankSeries(root, by_root @ (by_wave @ own).T),
+        {tooth: CrossSeries(place, table) for tooth, table in enumerate(tables, 1)},
+    )
+
+
+def _variables(rho: Array, rho_end: float) -> tuple[RootVariable, FlankVariable]:
+    """Variables over the span of growing curvature radii: of a load at itself, and of other teeth."""
+    span = float(rho[0]), float(rho[-1])
+    return RootVariable(span, rho_end), FlankVariable(span)
 
 
 @record
@@ -163,8 +154,10 @@ class EndCorrection:
 
     Attributes
     ----------
-    rho_range, rho_end
-        As of ``AxialHarmonics``.
+    root : RootVariable
+        Of ``own``.
+    place : FlankVariable
+        Of ``cross``.
     half : HalfFace
     own : two arrays (places, psi, psi)
         Chebyshev coefficients over (rho_end - rho)^(1/2), of loads that are equal and opposite on both halves.
@@ -172,17 +165,18 @@ class EndCorrection:
         Over the load's and the point's rho.
     """
 
-    rho_range: tuple[float, float]
-    rho_end: float
+    root: RootVariable
+    place: FlankVariable
     half: HalfFace
     own: tuple[Array, Array]
     cross: tuple[Array, Array]
 
     def over(self, edges: Array) -> EndCorrectionOfCells:
         """Put loads on cells between edges (cells + 1,), growing, from mid-face."""
-        cross = over_cells(self.half, *self.cross, edges)
+        tables = over_cells(self.half, *self.cross, edges)
         return EndCorrectionOfCells(
-            self.rho_range, self.rho_end, over_cells(self.half, *self.own, edges), cross
+            FlankSeries(self.root, over_cells(self.half, *self.own, edges)),
+            {tooth: CrossSeries(self.place, table) for tooth, table in enumerate(tables, 1)},
         )
 
 
@@ -192,44 +186,35 @@ class EndCorrectionOfCells:
 
     Attributes
     ----------
-    rho_range, rho_end
-        As of ``AxialHarmonics``.
-    own : (places, cells, cells) array
-        Chebyshev coefficients over (rho_end - rho)^(1/2).
-    cross : (reach, places, places, cells, cells) array
-        Over the load's and the point's rho.
+    own : FlankSeries of (cells, cells)
+        Over (rho_end - rho)^(1/2).
+    cross : mapping of int to CrossSeries of (cells, cells)
+        For the k-th tooth on the side of growing rho, over the load's and the point's rho.
     """
 
-    rho_range: tuple[float, float]
-    rho_end: float
-    own: Array
-    cross: Array
+    own: FlankSeries
+    cross: Mapping[int, CrossSeries]
 
     def own_at(self, rho: Array) -> Array:
         """Means over cells by a unit force on a cell (..., cells, cells) for rho (...)."""
-        places = _by_root(rho, self.rho_range, self.rho_end, len(self.own))
-        return np.asarray(np.tensordot(places, self.own, axes=1))
+        return self.own.at(rho)
 
     def cross_at(self, tooth: int, load: Array, point: Array) -> Array:
         """The same on a neighbour; cells of the load first."""
-        size = self.cross.shape[1]
-        loads, points = (_by_place(rho, self.rho_range, size) for rho in (load, point))
-        products = (loads[..., :, None] * points[..., None, :]).reshape(*loads.shape[:-1], size**2)
-        series = self.cross[tooth - 1].reshape(size**2, *self.cross.shape[3:])
-        return np.asarray(np.tensordot(products, series, axes=1))
+        return self.cross[tooth].at(load, point)
 
 
 def end_correction(meshed: MeshedShape, face_width: float) -> EndCorrection:
     """Solve a gear of module 1 and E* = 1 with free ends; its face width in modules."""
     over, profile, reach = section_of(meshed, ENDS_SIZES, 0), meshed.shape.profile, meshed.shape.reach
-    rho, end = sample_places(profile, END_PLACES), profile.flank_rho[1]
-    ends = float(rho[0]), float(rho[-1])
+    rho = sample_places(profile, END_PLACES)
+    root, place = _variables(rho, profile.flank_rho[1])
     half = half_face(0.5 * face_width, 1.0)
     solved: FreeEnds = free_ends(over, half, flank_points(over.mesh, rho), reach)
-    by_root = np.linalg.inv(_by_root(rho, ends, end, END_PLACES))
-    by_place = np.linalg.pinv(_by_place(rho, ends, 2 * END_PLACES // 3 + 1))
+    by_root = FlankFit(root, root.unit(rho), END_PLACES - 1).weights
+    by_place = FlankFit(place, place.unit(rho), 2 * END_PLACES // 3).weights
     own = [np.einsum("ai,ipq->apq", by_root, table) for table in solved.own]
     cross = [
         np.einsum("ai,bj,rijpq->rabpq", by_place, by_place, table, optimize=True) for table in solved.cross
     ]
-    return EndCorrection(ends, end, half, (own[0], own[1]), (cross[0], cross[1]))
+    return EndCorrection(root, place, half, (own[0], own[1]), (cross[0], cross[1]))

@@ -10,7 +10,9 @@ import pytest
 from base import InputError
 from fem import PairCompliance, compliance, mesh_cycle
 from fem.contact.cell_matrix import cell_matrix
+from fem.influence.flank_variable import FlankVariable, RootVariable
 from fem.influence.gear_face import AxialHarmonics
+from fem.influence.series import CrossSeries, FlankSeries
 from fem.pair.face_compliance import pair_ends, pair_waves
 from fem.pair.face_setting import FaceSetting
 from gears import Alignment, Gear, GearPair, Lead, LeadTrace
@@ -137,9 +139,13 @@ def test_waves_on_a_neighbour_are_those_of_the_neighbour_that_is_asked_for():
     """Chebyshev series over both places, for each of two neighbours by itself, as numpy sums them."""
     span, chance = (2.0, 4.0), np.random.default_rng(3)
     cross = chance.normal(size=(2, 3, 3, 2))
-    waves = AxialHarmonics(span, 5.0, np.zeros((2, 2)), cross)
     load, point = np.array([2.3, 3.9]), np.array([3.1, 2.2])
-    constant = replace(waves, cross=np.concatenate([cross[..., :1], np.zeros_like(cross[..., 1:])], axis=-1))
+    tables = np.concatenate([cross[..., :1], np.zeros_like(cross[..., 1:])], axis=-1)
+    constant = AxialHarmonics(
+        5.0,
+        FlankSeries(RootVariable(span, 5.0), np.zeros((2, 2))),
+        {tooth: CrossSeries(FlankVariable(span), table) for tooth, table in enumerate(tables, 1)},
+    )
     for tooth in (1, 2):
         found = constant.cross_at(tooth, load, point, np.array([0.5, 3.0]))
         wanted = np.polynomial.chebyshev.chebval2d(load - 3.0, point - 3.0, cross[tooth - 1, :, :, 0])
