@@ -92,6 +92,7 @@ def test_scipy_follows_the_same_motion(integrate, frequency):
     assert tuple(found.counts.sum(axis=0)) == counts
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_400_speeds_against_two_integrators(integrate):
     """Both by their own crossing of the backlash; a graze between would part them."""

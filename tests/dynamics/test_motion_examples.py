@@ -48,6 +48,7 @@ def test_lubricated_frequency_scan_with_all_branches(tmp_path: Path):
     assert any("dimension" in line for line in lines)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_ends_of_chaos():
     lines = example("crises").main([])
@@ -68,6 +69,7 @@ def test_table_of_the_lubricated_frequency_scan():
     assert lines.count("not identified") == 8
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_table_of_all_scans():
     lines = "\n".join(example("table").main([]))

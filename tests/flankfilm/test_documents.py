@@ -93,6 +93,7 @@ def test_python_runs(page: Path, tmp_path: Path):
     run_python(python_of(page, slow=False), tmp_path)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_longer_python_runs(tmp_path: Path):
     for number, page in enumerate(pages_with(slow=True)):

@@ -45,6 +45,7 @@ def test_one_freedom_has_the_diagram_of_the_pair():
     assert ours.special("neimark-sacker") == []
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_rigid_shafts_give_the_jumps_of_the_pair_and_their_errors(monkeypatch):
     """Frequencies by the same folds; slopes by branches with another stiffness, within what their step leaves."""
@@ -73,6 +74,7 @@ def test_rigid_shafts_give_the_jumps_of_the_pair_and_their_errors(monkeypatch):
     assert ours.force_factor_iso6336[0] == pytest.approx(theirs.force_factor_iso6336[0], rel=0.1)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_scene_with_shafts_has_a_diagram():
     ranged = "diagram = { speed_rpm = [9600, 10800], max_period = 1, searches = 1 }"

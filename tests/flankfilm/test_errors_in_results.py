@@ -51,6 +51,7 @@ def test_a_result_that_did_not_converge_says_so_beside_its_figures():
     assert data.dry_mean_stiffness.attrs["converged"] == 1
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
 def test_every_figure_of_every_example_is_explained(path):

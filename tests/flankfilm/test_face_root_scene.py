@@ -71,6 +71,7 @@ COMBINED = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.parametrize("name", COMBINED)
 def test_root_stress_over_the_face_with_what_else_varies_the_load(name):

@@ -209,6 +209,7 @@ def kill(command: Command, out: Path, seconds: float, chance: random.Random, tol
         pytest.param("optimise", TASK, ("--workers", "2", "--executor", "dask"), id="optimise-dask"),
     ],
 )
+@pytest.mark.long
 def test_killed_at_random_moments(tmp_path, name, text, options):
     print(f"\nFLANKFILM_SEED={SEED}", end=" ")
     chance = random.Random(f"{SEED} {name} {options}")
