@@ -24,7 +24,7 @@ def test_the_longest_come_last_and_all_others_stay_in_order():
     assert "".join(one.name for one in items) == "bdac"
 
 
-def test_what_would_begin_too_late_is_left_out_by_name(monkeypatch: pytest.MonkeyPatch):
+def test_what_would_begin_too_late_is_left_out(monkeypatch: pytest.MonkeyPatch):
     late = item("late", began=time.monotonic() - 61.0)
     monkeypatch.delenv(MINUTES, raising=False)
     pytest_runtest_setup(late)

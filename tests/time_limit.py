@@ -1,4 +1,4 @@
-"""Slow studies within a time: the longest come last, and what would begin after that time is left out by name."""
+"""Slow studies within a time: the longest come last, and what would begin after that time is left out."""
 
 from __future__ import annotations
 
