@@ -92,9 +92,8 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
         The scene file (TOML), or a results.nc: the scene that made it is run again.
     """
     _prepare()
-    wanted = _read(
-        scene, options.tolerance
-    )  # a scene with faults is refused before what computes it is loaded
+    # a scene with faults is refused before what computes it is loaded
+    wanted = _read(scene, options.tolerance)
     from flankfilm.progress import console_progress
     from flankfilm.report.contents import summary
     from flankfilm.running import run_scene
