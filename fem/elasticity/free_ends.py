@@ -12,6 +12,7 @@ are equal on both sides of it and such that are opposite are solved apart, on ha
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
@@ -21,7 +22,15 @@ from base import Array, record
 from fem.elasticity.line_load import FlankPoints
 from fem.elasticity.prism import Face, Section, prism
 
-__all__ = ["FreeEnds", "HalfFace", "free_ends", "half_face", "over_cells", "unknowns_along"]
+__all__ = [
+    "FreeEnds",
+    "HalfFace",
+    "free_ends",
+    "free_ends_across",
+    "half_face",
+    "over_cells",
+    "unknowns_along",
+]
 
 ORDER = 3
 """Of the polynomials of one piece of the face."""
@@ -217,3 +226,29 @@ def free_ends(over: Section, half: HalfFace, at: FlankPoints, reach: int) -> Fre
         own.append(free[0] - walls[0])
         cross.append(np.moveaxis(free[1] - walls[1], 2, 3))
     return FreeEnds(half, (own[0], own[1]), (cross[0], cross[1]))
+
+
+def free_ends_across(
+    over: Section, half: HalfFace, at: FlankPoints, seen: FlankPoints, teeth: Sequence[int]
+) -> tuple[Array, Array]:
+    """Solve a gear with free ends and between walls, and look at other places than the loaded ones.
+
+    Parameters
+    ----------
+    over, half
+        As of ``free_ends``.
+    at, seen, teeth
+        As of ``Prism.across``.
+
+    Returns
+    -------
+    two (teeth, loads, points, psi, psi) arrays
+        What free ends add, of loads that are equal and such that are opposite on both halves: [m per N] by a unit
+        functional; the first function is the load's.
+    """
+
+    def added(even: bool) -> Array:
+        free, walls = (prism(over, half.face(even, ends)).across(at, seen, teeth) for ends in (True, False))
+        return np.moveaxis(free - walls, 2, 3)
+
+    return added(True), added(False)

@@ -199,6 +199,37 @@ class Prism:
         there = [(pull.T @ self.links.at_ends(pull, tooth)).T for tooth in range(1, reach + 1)]
         return own, np.reshape(there, (reach, count, self.psi, count, self.psi))
 
+    def across(self, at: FlankPoints, seen: FlankPoints, teeth: Sequence[int]) -> Array:
+        """Displacements at other places than the loaded ones, such as on the other side of the teeth.
+
+        Loads and what is observed are nodal forces f_p and f_q that stand for line loads psi(z): f_q . K^-1 f_p. On the
+        loaded tooth as well no place may be near a load: there nodal forces are not line loads.
+
+        Parameters
+        ----------
+        at : FlankPoints
+            Places that are loaded on tooth 0.
+        seen : FlankPoints
+            Places that are observed, along their directions.
+        teeth : sequence of int
+            That are observed, counted anticlockwise from the loaded one.
+
+        Returns
+        -------
+        (teeth, loads, psi, points, psi) array
+            [m per N/m]; first the loads, then what is observed.
+        """
+        loads, pull = self._condensed(at)
+        points, observed = self._condensed(seen)
+        moved = np.array([self.links.at_ends(pull, tooth).T @ observed for tooth in teeth])
+        moved[np.asarray(teeth) % self.mesh.teeth == 0] += self.condensed.modulus * (loads.T @ points)
+        return moved.reshape(len(teeth), len(at.rho), self.psi, len(seen.rho), self.psi)
+
+    def _condensed(self, at: FlankPoints) -> tuple[Array, Array]:
+        """Unit line loads psi(z) inside the sector, reduced, and on its cuts in polar components (., loads psi)."""
+        reduced, on_cuts, _ = self.condensed.up(self._nodal(at))
+        return reduced[self.inner], np.asarray(self.polar.T @ on_cuts)
+
     def displacements(self, at: FlankPoints, teeth: Sequence[int]) -> Array:
         """Displacements of all nodes of some teeth's sectors by line loads psi(z) at places of tooth 0.
 
