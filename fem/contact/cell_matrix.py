@@ -10,15 +10,16 @@ import numpy as np
 from base import Array, Booleans
 from fem.contact.cell_coupling import CellCoupling
 from fem.influence.gear_store import GearStore
+from fem.pair.face_across import pair_ends_across, pair_waves_across, places_across
 from fem.pair.face_compliance import pair_ends, pair_waves
 from fem.pair.face_setting import FREE_ENDS, SLICES, FaceSetting
-from fem.pair.unequal_widths import cosines, overhang
+from fem.pair.unequal_widths import cosines, overhang, overhang_across
 
 if TYPE_CHECKING:
     from fem.laws.contact_candidates import ContactCandidates
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["cell_coupling", "cell_matrix", "in_blocks"]
+__all__ = ["cell_coupling", "cell_matrix", "cross_matrix", "in_blocks"]
 
 MOST_KEPT = 8_000_000
 """Numbers of a compliance up to which it is kept."""
@@ -118,3 +119,52 @@ def cell_matrix(
         )
     size = pairs * cells
     return np.asarray(compliance.reshape(positions, size, size))
+
+
+def cross_matrix(
+    face: FaceSetting,
+    bodies: PairCompliance,
+    front: ContactCandidates,
+    back: ContactCandidates,
+    lever_ratios: tuple[Array, Array],
+    matrix: Array,
+    gears: Sequence[int] = (0, 1),
+) -> Array:
+    """Compliance of the bodies between cells of front and back flanks (positions, pairs cells, others cells) [m/N].
+
+    As ``cell_matrix`` between cells of one side: even loads are the plane's, waves and free ends are taken along the
+    normals of the flanks, also at tip edges. The transpose is that of loads on back flanks.
+
+    Parameters
+    ----------
+    face : FaceSetting
+    bodies : PairCompliance
+    front, back : ContactCandidates
+        Of the pair, and of the mirrored gears.
+    lever_ratios : (positions, pairs) and (positions, others) arrays
+        kappa of both.
+    matrix : (positions, pairs, others) array
+        The plane's compliance of forces kappa F [m/N], as of ``fem.contact.opposite_flanks.between``.
+    gears : sequence of int
+        As of ``cell_matrix``.
+    """
+    cells, (positions, pairs, others), pair = face.cells, matrix.shape, bodies.pair
+    model = SLICES if "coupling" in bodies.left_out else face.model
+    modes, ratio_products = cosines(cells), lever_ratios[0][:, :, None] * lever_ratios[1][:, None, :]
+    by_mode = np.repeat(matrix[..., None], cells, axis=-1)
+    teeth = (side.teeth[:, :positions] for side in (front, back))
+    places = places_across(pair, front.rho, back.rho, *teeth)
+    if model != SLICES:
+        by_mode[..., 1:] += pair_waves_across(bodies, places, cells, gears) / ratio_products[..., None]
+    compliance = np.einsum("mc,pijm,md->picjd", modes, cells * by_mode, modes, optimize=True)
+    beyond: list[Array] = []
+    if model != SLICES:
+        wider = (gear for gear in gears if pair.face_widths[gear] != pair.face_width)
+        beyond += (overhang_across(bodies, gear, places, face) for gear in wider)
+    if model == FREE_ENDS:
+        edges = face.edges(pair)
+        first, second = (edges - offset for offset in pair.face_offsets)
+        beyond.append(pair_ends_across(bodies, places, (first, second), pair.face_widths, gears))
+    for added in beyond:
+        compliance += added / ratio_products[:, :, None, :, None]
+    return np.asarray(compliance.reshape(positions, pairs * cells, others * cells))

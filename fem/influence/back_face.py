@@ -153,7 +153,8 @@ def back_harmonics(meshed: MeshedShape) -> BackHarmonics:
     coefficients = _coefficients(fit, even)
     error = max(float(np.max(np.abs(beyond - even))), _remainder(fit, coefficients, even))
     return BackHarmonics(
-        {tooth: CrossSeries(place, table) for tooth, table in zip(teeth, coefficients, strict=True)}, error
+        {tooth: CrossSeries(place, table) for tooth, table in zip(teeth, coefficients, strict=True)},
+        error,
     )
 
 

@@ -12,18 +12,21 @@ it here.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array
+from fem.pair.face_across import PlacesAcross, even_loads_across, gear_waves_across
 from fem.pair.face_compliance import even_loads, gear_waves
 from fem.pair.face_setting import FaceSetting
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["cosines", "overhang"]
+__all__ = ["cosines", "overhang", "overhang_across"]
 
 
 def overhang(bodies: PairCompliance, gear: int, rho: Array, face: FaceSetting) -> Array:
@@ -43,15 +46,37 @@ def overhang(bodies: PairCompliance, gear: int, rho: Array, face: FaceSetting) -
     array
         [m/N]
     """
-    pair, cells = bodies.pair, face.cells
-    width, module = pair.face_widths[gear], pair.module
-    even = even_loads(bodies, gear, rho)[..., None]
+    even = even_loads(bodies, gear, rho)
     if "hub_windup" in bodies.left_out:
         even = even - (bodies.pinion, bodies.wheel)[gear].hub_windup
+    return _wider(bodies, gear, face, even, partial(gear_waves, bodies, gear, rho))
+
+
+def overhang_across(bodies: PairCompliance, gear: int, places: PlacesAcross, face: FaceSetting) -> Array:
+    """As ``overhang``, of loads on front flanks seen on back flanks (positions, n, cells, m, cells) [m/N].
+
+    Parameters
+    ----------
+    bodies, gear, face
+        As of ``overhang``.
+    places : PlacesAcross
+    """
+    even = even_loads_across(bodies, gear, places)
+    if "hub_windup" in bodies.left_out:  # torques of the two sides are opposed
+        even = even + (bodies.pinion, bodies.wheel)[gear].hub_windup
+    return _wider(bodies, gear, face, even, partial(gear_waves_across, bodies, gear, places))
+
+
+def _wider(
+    bodies: PairCompliance, gear: int, face: FaceSetting, plane: Array, by_wave: Callable[[Array], Array]
+) -> Array:
+    """Compliance of a gear's own face less that of the face in contact, by even loads and what waves do beyond."""
+    pair, cells, even = bodies.pair, face.cells, plane[..., None]
+    width, module = pair.face_widths[gear], pair.module
     shortest = np.pi * cells / pair.face_width  # K, 1/m
     wave: Array = np.arange(int(np.ceil(shortest * width / np.pi)), dtype=float) * (np.pi / width)
     wave = wave[wave < shortest * (1.0 - 1e-9)]
-    answer: Array = even + gear_waves(bodies, gear, rho, np.append(wave, shortest) * module)
+    answer: Array = even + by_wave(np.append(wave, shortest) * module)
     last = answer[..., -1:]
     z = face.middles(pair.face_width) - pair.face_offsets[gear] + 0.5 * width
     shapes = np.cos(wave[:, None] * z) * np.sqrt(np.where(wave > 0.0, 2.0, 1.0) / width)[:, None]
@@ -60,7 +85,7 @@ def overhang(bodies: PairCompliance, gear: int, rho: Array, face: FaceSetting) -
         np.moveaxis(last, -1, 0) * cells / pair.face_width
     )
     equal: Array = np.arange(cells, dtype=float) * np.pi / pair.face_width
-    same = even + gear_waves(bodies, gear, rho, equal * module)
+    same = even + by_wave(equal * module)
     return compliance - _by_waves(cosines(cells) * np.sqrt(cells / pair.face_width), same)
 
 
