@@ -18,12 +18,12 @@ from base import Array, Integers, record
 from fem.elasticity.line_load import FlankPoints, LineLoads, flank_points, line_loads
 from fem.influence.flank_variable import FlankVariable
 from fem.influence.gear_compliance import CROSS_DEGREE
-from fem.influence.series import CrossSeries, FlankFit
+from fem.influence.series import CrossSeries, FlankFit, of_teeth
 
 if TYPE_CHECKING:
     from fem.elasticity.ring import Ring
 
-__all__ = ["BackCompliance", "back_by_mirror", "back_compliance"]
+__all__ = ["BackCompliance", "back_by_mirror", "back_compliance", "teeth_around"]
 
 MIRRORED: Array = np.array([[1.0], [-1.0]])
 """Radial and tangential components in a mirror through the gear's axis."""
@@ -61,22 +61,14 @@ class BackCompliance:
         load, point : arrays
             Curvature radii [m].
         """
-        tooth, load, point = np.broadcast_arrays(tooth, load, point)
-        shared = next(iter(self.series.values()))  # all have its variable and degree
-        loads, points = shared.bases(load, point)
-        moved = np.zeros(tooth.shape)
-        for number, series in self.series.items():
-            here = tooth == number
-            if here.any():
-                moved[here] = series.of_bases(loads[here], points[here])
-        return moved
+        return of_teeth(self.series, tooth, load, point)
 
 
 def back_compliance(ring: Ring, rho: Array, reach: int) -> BackCompliance:
     """Load left flanks at growing curvature radii (n,) [m] and see the right ones of ``reach`` teeth on either side."""
     loads = line_loads(ring, flank_points(ring.mesh, rho, "left"))
     seen = flank_points(ring.mesh, rho, "right")
-    return _fitted(rho, {tooth: _seen(loads, tooth, seen) for tooth in _teeth(ring, reach)})
+    return _fitted(rho, {tooth: _seen(loads, tooth, seen) for tooth in teeth_around(ring.mesh.teeth, reach)})
 
 
 def back_by_mirror(loads: LineLoads, reach: int) -> BackCompliance:
@@ -93,13 +85,14 @@ def back_by_mirror(loads: LineLoads, reach: int) -> BackCompliance:
         rho,
         {
             tooth: mirrored.T @ ring.interfaces(loads.cut_force, tooth) if tooth else _seen(loads, 0, seen)
-            for tooth in _teeth(ring, reach)
+            for tooth in teeth_around(ring.mesh.teeth, reach)
         },
     )
 
 
-def _teeth(ring: Ring, reach: int) -> range:
-    most = min(reach, (ring.mesh.teeth - 1) // 2)
+def teeth_around(teeth: int, reach: int) -> range:
+    """Teeth within reach of the loaded one, counted anticlockwise from it, of a gear that has so many."""
+    most = min(reach, (teeth - 1) // 2)
     return range(-most, most + 1)
 
 

@@ -23,11 +23,12 @@ from fem.elasticity.flank_samples import sample_places
 from fem.elasticity.free_ends import HalfFace, free_ends_across, half_face, over_cells
 from fem.elasticity.line_load import flank_points
 from fem.elasticity.prism import Face, prism
+from fem.influence.back_compliance import teeth_around
 from fem.influence.flank_variable import FlankVariable
 from fem.influence.gear_compliance import CROSS_DEGREE
 from fem.influence.gear_face import END_PLACES, ENDS_SIZES, PLACES, between_waves, section_of, solved_waves
-from fem.influence.gear_shape import GearShape, MeshedShape
-from fem.influence.series import CrossSeries, FlankFit
+from fem.influence.gear_shape import MeshedShape
+from fem.influence.series import CrossSeries, FlankFit, of_teeth
 
 __all__ = [
     "BackEndCorrection",
@@ -71,7 +72,7 @@ class BackHarmonics:
             number: CrossSeries(known.variable, known.coefficients @ weights)
             for number, known in self.series.items()
         }
-        return _by_tooth(series, tooth, load, point)
+        return of_teeth(series, tooth, load, point)
 
 
 @record
@@ -117,31 +118,13 @@ class BackEndCorrectionOfCells:
 
     def across(self, tooth: Integers, load: Array, point: Array) -> Array:
         """Means over cells by a unit force on a cell (..., cells, cells); arguments as of ``BackHarmonics.across``."""
-        return _by_tooth(self.series, tooth, load, point)
-
-
-def _by_tooth(series: Mapping[int, CrossSeries], tooth: Integers, load: Array, point: Array) -> Array:
-    """Value (..., *value) of the series of each place's tooth; 0 where there is none."""
-    tooth, load, point = np.broadcast_arrays(tooth, load, point)
-    shared = next(iter(series.values()))  # all have its variable and degree
-    loads, points = shared.bases(load, point)
-    moved = np.zeros((*tooth.shape, *shared.coefficients.shape[2:]))
-    for number, known in series.items():
-        here = tooth == number
-        if here.any():
-            moved[here] = known.of_bases(loads[here], points[here])
-    return moved
-
-
-def _teeth(shape: GearShape) -> range:
-    """Teeth whose back flanks feel a load, as many on either side of the loaded one."""
-    most = min(shape.reach, (shape.gear.teeth - 1) // 2)
-    return range(-most, most + 1)
+        return of_teeth(self.series, tooth, load, point)
 
 
 def back_harmonics(meshed: MeshedShape) -> BackHarmonics:
     """Solve a gear of module 1 and E* = 1 for waves along the face, and look at its back flanks."""
-    over, teeth = section_of(meshed, meshed.sizes, meshed.refinements), _teeth(meshed.shape)
+    over = section_of(meshed, meshed.sizes, meshed.refinements)
+    teeth = teeth_around(over.mesh.teeth, meshed.shape.reach)
     rho = sample_places(meshed.shape.profile, PLACES)
     at, seen = (flank_points(over.mesh, rho, flank) for flank in ("left", "right"))
     _, wavenumber = solved_waves()
@@ -160,7 +143,8 @@ def back_harmonics(meshed: MeshedShape) -> BackHarmonics:
 
 def back_end_correction(meshed: MeshedShape, face_width: float) -> BackEndCorrection:
     """Solve a gear of module 1 and E* = 1 with free ends, and look at its back flanks; its face width in modules."""
-    over, teeth = section_of(meshed, ENDS_SIZES, 0), _teeth(meshed.shape)
+    over = section_of(meshed, ENDS_SIZES, 0)
+    teeth = teeth_around(over.mesh.teeth, meshed.shape.reach)
     rho, half = sample_places(meshed.shape.profile, END_PLACES), half_face(0.5 * face_width, 1.0)
     at, seen = (flank_points(over.mesh, rho, flank) for flank in ("left", "right"))
     place, fit = _fit(rho, 2 * END_PLACES // 3)

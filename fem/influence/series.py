@@ -16,6 +16,7 @@ them by least squares otherwise.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import Self
@@ -23,10 +24,10 @@ from typing import Self
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from base import Array, record
+from base import Array, Integers, record
 from fem.influence.flank_variable import FlankVariable
 
-__all__ = ["CrossSeries", "FlankFit", "FlankSeries"]
+__all__ = ["CrossSeries", "FlankFit", "FlankSeries", "of_teeth"]
 
 SIZE_PLACES = 65
 """Places along the flank at which the size of a series is evaluated."""
@@ -213,6 +214,29 @@ class CrossSeries(_Series):
         """Largest absolute value on the span."""
         places = np.linspace(-1.0, 1.0, SIZE_PLACES)
         return float(np.max(np.abs(chebyshev.chebgrid2d(places, places, self.coefficients))))
+
+
+def of_teeth(series: Mapping[int, CrossSeries], tooth: Integers, load: Array, point: Array) -> Array:
+    """Value (..., *value) on teeth of any numbers, each by its series.
+
+    Parameters
+    ----------
+    series : mapping of int to CrossSeries
+        Of one variable and degree.
+    tooth : (...) array of int
+        0 is the value of one that has no series.
+    load, point : (...) arrays
+        Curvature radii.
+    """
+    tooth, load, point = np.broadcast_arrays(tooth, load, point)
+    shared = next(iter(series.values()))
+    loads, points = shared.bases(load, point)
+    moved = np.zeros((*tooth.shape, *shared.coefficients.shape[2:]))
+    for number, smooth in series.items():
+        here = tooth == number
+        if here.any():
+            moved[here] = smooth.of_bases(loads[here], points[here])
+    return moved
 
 
 def _sum(coefficients: Array, unit: Array) -> Array:
