@@ -15,8 +15,8 @@ from .pair.shafts import ShaftSegment as ShaftSegment
 from .pair.thermal_expansion import Heat as Heat
 from .pair.thermal_expansion import WarmPair as WarmPair
 from .pair.thermal_expansion import warm_pair as warm_pair
+from .sharing.active_set import LoadShare as LoadShare
 from .sharing.independent_pairs import independent_pairs as independent_pairs
-from .sharing.load_sharing import LoadShare as LoadShare
 from .sharing.load_sharing import share_load as share_load
 from .tooth.blank import Blank as Blank
 from .tooth.deviations import GearDeviations as GearDeviations

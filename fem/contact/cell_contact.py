@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fem.pair.face_setting import FaceSetting
     from fem.pair.pair_compliance import PairCompliance
     from gears import GearPair, LoadShare
-    from gears.sharing.load_sharing import DeflectionLaw
+    from gears.sharing.staying_contacts import DeflectionLaw
 
 __all__ = ["CellContact", "CellShare", "along_cells"]
 
@@ -156,7 +156,9 @@ class CellContact:
                 slope = law(strip, tuple(torques.tolist())).slope(forces)
                 slope = slope if film is None else slope - film.slope(forces)
                 by_tilt = nothing + shafts.levers(self.lever_ratios)
-                slopes[0][torques], slopes[1][torques], _ = alone.solved(slope, by_tilt, forces > 0.0, wanted)
+                slopes[0][torques], slopes[1][torques] = alone.solved(
+                    slope, np.ones_like(forces), by_tilt, forces > 0.0, wanted
+                )
         remaining_gaps = bends + apart - load_share.transmission_error[..., None]
         if film is not None:
             remaining_gaps = remaining_gaps - film.approach(np.zeros_like(load_share.forces))

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
-from base import Array, Booleans, Integers
+from base import Array, Booleans, Integers, record
 from gears.sharing.load_coupling import Coupling
 
-__all__ = ["CellCoupling", "solve_symmetric"]
+__all__ = ["CellCoupling", "ChangedCells", "solve_symmetric"]
 
 
 START = 0.1
@@ -73,25 +75,19 @@ class CellCoupling(Coupling):
         return deflections
 
     def solved(
-        self, slope: Array, residual: Array, active: Booleans, wanted: Booleans
-    ) -> tuple[Array, Array, float]:
+        self, slope: Array, reach: Array, residual: Array, active: Booleans, wanted: Booleans
+    ) -> tuple[Array, Array]:
+        """As of ``gears.sharing.load_coupling.Jacobian``."""
+        return solved_one_by_one(self.block, slope, reach, residual, active, wanted)
+
+    def block(self, at: int) -> tuple[Integers, Array]:
+        """Cells that may touch and their compliance, of one of all positions (...) in their order."""
+        position = at % len(self.blocks)
+        return self.cells[position], self.blocks[position]
+
+    def changed(self, change: Self, turn: Array, blocks: Array) -> ChangedCells:
         """As of ``gears.sharing.load_coupling.Coupling``."""
-        unit, response = np.zeros((2, *residual.shape))
-        positions, size = len(self.blocks), self.unknowns
-        flat_unit, flat_response, stiff, rest, bearing = (
-            whole.reshape(-1, size) for whole in (unit, response, slope, residual, active)
-        )
-        for at in np.flatnonzero(wanted).tolist():
-            cells, block = self.cells[at % positions], self.blocks[at % positions]
-            bears = bearing[at].take(cells).nonzero()[0]
-            chosen = cells[bears]
-            # rows and then columns are copied much faster than both at once
-            jacobian = block.take(bears, axis=0).take(bears, axis=1)
-            jacobian.ravel()[:: len(bears) + 1] += stiff[at].take(chosen)
-            sides = np.empty((2, len(bears)))
-            sides[0], sides[1] = 1.0, rest[at].take(chosen)
-            flat_unit[at, chosen], flat_response[at, chosen] = solve_symmetric(jacobian, sides)
-        return unit, response, 1.0
+        return ChangedCells(self, change, turn, blocks)
 
     def plus(self, more: Array, lever_ratios: Array) -> CellCoupling:
         """With a further compliance that couples cells by their place on the face, whatever their pair.
@@ -126,6 +122,60 @@ class CellCoupling(Coupling):
             if dpotrf(jacobian.T, lower=True)[1]:
                 return False
         return True
+
+
+@record
+class ChangedCells:
+    """Compliance between cells that has changed by a turn; attributes as of ``Coupling.changed``."""
+
+    coupling: CellCoupling
+    change: CellCoupling
+    turn: Array
+    blocks: Array
+
+    def block(self, at: int) -> tuple[Integers, Array]:
+        """As of ``CellCoupling``."""
+        cells, block = self.coupling.block(at)
+        jacobian = block + self.turn.flat[at] * self.change.block(at)[1]
+        n = self.blocks.shape[-1]
+        pairs = cells[::n] // n
+        k = np.arange(len(pairs))
+        by_pair = jacobian.reshape(len(k), n, len(k), n)
+        by_pair[k, :, k, :] += self.blocks.reshape(-1, *self.blocks.shape[-3:])[at][pairs]
+        return cells, jacobian
+
+    def solved(
+        self, slope: Array, reach: Array, residual: Array, active: Booleans, wanted: Booleans
+    ) -> tuple[Array, Array]:
+        """As of ``gears.sharing.load_coupling.Jacobian``."""
+        return solved_one_by_one(self.block, slope, reach, residual, active, wanted)
+
+
+def solved_one_by_one(
+    block_at: Callable[[int], tuple[Integers, Array]],
+    slope: Array,
+    reach: Array,
+    residual: Array,
+    active: Booleans,
+    wanted: Booleans,
+) -> tuple[Array, Array]:
+    """Solve position by position, with blocks between cells that may touch."""
+    unit, response = np.zeros((2, *residual.shape))
+    size = residual.shape[-1]
+    flat_unit, flat_response, stiff, closes, rest, bearing = (
+        whole.reshape(-1, size) for whole in (unit, response, slope, reach, residual, active)
+    )
+    for at in np.flatnonzero(wanted).tolist():
+        cells, block = block_at(at)
+        bears = bearing[at].take(cells).nonzero()[0]
+        chosen = cells[bears]
+        # rows and then columns are copied much faster than both at once
+        jacobian = block.take(bears, axis=0).take(bears, axis=1)
+        jacobian.ravel()[:: len(bears) + 1] += stiff[at].take(chosen)
+        sides = np.empty((2, len(bears)))
+        sides[0], sides[1] = closes[at].take(chosen), rest[at].take(chosen)
+        flat_unit[at, chosen], flat_response[at, chosen] = solve_symmetric(jacobian, sides)
+    return unit, response
 
 
 def solve_symmetric(matrix: Array, sides: Array) -> Array:

@@ -17,34 +17,26 @@ of tip edges keep their places, gaps (tip relief too) are read there.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Booleans, record
-from fem.contact.moving_newton import Linearised, moved_forces
+from base import Array, record
 from fem.elasticity.flamant import hertz_half_width
 from fem.elasticity.nonlinear_energy import half_plane, large_strain
 
 if TYPE_CHECKING:
-    from fem.contact.moving_corners import MovedFlanks
     from fem.elasticity.plane_elasticity import PlaneElasticity
     from fem.laws.contact_candidates import ContactCandidates
-    from fem.laws.local_law import FilmLaw, PairLaws
     from fem.pair.pair_compliance import PairCompliance
-    from gears import GearPair, LoadShare
+    from gears import GearPair
 
 __all__ = [
     "ContactMoves",
-    "MovingPairs",
-    "answers",
     "contact_moves",
     "contacts_move",
     "model_error",
     "moved_places",
-    "moved_share",
-    "moving_pairs",
 ]
 
 SPREAD = 2.0
@@ -194,110 +186,6 @@ def _of_the_width(
 def _energies(parts: Array, law: PlaneElasticity) -> Array:
     """Third-order energies (2, ...): St. Venant and Kirchhoff's, and what Hencky's law adds to it."""
     return np.stack([parts[0], large_strain(parts, law)])
-
-
-@record
-class MovingPairs:
-    """Pairs whose contacts move (``fem.contact.moving_newton``).
-
-    Attributes
-    ----------
-    bulk, laws, film, tilted_lever_ratios
-        As for ``share_load``.
-    clear : (..., pairs) array
-        Gaps, 0 where there is no contact [m].
-    touchable : (..., pairs) boolean array
-    moves : ContactMoves
-    own : MovedFlanks or None
-        What the pinion's own flanks and corners yield (``fem.contact.moving_corners``).
-    start : float
-        Part of the whole force with which a pair is taken in.
-    """
-
-    bulk: Array
-    laws: PairLaws
-    film: FilmLaw | None
-    clear: Array
-    touchable: Booleans
-    tilted_lever_ratios: Array
-    moves: ContactMoves
-    own: MovedFlanks | None
-    start: float = 1e-2
-
-    def linearised(self, loads: Array, approach: Array) -> Linearised:
-        """As of ``MovingForces``."""
-        rolled, (thrust, stiffened) = self.moves.rolled(loads), self.moves.thrust(loads)
-        residual = (self.bulk @ loads[..., None])[..., 0] + self.laws.approach(loads) + self.clear - thrust
-        residual += approach[..., None] * (rolled - 1)
-        slope = self.laws.slope(loads) - stiffened
-        if self.film is not None:
-            residual, slope = residual - self.film.approach(loads), slope - self.film.slope(loads)
-        slope, reach = np.where(loads > 0, slope, 1.0), 1 - rolled
-        carried, stiff = (
-            np.sum((self.tilted_lever_ratios - 0.5 * rolled) * loads, axis=-1),
-            np.zeros_like(approach),
-        )
-        if self.own is not None:
-            more = self.own.pushed(loads, approach[..., None])
-            residual, slope, reach = residual + more.approach, slope + more.slope, reach - more.less
-            carried = carried - np.sum(np.where(loads > 0, more.push, 0.0), axis=-1)
-            stiff = np.sum(np.where(loads > 0, more.stiff, 0.0), axis=-1)
-        return Linearised(residual, reach, self.tilted_lever_ratios - (1 - reach), carried, stiff, slope)
-
-    def bulk_at(self, approach: Array) -> Array:
-        """Compliance (..., pairs, pairs) [m/N] where the pinion has rolled on by D (...) [m]."""
-        return np.asarray(self.bulk + approach[..., None, None] * self.moves.roll)
-
-    def solved(self, at: Linearised, approach: Array, active: Booleans) -> tuple[Array, Array]:
-        """As of ``MovingForces``."""
-        return answers(self.bulk_at(approach), at, active)
-
-    def unloaded(self, loads: Array, approach: Array) -> Array:
-        """As of ``MovingForces``."""
-        clear = self.clear if self.film is None else self.clear - self.film.approach(np.zeros_like(loads))
-        gaps = (self.bulk @ loads[..., None])[..., 0] + clear
-        gaps += approach[..., None] * (self.moves.rolled(loads) - 1)
-        return np.asarray(gaps if self.own is None else gaps + self.own.opened(approach[..., None]))
-
-
-def answers(bulk: Array, at: Linearised, active: Booleans) -> tuple[Array, Array]:
-    """Answers of the forces in contact to the turn and to the residual (..., n), all of one compliance."""
-    jacobian = bulk + at.own[..., None] * np.eye(active.shape[-1])
-    coupled = active[..., :, None] & active[..., None, :]
-    scale = np.abs(jacobian).max()
-    matrix = np.where(coupled, jacobian / scale, np.eye(active.shape[-1]))
-    sides = np.stack([np.where(active, at.reach, 0.0), np.where(active, at.residual, 0.0)], axis=-1)
-    solved = np.linalg.solve(matrix, sides / scale)
-    return solved[..., 0], solved[..., 1]
-
-
-def moving_pairs(
-    bulk: Array,
-    laws: PairLaws,
-    film: FilmLaw | None,
-    gaps: Array,
-    tilted_lever_ratios: Array,
-    moves: ContactMoves,
-    own: MovedFlanks | None = None,
-) -> MovingPairs:
-    """Put contacts that move together, arguments as for ``share_load``."""
-    touchable = np.isfinite(gaps)
-    return MovingPairs(
-        bulk, laws, film, np.where(touchable, gaps, 0.0), touchable, tilted_lever_ratios, moves, own
-    )
-
-
-def moved_share(share: LoadShare, force: Array, pairs: MovingPairs) -> LoadShare | None:
-    """Solve with moving contacts, from the solution without.
-
-    Returns
-    -------
-    LoadShare or None
-        None where Newton's method does not settle: the deflection is far beyond the first order.
-    """
-    whole = force + np.zeros_like(share.transmission_error)
-    moved = moved_forces(pairs, whole, share.forces, share.transmission_error)
-    return None if moved is None else replace(moved, iterations=share.iterations + moved.iterations)
 
 
 def moved_places(moves: ContactMoves, force: Array, approach: Array) -> Array:

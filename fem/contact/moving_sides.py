@@ -20,12 +20,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Booleans, record
-from fem.contact.loaded_flanks import LoadedFlanks, greatest_force, loaded_flanks
-from fem.contact.moving_contact import ContactMoves, MovingPairs, answers, contact_moves, moving_pairs
-from fem.contact.moving_corners import MovedFlanks, moved_flanks
-from fem.contact.moving_newton import Linearised, moved_forces
+from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
+from fem.contact.moved_side import MovedSide, moved_side
+from fem.contact.moving_contacts import MovingContacts
 from fem.contact.opposite_flanks import ROUNDING, BothSides, between, both_sides
-from gears import LoadShare
+from gears.sharing.active_set import Linearised, LoadShare, share_forces
+from gears.sharing.load_coupling import DenseCoupling
 
 if TYPE_CHECKING:
     from fem.laws.edge_tables import EdgeTables
@@ -33,83 +33,30 @@ if TYPE_CHECKING:
     from fem.laws.mesh_setup import MeshSetup
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["BothMoved", "MovedSide", "MovingSides", "both_moved", "moved_side", "moving_sides"]
+__all__ = ["BothMoved", "MovingSides", "both_moved", "moving_sides"]
 
 STEP = 1e-3
 """Part of the module over which X is differentiated by the place."""
 
 
 @record
-class MovedSide:
-    """Flanks on one side whose contacts move.
-
-    Attributes
-    ----------
-    flanks : LoadedFlanks
-        Of contacts that stay.
-    pairs : MovingPairs
-    moves : ContactMoves
-    own : MovedFlanks or None
-        Of the corners.
-    lever_ratios : (positions, pairs) array
-        kappa of the forces in ``pairs``.
-    """
-
-    flanks: LoadedFlanks
-    pairs: MovingPairs
-    moves: ContactMoves
-    own: MovedFlanks | None
-    lever_ratios: Array
-
-    @property
-    def tilted_lever_ratios(self) -> Array:
-        """Of the tilted forces about the pinion's axis, over kappa r_b1 (positions, pairs)."""
-        return np.asarray(self.flanks.tilted_lever_ratios * self.flanks.lever_ratios / self.lever_ratios)
-
-
-def moved_side(
-    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
-) -> MovedSide:
-    """Flanks of one side with contacts that move; arguments as for ``loaded_flanks``."""
-    candidates, lever_ratios, tilted_lever_ratios = (
-        flanks.candidates,
-        flanks.lever_ratios,
-        flanks.tilted_lever_ratios,
-    )
-    moves, own = contact_moves(bodies, candidates, setup.beyond_path), None
-    matrix, laws = flanks.matrix, flanks.laws
-    gaps = candidates.gap - candidates.gap.min(axis=-1, keepdims=True)
-    if setup.beyond_path:
-        own = moved_flanks(setup, bodies, flanks, greatest_force(bodies, candidates, force), tables)
-        matrix, laws, gaps, tilted_lever_ratios = own.matrix, own.laws, own.gaps, own.tilted_lever_ratios
-        lever_ratios = np.ones_like(lever_ratios) if own.surfaces else lever_ratios
-    pairs = moving_pairs(matrix, laws, flanks.oil, gaps, tilted_lever_ratios, moves, own)
-    return MovedSide(flanks, pairs, moves, own, lever_ratios)
-
-
-@record
 class MovingSides:
-    """Loaded flanks and those on the other side, one after the other (``fem.contact.moving_newton``).
+    """Loaded flanks and those on the other side, one after the other (``gears.sharing.active_set.ContactForces``).
 
     Attributes
     ----------
-    front, back : MovingPairs
+    front, back : MovingContacts
+        In the plane.
     play : (pitches, positions) array
         Turn between the first touches of both sides [m].
-    cross : (positions, front pairs, back pairs) array
-        X [m/N].
-    rolls : (2, positions, front pairs, back pairs) array
-        Its derivatives by the places of the pinion's loaded and other flanks [1/N].
-    start : float
-        Part of the whole force with which a pair is taken in.
+    cross : (3, positions, front pairs, back pairs) array
+        X [m/N], and its derivatives by the places of the pinion's loaded and other flanks [1/N].
     """
 
-    front: MovingPairs
-    back: MovingPairs
+    front: MovingContacts
+    back: MovingContacts
     play: Array
     cross: Array
-    rolls: Array
-    start: float = 1e-2
 
     @property
     def count(self) -> int:
@@ -117,8 +64,18 @@ class MovingSides:
         return int(self.cross.shape[-2])
 
     @property
+    def apart(self) -> bool:
+        """As of ``ContactForces``."""
+        return self.front.apart
+
+    @property
+    def start(self) -> float:
+        """As of ``ContactForces``."""
+        return self.front.start
+
+    @property
     def touchable(self) -> Booleans:
-        """As of ``MovingForces``."""
+        """As of ``ContactForces``."""
         return np.concatenate([self.front.touchable, self.back.touchable], axis=-1)
 
     def split(self, values: Array) -> tuple[Array, Array]:
@@ -129,56 +86,79 @@ class MovingSides:
         """D' by which the other flanks have rolled on [m]."""
         return np.asarray(-(approach + self.play))
 
-    def _coupling(self, approach: Array) -> Array:
+    def _crossing(self, approach: Array) -> Array:
         """X where the pinion has turned by D."""
         turn, behind = approach[..., None, None], self.behind(approach)[..., None, None]
-        return np.asarray(self.cross + turn * self.rolls[0] + behind * self.rolls[1])
+        return np.asarray(self.cross[0] + turn * self.cross[1] + behind * self.cross[2])
 
     def crossed(self, loads: Array) -> tuple[Array, Array]:
         """dX/dD G, and dX/dD' F, by which the levers on either side are shorter."""
         front, back = self.split(loads)
-        turned = self.rolls[0] - self.rolls[1]
+        turned = self.cross[1] - self.cross[2]
         return (turned @ back[..., None])[..., 0], -(np.swapaxes(turned, -1, -2) @ front[..., None])[..., 0]
 
-    def linearised(self, loads: Array, approach: Array) -> Linearised:
-        """As of ``MovingForces``."""
-        front, back = self.split(loads)
-        here = self.front.linearised(front, approach)
-        there = self.back.linearised(back, self.behind(approach))
-        cross, (front_loss, back_loss) = self._coupling(approach), self.crossed(loads)
-        bent = (cross @ back[..., None])[..., 0], (np.swapaxes(cross, -1, -2) @ front[..., None])[..., 0]
+    def _pressed(self, loads: Array, approach: Array) -> Array:
+        """X G and X F (..., front and back pairs) [m]."""
+        (front, back), cross = self.split(loads), self._crossing(approach)
+        sides = (cross @ back[..., None])[..., 0], (np.swapaxes(cross, -1, -2) @ front[..., None])[..., 0]
+        return np.concatenate(sides, axis=-1)
+
+    def bent(self, loads: Array, wanted: Booleans, known: Array | None) -> Array:
+        """What each side bends by itself (2, ..., n), as of ``MovingContacts``."""
+        before = (None, None) if known is None else self.split(known)
+        sides = zip((self.front, self.back), self.split(loads), before, strict=True)
+        return np.concatenate([side.bent(force, wanted, row) for side, force, row in sides], axis=-1)
+
+    def linearised(self, loads: Array, approach: Array, bent: Array) -> Linearised:
+        """As of ``ContactForces``."""
+        (front, back), (front_bent, back_bent) = self.split(loads), self.split(bent)
+        here = self.front.linearised(front, approach, front_bent)
+        there = self.back.linearised(back, self.behind(approach), back_bent)
+        front_loss, back_loss = self.crossed(loads)
+        assert isinstance(here.jacobian, DenseCoupling)
+        assert isinstance(there.jacobian, DenseCoupling)
         return Linearised(
-            np.concatenate([here.residual + bent[0], there.residual + bent[1]], axis=-1),
+            np.concatenate([here.residual, there.residual], axis=-1) + self._pressed(loads, approach),
             np.concatenate([here.reach - front_loss, back_loss - there.reach], axis=-1),
             np.concatenate(
                 [here.further_lever_ratios - front_loss, back_loss - there.further_lever_ratios], axis=-1
             ),
             here.carried - there.carried - np.sum(front_loss * front, axis=-1),
-            here.stiff + there.stiff,
             np.concatenate([here.own, there.own], axis=-1),
+            here.jacobian.beside(there.jacobian, self._crossing(approach)),
+            here.stiff + there.stiff,
         )
 
-    def solved(self, at: Linearised, approach: Array, active: Booleans) -> tuple[Array, Array]:
-        """As of ``MovingForces``."""
-        cross = self._coupling(approach)
-        upper = np.concatenate([self.front.bulk_at(approach), cross], axis=-1)
-        back = self.back.bulk_at(self.behind(approach))
-        lower = np.concatenate([np.swapaxes(cross, -1, -2), back], axis=-1)
-        return answers(np.concatenate([upper, lower], axis=-2), at, active)
+    def unloaded(self, loads: Array, approach: Array, bent: Array) -> Array:
+        """As of ``ContactForces``."""
+        (front, back), (front_bent, back_bent) = self.split(loads), self.split(bent)
+        here = self.front.unloaded(front, approach, front_bent)
+        there = self.back.unloaded(back, self.behind(approach), back_bent)
+        return np.concatenate([here, there], axis=-1) + self._pressed(loads, approach)
 
-    def unloaded(self, loads: Array, approach: Array) -> Array:
-        """As of ``MovingForces``."""
-        front, back = self.split(loads)
-        cross = self._coupling(approach)
-        here = self.front.unloaded(front, approach) + (cross @ back[..., None])[..., 0]
-        there = self.back.unloaded(back, self.behind(approach))
-        return np.concatenate(
-            [here, there + (np.swapaxes(cross, -1, -2) @ front[..., None])[..., 0]], axis=-1
+    def open(self, share: LoadShare) -> Array:
+        """Gaps that a share leaves where nothing bears (..., n) [m]."""
+        bent = self.bent(share.forces, np.ones(share.stiffness.shape, dtype=bool), None)
+        return self.unloaded(share.forces, share.transmission_error, bent)
+
+    def of_sides(self, share: LoadShare) -> tuple[LoadShare, LoadShare]:
+        """Share of either side, by the turn that closes its gaps."""
+        loads, slopes = self.split(share.forces), self.split(share.pair_stiffness)
+        behind = self.behind(share.transmission_error)
+        return (
+            replace(share, forces=loads[0], pair_stiffness=slopes[0]),
+            replace(share, forces=loads[1], transmission_error=behind, pair_stiffness=-slopes[1]),
         )
 
+    def lever_losses(self, share: LoadShare) -> tuple[tuple[Array, Array], ...]:
+        """Of either side, as of ``MovingContacts``."""
+        sides = zip((self.front, self.back), self.of_sides(share), self.crossed(share.forces), strict=True)
+        return tuple(contacts.lever_losses(part, crossing) for contacts, part, crossing in sides)
 
-def moving_sides(setup: MeshSetup, bodies: PairCompliance, front: MovedSide, back: MovedSide) -> MovingSides:
-    """Put both sides together; the setting is that of the loaded one."""
+
+def moving_sides(bodies: PairCompliance, front: MovedSide, back: MovedSide) -> MovingSides:
+    """Put both sides together, the loaded one first."""
+    setup = front.setup
     step, turn = STEP * setup.pair.module, np.array([1.0, 0.0])[:, None, None]
     ratio_products = (front.flanks.lever_ratios / front.lever_ratios)[:, :, None] * (
         back.flanks.lever_ratios / back.lever_ratios
@@ -200,7 +180,8 @@ def moving_sides(setup: MeshSetup, bodies: PairCompliance, front: MovedSide, bac
     ]
     touches = (side.flanks.candidates.gap.min(axis=-1) for side in (front, back))
     play = setup.pair.backlash + sum(touches)
-    return MovingSides(front.pairs, back.pairs, play, coupling(0.0, 0.0), np.stack(rolls))
+    cross = np.stack([coupling(0.0, 0.0), *rolls])
+    return MovingSides(front.in_plane(), back.in_plane(), np.asarray(play), cross)
 
 
 def _between(
@@ -233,18 +214,18 @@ def _between(
             forces=np.concatenate([alone.forces, nothing], axis=-1),
             pair_stiffness=np.concatenate([alone.pair_stiffness, nothing], axis=-1),
         )
-        remaining_gaps = problem.unloaded(near.forces, near.transmission_error)[..., problem.count :]
+        remaining_gaps = problem.open(near)[..., problem.count :]
         clear = np.all(remaining_gaps >= -ROUNDING * np.abs(near.transmission_error)[..., None], axis=-1)
         clear |= apart[:, None, None]
         if clear.all():
             return near
         force = np.where(apart[:, None, None], np.min(force[~apart]), force)
     begin = stays.share(force)
-    moved = moved_forces(problem, force, begin.forces, begin.transmission_error)
+    moved = share_forces(problem, force, begin.forces, begin.transmission_error)
     if moved is None and near is not None:
         begin_alone = np.where(clear[..., None], begin.forces, near.forces)
         approach = np.where(clear, begin.transmission_error, near.transmission_error)
-        moved = moved_forces(problem, force, begin_alone, approach)
+        moved = share_forces(problem, force, begin_alone, approach)
     if moved is None or near is None:
         return moved
     pairs = clear[..., None]
@@ -306,7 +287,7 @@ def both_moved(
     front = None if alone is None else alone[1]
     front = moved_side(setup, bodies, flanks, most, tables) if front is None else front
     back = moved_side(setup.opposite, bodies, other, most, tables)
-    problem = moving_sides(setup, bodies, front, back)
+    problem = moving_sides(bodies, front, back)
     pressed, rest = stays.pressed(), np.zeros(problem.play.shape)
     asked = whole + 0.0 * pressed
     share = _between(problem, stays, asked, None if alone is None else alone[0], apart)
@@ -316,7 +297,7 @@ def both_moved(
     if pressed.any():
         small = np.where(pressed, 0.0, max(float(np.min(force)), 1.0))[None]
         begin = stays.share(small)
-        free = moved_forces(problem, small, begin.forces, begin.transmission_error)
+        free = share_forces(problem, small, begin.forces, begin.transmission_error)
         settled = free is not None
         rest = rest if free is None else np.where(pressed, free.transmission_error[0], 0.0)
     return BothMoved(problem, front, back, share, rest, settled)

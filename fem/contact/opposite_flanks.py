@@ -27,7 +27,7 @@ from gears.tooth.errors import LoadSharingError
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
-    from gears.sharing.load_sharing import DeflectionLaw
+    from gears.sharing.staying_contacts import DeflectionLaw
 
 __all__ = ["BothSides", "OppositeFlanks", "OppositeShare", "between", "both_sides", "share_with_opposite"]
 

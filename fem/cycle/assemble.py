@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from base import Array, Booleans, Cost, RangeWarning
+from fem.contact.contact_state import ContactState
 from fem.contact.face_errors import FEW_CELLS
 from fem.contact.opposite_flanks import OppositeFlanks
-from fem.contact.solver import ContactState
 from fem.cycle.events import ContactProblem
 from fem.cycle.face_loads import face_loads
 from fem.cycle.model_error import LoadedContacts
@@ -64,7 +64,7 @@ def cycle_of(
     forces = (turned / contact.lever_ratios).reshape(-1, pairs) + bad
     edge = np.tile(candidates.edge, (setup.pitches, 1))
     on_path = candidates.touchable & ~candidates.edge
-    rho = contact.flank_rho(setup.pair, number).reshape(2, -1, pairs)
+    rho = contact.flank_rho(number).reshape(2, -1, pairs)
     lost = [loss.reshape(2, -1, pairs) for loss in contact.lever_loss(number)]
     large = [] if refusal else _large(setup, contact, number, forces, bodies.plane)
     if large:
@@ -134,7 +134,7 @@ def _opposite(setup: MeshSetup, contact: ContactState, number: int) -> OppositeF
     flanks, back = contact.opposite.flanks(number), contact.back
     if back is None:
         return flanks
-    rho = back.flank_rho(setup.pair, number).reshape(flanks.flank_rho.shape)
+    rho = back.flank_rho(number).reshape(flanks.flank_rho.shape)
     lost, further = (loss.reshape(2, *flanks.forces.shape) for loss in back.lever_loss(number))
     places = np.where(np.isfinite(flanks.flank_rho), rho, np.nan)
     return replace(flanks, flank_rho=places, lever_loss=lost, further_lever_loss=further)

@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from base import Array, SolverError
+from fem.contact.contact_state import ContactState
 from fem.contact.face_errors import half_as_many
 from fem.contact.face_share import yielding_over_face
-from fem.contact.solver import ContactState, solve_contact
+from fem.contact.solver import solve_contact
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.local_law import Film, film_yielding
 from fem.laws.mesh_setup import MeshSetup
@@ -159,7 +160,7 @@ class ContactProblem:
         if not self.force:
             return None
         forces = state.share.forces[0, 0] / state.lever_ratios
-        rho = state.flank_rho(self.setup.pair, 0)[:, 0]
+        rho = state.flank_rho(0)[:, 0]
         whole = np.stack([state.torques(0)[0] / abs(self.force), forces, *rho], axis=-1)
         if state.face is None:
             return whole

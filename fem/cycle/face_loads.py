@@ -16,8 +16,8 @@ from fem.pair.face_setting import FaceSetting
 from gears.pair.hertz import peak_pressure
 
 if TYPE_CHECKING:
+    from fem.contact.contact_state import ContactState
     from fem.contact.face_share import FaceShare
-    from fem.contact.solver import ContactState
     from fem.laws.mesh_setup import MeshSetup
 
 __all__ = ["FaceLoads", "face_loads"]

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Cost, Faults, Limit, Stopwatch, shorten
+from fem.contact.contact_state import ContactState
 from fem.contact.moving_contact import contacts_move
-from fem.contact.solver import ContactState, solve_contact
+from fem.contact.solver import solve_contact
 from fem.cycle.assemble import cycle_of
 from fem.cycle.result import MeshCycle
 from fem.cycle.several_torques import one_or_several

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from base import Faults
-from gears.sharing.load_sharing import LoadShare
+from gears.sharing.active_set import LoadShare
 from gears.tooth.errors import LoadSharingError
 
 __all__ = ["independent_pairs"]

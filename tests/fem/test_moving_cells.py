@@ -10,10 +10,9 @@ import pytest
 import fem
 from fem.contact.cell_matrix import cell_coupling
 from fem.contact.loaded_flanks import loaded_flanks
-from fem.contact.moving_contact import contact_moves, moving_pairs
+from fem.contact.moved_side import moved_side
 from fem.contact.moving_corners import moved_flanks
 from fem.contact.moving_coupling import other_pairs, tooth_smoothing
-from fem.contact.moving_face import moving_cells
 from fem.elasticity.line_load import flank_points
 from fem.elasticity.prism import Face, prism
 from fem.influence.gear_face import ENDS_SIZES, section_of
@@ -107,11 +106,8 @@ def problem(bodies, beyond=True):
     given = MeshSetup(PLASTIC, 4, beyond, moving_contact=True, face=face)
     force, tables = TORQUE / PLASTIC.base_radii[0], EdgeTables(given, bodies)
     flanks = loaded_flanks(given, bodies, None, 0.6, force, tables)
-    own = moved_flanks(given, bodies, flanks, force, tables)
-    moves = contact_moves(bodies, flanks.candidates, corners=True)
-    pairs = moving_pairs(own.matrix, own.laws, None, own.gaps, own.tilted_lever_ratios, moves, own)
     rise = np.full((1, 1, 4, flanks.candidates.touchable.shape[-1], CELLS), 2e-6)
-    cells = moving_cells(given, bodies, flanks, np.ones_like(flanks.lever_ratios), pairs, rise)
+    cells = moved_side(given, bodies, flanks, force, tables).on_cells(bodies, rise)
     draw = np.random.default_rng(1).uniform(
         0.2, 1.0, (1, 1, 4, flanks.candidates.touchable.shape[-1] * CELLS)
     )
@@ -119,12 +115,16 @@ def problem(bodies, beyond=True):
     return cells, loads, np.full((1, 1, 4), 100e-6)
 
 
+def about(cells, loads, approach):
+    return cells.linearised(loads, approach, cells.all_bent(loads))
+
+
 def test_forces_and_torque_follow_from_one_energy(bodies):
     """d(overlap)/dF is symmetric, and d(overlap)/dD is what a further force takes from the torque: no work is lost."""
     cells, loads, approach = problem(bodies)
-    at = cells.linearised(loads, approach)
+    at = about(cells, loads, approach)
     turn = 1e-9
-    back, on = (cells.linearised(loads, approach + s) for s in (-turn, turn))
+    back, on = (about(cells, loads, approach + s) for s in (-turn, turn))
     touched = np.broadcast_to(cells.touchable, loads.shape)
     np.testing.assert_allclose(
         -(on.residual - back.residual)[touched] / (2 * turn), at.reach[touched], rtol=1e-6
@@ -133,7 +133,7 @@ def test_forces_and_torque_follow_from_one_energy(bodies):
     along = [np.random.default_rng(n).normal(size=loads.shape) * loads for n in (2, 3)]
     slopes, arms = [], []
     for way in along:
-        less, more = (cells.linearised(loads + s * 1e-5 * way, approach) for s in (-1, 1))
+        less, more = (about(cells, loads + s * 1e-5 * way, approach) for s in (-1, 1))
         slopes.append((more.residual - less.residual) / 2e-5)
         arms.append((more.carried - less.carried) / 2e-5)
     one, other = (
@@ -146,14 +146,13 @@ def test_forces_and_torque_follow_from_one_energy(bodies):
 
 def test_newton_s_matrix_is_the_derivative(bodies):
     cells, loads, approach = problem(bodies)
-    at = cells.linearised(loads, approach)
+    at = about(cells, loads, approach)
     active = loads > 0.0
     way = np.where(active, np.random.default_rng(4).normal(size=loads.shape) * loads, 0.0)
-    less, more = (cells.linearised(loads + s * 1e-5 * way, approach) for s in (-1, 1))
-    known = replace(at, residual=(more.residual - less.residual) / 2e-5)
-    np.testing.assert_allclose(
-        cells.solved(known, approach, active)[1], way, rtol=1e-4, atol=1e-4 * loads.max()
-    )
+    less, more = (about(cells, loads + s * 1e-5 * way, approach) for s in (-1, 1))
+    risen, wanted = (more.residual - less.residual) / 2e-5, np.ones(approach.shape, dtype=bool)
+    response = at.jacobian.solved(at.own, at.reach, risen, active, wanted)[1]
+    np.testing.assert_allclose(response, way, rtol=1e-4, atol=1e-4 * loads.max())
 
 
 def test_compliance_between_cells_is_that_of_the_moved_pairs(bodies):

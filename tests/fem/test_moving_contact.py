@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import fem
-from fem.contact.moving_contact import contact_moves, contacts_move, model_error, moved_share, moving_pairs
+from fem.contact.moving_contact import contact_moves, contacts_move, model_error
+from fem.contact.moving_contacts import MovingContacts
 from fem.elasticity import flamant, nonlinear_energy
 from fem.elasticity.nonlinear_energy import densities, half_plane, hertz_rotation
 from fem.elasticity.plane_elasticity import PlaneElasticity
@@ -18,6 +19,8 @@ from fem.laws.contact_candidates import contact_candidates
 from fem.laws.local_law import PairLaws
 from fem.laws.mesh_setup import MeshSetup
 from gears import Gear, GearPair, Material, share_load
+from gears.sharing.active_set import share_forces
+from gears.sharing.load_coupling import DenseCoupling
 from meshes import Sizes, mesh_sector
 
 STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
@@ -41,7 +44,23 @@ def alone(bodies, position, torque, staying=False):
     stays = share_load(force, bulk, laws, gaps)
     if staying:
         return stays
-    moved = moved_share(stays, force, moving_pairs(bulk, laws, None, gaps, np.ones((1, 1)), moves))
+    contacts = MovingContacts(
+        1,
+        DenseCoupling(bulk),
+        DenseCoupling(moves.roll),
+        laws,
+        None,
+        gaps,
+        gaps,
+        0.0,
+        yes,
+        np.ones((1, 1)),
+        moves,
+        np.ones((1, 1, 1, 1)),
+        None,
+    )
+    moved = share_forces(contacts, force, stays.forces, stays.transmission_error)
+    assert moved is not None
     return stays, moved, moves
 
 

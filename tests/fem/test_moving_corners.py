@@ -69,7 +69,7 @@ def test_nothing_steps_at_A_where_the_flank_goes_on_below_it():
 def test_what_the_flank_yields_changes_with_the_roll_on_the_flank_alone(plastic):
     """Derivatives by D of what the pinion's flank yields, on the flank, beyond its tip and below its end."""
     pair, bodies, tables = plastic
-    own = solved(pair, bodies, tables, 0.4, 20.0).moved.own
+    own = solved(pair, bodies, tables, 0.4, 20.0).side.own
     low, high = bodies.pinion.rho_range
     step, force = 1e-8, np.full(own.base.shape, 30.0)
     for rho in (low - 0.2e-3, 0.5 * (low + high), high + 0.05e-3):
@@ -189,7 +189,7 @@ def test_edges_touch_where_gears_that_are_turned_by_the_deflection_do(plastic):
     pair, bodies, tables = plastic
     radii, line = pair.base_radii, pair.line_of_action
     found = solved(pair, bodies, tables, [end + away for end in ends(pair) for away in (-0.03, 0.03)], 20.0)
-    rho, D = found.flank_rho(pair, 0)[:, 0], found.share.transmission_error[0, 0]
+    rho, D = found.flank_rho(0)[:, 0], found.share.transmission_error[0, 0]
     known, seen = found.share.forces[0, 0] > 0.0, [0, 0]
     for i, k in zip(*np.nonzero(found.candidates.edge & known), strict=True):
         place, before = (

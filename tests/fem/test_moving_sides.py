@@ -11,7 +11,8 @@ import pytest
 import fem
 from fem.contact.clear_flanks import ROLLED
 from fem.contact.loaded_flanks import loaded_flanks
-from fem.contact.moving_sides import moved_side, moving_sides
+from fem.contact.moved_side import moved_side
+from fem.contact.moving_sides import moving_sides
 from fem.contact.solver import solve_contact
 from fem.laws.contact_candidates import REACHES
 from fem.laws.edge_tables import EdgeTables
@@ -48,7 +49,7 @@ def problem(bodies, beyond, positions=5):
     for setting in (given, given.opposite):
         flanks = loaded_flanks(setting, bodies, None, REACHES[0], force, tables)
         sides.append(moved_side(setting, bodies, flanks, force, tables))
-    return moving_sides(given, bodies, *sides)
+    return moving_sides(bodies, *sides)
 
 
 @pytest.mark.parametrize("beyond", [False, True])
@@ -56,23 +57,27 @@ def test_forces_and_torque_follow_from_one_energy(tight, beyond):
     """Levers of further forces are what they close by a turn; slopes are derivatives; one matrix is symmetric."""
     both, rng, step = problem(tight, beyond), np.random.default_rng(1), 1e-5
     turn = np.full((1, 1, 5), 30e-6)
+
+    def about(loads, turn):
+        return both.linearised(loads, turn, both.bent(loads, np.ones(turn.shape, bool), None))
+
     loads = np.where(both.touchable, rng.uniform(50.0, 300.0, both.touchable.shape), 0.0)[None]
-    at = both.linearised(loads, turn)
-    ends = [both.linearised(loads, turn + s * step * 30e-6) for s in (-1, 1)]
+    at = about(loads, turn)
+    ends = [about(loads, turn + s * step * 30e-6) for s in (-1, 1)]
     some = loads > 0
     reach = -(ends[1].residual - ends[0].residual) / (2 * step * 30e-6)
     np.testing.assert_allclose(at.reach[some], reach[some], atol=3e-6)
     stiff = -(ends[1].carried - ends[0].carried) / (2 * step * 30e-6)
     np.testing.assert_allclose(at.stiff, stiff, rtol=1e-5, atol=1e-5 * 500.0 / 30e-6)
     further = np.where(some, rng.normal(size=loads.shape), 0.0) * 100.0
-    less, more = (both.linearised(loads + s * step * further, turn) for s in (-1, 1))
+    less, more = (about(loads + s * step * further, turn) for s in (-1, 1))
     carried = (more.carried - less.carried) / (2 * step)
     np.testing.assert_allclose(
         np.sum(at.further_lever_ratios * further, axis=-1), carried, rtol=1e-6, atol=1e-5
     )
     # what ``solved`` inverts is the derivative of the overlap
     risen = (more.residual - less.residual) / (2 * step)
-    unit, response = both.solved(replace(at, residual=risen), turn, some)
+    unit, response = at.jacobian.solved(at.own, at.reach, risen, some, np.ones(turn.shape, bool))
     np.testing.assert_allclose(response[some], further[some], rtol=1e-5, atol=1e-4)
     assert np.all(np.isfinite(unit))
 
@@ -81,9 +86,9 @@ def test_what_the_roll_changes_of_the_coupling_is_within_the_doubt(tight):
     """Flanks that surely stay clear are known without their laws by X where nothing has rolled."""
     both = problem(tight, False, 20)
     part = (
-        np.abs(both.rolls)
+        np.abs(both.cross[1:])
         * tight.pair.module
-        / np.maximum(np.abs(both.cross), 1e-2 * np.abs(both.cross).max())
+        / np.maximum(np.abs(both.cross[0]), 1e-2 * np.abs(both.cross[0]).max())
     )
     assert np.max(part) < ROLLED
 

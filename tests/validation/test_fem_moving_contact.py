@@ -16,11 +16,14 @@ import numpy as np
 import pytest
 
 import fem
-from fem.contact.moving_contact import contact_moves, model_error, moved_share, moving_pairs
+from fem.contact.moving_contact import contact_moves, model_error
+from fem.contact.moving_contacts import MovingContacts
 from fem.laws.contact_candidates import contact_candidates
 from fem.laws.local_law import PairLaws
 from fem.laws.mesh_setup import MeshSetup
 from gears import Gear, GearPair, Material, share_load
+from gears.sharing.active_set import share_forces
+from gears.sharing.load_coupling import DenseCoupling
 
 STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
 PAIR = GearPair(Gear(17), Gear(51), 2e-3, 20e-3, material=(STEEL, PA66))
@@ -54,7 +57,23 @@ def alone(bodies, position, torque):
     moves, laws = contact_moves(bodies, where), PairLaws(bodies.hertz(rho[0]), no)
     force, bulk, gaps = np.array([torque / pair.base_radii[0]]), bodies.bulk(rho[0]), np.zeros((1, 1))
     stays = share_load(force, bulk, laws, gaps)
-    moved = moved_share(stays, force, moving_pairs(bulk, laws, None, gaps, np.ones((1, 1)), moves))
+    contacts = MovingContacts(
+        1,
+        DenseCoupling(bulk),
+        DenseCoupling(moves.roll),
+        laws,
+        None,
+        gaps,
+        gaps,
+        0.0,
+        yes,
+        np.ones((1, 1)),
+        moves,
+        np.ones((1, 1, 1, 1)),
+        None,
+    )
+    moved = share_forces(contacts, force, stays.forces, stays.transmission_error)
+    assert moved is not None
     error = model_error(moves, moved.forces, moved.transmission_error, True)
     return float(stays.transmission_error[0]), float(moved.transmission_error[0]), error
 

@@ -1,4 +1,4 @@
-"""Contacts that move on the cells of the face: how cells yield where the pinion rolls on, and move with their loads.
+"""Contacts that move: cells of the face or, with a single cell, the plane.
 
 The pinion turns as a whole, so that all its cells roll on by D; what they yield between each other changes by D C',
 with C' = dC/dx_1 of the pinion's waves and free ends, and of Hertz's law cell by cell. Corners of the tips are met by
@@ -15,36 +15,37 @@ of even loads the plane's, of slow waves that of slices.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, Booleans, Integers, record
-from fem.contact.cell_coupling import CellCoupling, solve_symmetric
-from fem.contact.moving_newton import Linearised
 from fem.laws.place_surface import Pushed
+from gears.sharing.active_set import Linearised
+from gears.sharing.load_coupling import Coupling
+from gears.sharing.staying_contacts import JointLaw
 
 if TYPE_CHECKING:
-    from fem.contact.cell_laws import CellLaws
     from fem.contact.moving_contact import ContactMoves
     from fem.contact.moving_corners import MovedFlanks
-    from fem.contact.partial_cells import PartialCells
+    from gears import LoadShare
 
-__all__ = ["MovingCells"]
+__all__ = ["MovingContacts"]
 
 
 @record
-class MovingCells:
-    """Cells of pairs whose contacts move; n of them are pairs times cells.
+class MovingContacts:
+    """Contacts that move (``gears.sharing.active_set.ContactForces``); n of them are pairs times cells.
 
     Attributes
     ----------
     cells : int
-    coupling, roll : CellCoupling
+    coupling, roll : Coupling
         C, without the pinion's own flanks where corners move, and C'.
     laws, film
         Of the cells.
-    clear : (torques, pitches, positions, n) array
+    clear : (..., pitches, positions, n) array
         Gaps at the first touch of each cell [m], without those of corners that move; 0 where there is no contact.
     along : (..., positions, n) array
         By how much less than D each cell has closed beside its pair's own gap [m].
@@ -60,10 +61,10 @@ class MovingCells:
     """
 
     cells: int
-    coupling: CellCoupling
-    roll: CellCoupling
-    laws: PartialCells
-    film: CellLaws | None
+    coupling: Coupling
+    roll: Coupling
+    laws: JointLaw
+    film: JointLaw | None
     clear: Array
     along: Array
     least: float
@@ -75,12 +76,17 @@ class MovingCells:
 
     @property
     def start(self) -> float:
-        """Part of the whole force with which a cell is taken in."""
+        """As of ``ContactForces``."""
         return self.coupling.start
+
+    @property
+    def apart(self) -> bool:
+        """As of ``ContactForces``."""
+        return self.coupling.apart
 
     def turn(self, approach: Array) -> Array:
         """Distance that the pinion rolls on (...) [m]."""
-        return approach + self.least
+        return np.asarray(approach + self.least)
 
     def split(self, values: Array) -> Array:
         """(..., n) as (..., pairs, cells)."""
@@ -99,10 +105,22 @@ class MovingCells:
         """(..., pairs) as (..., n), the same in all cells."""
         return np.repeat(pairs, self.cells, axis=-1)
 
-    def bent(self, loads: Array) -> tuple[Array, Array]:
-        """C F and C' F (..., n)."""
-        wanted, nothing = np.ones(loads.shape[:-1], dtype=bool), np.zeros_like(loads)
-        return self.coupling.applied(loads, wanted, nothing), self.roll.applied(loads, wanted, nothing)
+    @cached_property
+    def _propped(self) -> Array | float:
+        """What films hold the flanks apart without a force [m]."""
+        return 0.0 if self.film is None else self.film.approach(np.zeros_like(self.clear))
+
+    def bent(self, loads: Array, wanted: Booleans, known: Array | None) -> Array:
+        """C F and C' F (2, ..., n), as of ``ContactForces``."""
+        before = np.zeros((2, *loads.shape)) if known is None else known
+        couplings = (self.coupling, self.roll)
+        return np.stack(
+            [each.applied(loads, wanted, row) for each, row in zip(couplings, before, strict=True)]
+        )
+
+    def all_bent(self, loads: Array) -> Array:
+        """The same at all positions."""
+        return self.bent(loads, np.ones(loads.shape[:-1], dtype=bool), None)
 
     def _tilted(self, loads: Array) -> tuple[tuple[Integers, ...], Array, Array, Array]:
         """Pairs that bear, as an index of (..., pairs), their forces f (k, cells), S (k, cells, cells) and S f."""
@@ -165,78 +183,58 @@ class MovingCells:
         )
         return flank, corner
 
-    def linearised(self, loads: Array, approach: Array) -> Linearised:
-        """As of ``MovingForces``."""
-        (bent, rolled), (thrust, blocks) = self.bent(loads), self.thrust(loads)
-        turn, tilted_lever_ratios = self.turn(approach), self.everywhere(self.tilted_lever_ratios)
+    def linearised(self, loads: Array, approach: Array, bent: Array) -> Linearised:
+        """As of ``ContactForces``."""
+        (bends, rolled), (thrust, blocks) = bent, self.thrust(loads)
+        turn, levers = self.turn(approach), self.everywhere(self.tilted_lever_ratios)
         approached, slope = self.laws.value_and_slope(loads)
-        residual = bent + approached + self.clear - thrust
-        residual += turn[..., None] * rolled - approach[..., None]
+        residual = bends + approached + self.clear - thrust + turn[..., None] * rolled - approach[..., None]
         if self.film is not None:
-            residual, slope = residual - self.film.approach(loads), slope - self.film.slope(loads)
-        slope, reach, blocks = np.where(loads > 0, slope, 1.0), 1 - rolled, -blocks
-        carried, stiff = (
-            np.sum((tilted_lever_ratios - 0.5 * rolled) * loads, axis=-1),
-            np.zeros_like(approach),
-        )
+            props, falls = self.film.value_and_slope(loads)
+            residual, slope = residual - props, slope - falls
+        slope, reach = np.where(loads > 0, slope, 1.0), 1 - rolled
+        carried, stiff = np.sum((levers - 0.5 * rolled) * loads, axis=-1), np.zeros_like(approach)
         if self.own is not None:
             for more in self._pushed(loads, approach):
                 residual, slope = residual + more.approach, slope + more.slope
                 reach = reach - more.less
-                carried, stiff = carried - more.push.sum(axis=-1), stiff + more.stiff.sum(axis=-1)
-        return Linearised(residual, reach, tilted_lever_ratios - (1 - reach), carried, stiff, slope, blocks)
+                bears = loads > 0.0
+                carried = carried - more.push.sum(axis=-1, where=bears)
+                stiff = stiff + more.stiff.sum(axis=-1, where=bears)
+        jacobian = self.coupling.changed(self.roll, turn, -blocks)
+        return Linearised(residual, reach, levers - (1 - reach), carried, slope, jacobian, stiff)
 
-    def solved(self, at: Linearised, approach: Array, active: Booleans) -> tuple[Array, Array]:
-        """As of ``MovingForces``."""
-        assert at.blocks is not None
-        unit, response = np.zeros_like(at.residual), np.zeros_like(at.residual)
-        turn = self.turn(approach)
-        for index in np.ndindex(*approach.shape):
-            cells, block, roll = (
-                by_position[index[-1]]
-                for by_position in (self.coupling.cells, self.coupling.blocks, self.roll.blocks)
-            )
-            jacobian = block + turn[index] * roll
-            pairs = np.arange(len(cells) // self.cells)
-            by_pair = jacobian.reshape(len(pairs), self.cells, len(pairs), self.cells)
-            by_pair[pairs, :, pairs, :] += at.blocks[index][cells[:: self.cells] // self.cells]
-            jacobian.flat[:: len(cells) + 1] += at.own[index][cells]
-            bears = np.flatnonzero(active[index][cells])
-            chosen = cells[bears]
-            jacobian = jacobian.take(bears, axis=0).take(bears, axis=1)
-            sides = np.stack([at.reach[index][chosen], at.residual[index][chosen]])
-            unit[index][chosen], response[index][chosen] = solve_symmetric(jacobian, sides)
-        return unit, response
-
-    def unloaded(self, loads: Array, approach: Array) -> Array:
-        """As of ``MovingForces``."""
-        bent, rolled = self.bent(loads)
-        turn = self.turn(approach)
-        gaps = bent + self.clear - self.tooth(loads) + turn[..., None] * rolled - approach[..., None]
-        if self.film is not None:
-            gaps = gaps - self.film.approach(np.zeros_like(loads))
+    def unloaded(self, loads: Array, approach: Array, bent: Array) -> Array:
+        """As of ``ContactForces``."""
+        (bends, rolled), turn = bent, self.turn(approach)
+        gaps = bends + self.clear - self.tooth(loads) + turn[..., None] * rolled - approach[..., None]
+        gaps = gaps - self._propped
         if self.own is not None:
             gaps = gaps + self._last(self.own.opened(self._first(approach[..., None] - self.along)))
-        return gaps
+        return np.asarray(gaps)
 
-    def lever_losses(self, loads: Array, slopes: Array, approach: Array) -> tuple[Array, Array]:
+    def lever_losses(self, share: LoadShare, crossing: Array | float = 0.0) -> tuple[Array, Array]:
         """Parts of base radii (2, ..., pairs) by which levers of pairs' forces, and of further ones, are shorter.
+
+        Half of what tilted flanks take from further forces, and what the pinion's corner takes.
 
         Parameters
         ----------
-        loads, slopes : (..., n) arrays
-            Forces [N] and their slopes by D [N/m].
-        approach : (...) array
-            D [m].
+        share : LoadShare
+            Of all contacts (..., n).
+        crossing : (..., n) array or 0.0
+            What loads on the other side of the teeth take.
         """
+        loads, slopes = share.forces, share.pair_stiffness
         pairs, steeper = (self.split(values).sum(axis=-1) for values in (loads, slopes))
         bears = (pairs > 0.0) & (steeper != 0.0)
         size, per_turn = np.where(bears, pairs, 1.0), np.where(bears, steeper, 1.0)
-        _, rolled = self.bent(loads)
+        rolled = self.all_bent(loads)[1] + crossing
         half = np.stack(2 * [0.5 * self.split(rolled * loads).sum(axis=-1)])
         whole = np.stack(2 * [self.split(rolled * slopes).sum(axis=-1)])
         if self.own is not None:
-            for gears, more in zip((slice(2), slice(1)), self._pushed(loads, approach), strict=True):
+            pushes = self._pushed(loads, share.transmission_error)
+            for gears, more in zip((slice(2), slice(1)), pushes, strict=True):
                 half[gears] += self.split(more.push).sum(axis=-1)
                 whole[gears] += self.split(more.less * slopes + more.stiff).sum(axis=-1)
         return np.where(bears, half / size, 0.0), np.where(bears, whole / per_turn, 0.0)

@@ -1,0 +1,170 @@
+"""Flanks of one side of the teeth whose contacts move: what they are solved with, in the plane and on cells."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, record
+from fem.contact.cell_contact import along_cells
+from fem.contact.cell_laws import CellLaws
+from fem.contact.cell_matrix import cell_coupling
+from fem.contact.loaded_flanks import LoadedFlanks, greatest_force
+from fem.contact.moving_contact import ContactMoves, contact_moves, moved_places
+from fem.contact.moving_contacts import MovingContacts
+from fem.contact.moving_corners import MovedFlanks, moved_flanks
+from fem.contact.moving_coupling import cell_roll, other_pairs, tooth_smoothing
+from fem.contact.partial_cells import PartialCells, partial_cells
+from fem.laws.local_law import PairLaws
+from fem.laws.mesh_setup import MeshSetup
+from gears.sharing.load_coupling import DenseCoupling
+
+if TYPE_CHECKING:
+    from fem.laws.edge_tables import EdgeTables
+    from fem.pair.pair_compliance import PairCompliance
+
+__all__ = ["MovedSide", "moved_side"]
+
+
+@record
+class MovedSide:
+    """Flanks on one side whose contacts move.
+
+    Attributes
+    ----------
+    setup : MeshSetup
+    flanks : LoadedFlanks
+        Of contacts that stay.
+    moves : ContactMoves
+    own : MovedFlanks or None
+        Of the corners.
+    """
+
+    setup: MeshSetup
+    flanks: LoadedFlanks
+    moves: ContactMoves
+    own: MovedFlanks | None
+
+    @property
+    def lever_ratios(self) -> Array:
+        """Kappa of the forces that are solved for (positions, pairs): 1 where corners move."""
+        ratios = self.flanks.lever_ratios
+        return np.ones_like(ratios) if self.own is not None and self.own.surfaces else ratios
+
+    @property
+    def tilted_lever_ratios(self) -> Array:
+        """Of the tilted forces about the pinion's axis, over kappa r_b1 (positions, pairs)."""
+        return np.asarray(self.flanks.tilted_lever_ratios * self.flanks.lever_ratios / self.lever_ratios)
+
+    @property
+    def matrix(self) -> Array:
+        """Compliance that does not depend on D (positions, pairs, pairs) [m/N]."""
+        return self.flanks.matrix if self.own is None else self.own.matrix
+
+    @property
+    def laws(self) -> PairLaws:
+        """Laws of each contact that do not depend on D."""
+        return self.flanks.laws if self.own is None else self.own.laws
+
+    @property
+    def gaps(self) -> Array:
+        """Beyond the first touch (pitches, positions, pairs), without those of corners that move [m]."""
+        gap = self.flanks.candidates.gap
+        return gap - gap.min(axis=-1, keepdims=True) if self.own is None else self.own.gaps
+
+    @property
+    def held_levers(self) -> Array:
+        """Levers over kappa r_b1 (positions, pairs) at D = 0, where what corners add by D is not counted yet."""
+        return self.flanks.tilted_lever_ratios if self.own is None else self.own.tilted_lever_ratios
+
+    def in_plane(self) -> MovingContacts:
+        """Put the contacts together that bear alike over the face: a single cell."""
+        gaps, smoothing = self.gaps, np.ones((*self.lever_ratios.shape, 1, 1))
+        touchable = np.isfinite(gaps)
+        return MovingContacts(
+            1,
+            DenseCoupling(self.matrix),
+            DenseCoupling(self.moves.roll),
+            self.laws,
+            self.flanks.oil,
+            np.where(touchable, gaps, 0.0),
+            np.zeros(self.lever_ratios.shape),
+            0.0,
+            touchable,
+            self.held_levers,
+            self.moves,
+            smoothing,
+            self.own,
+        )
+
+    def on_cells(self, bodies: PairCompliance, rise: Array, strip: float = 0.0) -> MovingContacts:
+        """Put contacts on cells together; cells that touch over a part of their length do as those that stay.
+
+        Parameters
+        ----------
+        bodies : PairCompliance
+        rise : (torques, pitches, positions, pairs, cells) array
+            By how much smallest gaps of cells fall short of their mean [m].
+        strip : float
+            Half-width of strips of pressure over a cell's length.
+        """
+        assert self.setup.face is not None
+        face, flanks, candidates = replace(self.setup.face, strip=strip), self.flanks, self.flanks.candidates
+        gaps, along = self.gaps, along_cells(face, self.setup.pair, candidates)
+        touchable = np.repeat(candidates.touchable & np.isfinite(candidates.gap), face.cells, axis=-1)
+        short = rise.reshape(*rise.shape[:-2], -1)
+        clear = np.where(np.isfinite(gaps), gaps, 0.0)[..., None] + along
+        stiff = cell_coupling(face, bodies, candidates, flanks.lever_ratios, flanks.matrix)
+        stays = partial_cells(CellLaws(flanks.laws, face.cells), stiff, short)
+        turned = flanks.lever_ratios / self.lever_ratios
+        return MovingContacts(
+            face.cells,
+            other_pairs(stiff, candidates.touchable, turned, flanks.matrix, self.matrix),
+            cell_roll(face, bodies, candidates, self.moves),
+            PartialCells(CellLaws(self.laws, face.cells), short, stays.whole),
+            None if flanks.oil is None else CellLaws(flanks.oil, face.cells),
+            np.where(touchable, clear.reshape(*gaps.shape[:-1], -1) - short, 0.0),
+            along.reshape(*along.shape[:-2], -1),
+            face.least_gap(self.setup.pair),
+            touchable,
+            self.held_levers,
+            self.moves,
+            tooth_smoothing(face, bodies, candidates),
+            self.own,
+        )
+
+    def turned_levers(self) -> Array:
+        """By what part of the pinion's base radius levers about the wheel's axis are longer (positions, pairs)."""
+        if self.own is None:
+            return np.zeros_like(self.lever_ratios)
+        return np.asarray(self.flanks.candidates.lever[0, : self.setup.positions] / self.lever_ratios - 1.0)
+
+    def rho(self, force: Array, approach: Array) -> Array:
+        """Curvature radii where pinion and wheel are touched (2, pitches, positions, pairs) [m].
+
+        Parameters
+        ----------
+        force : (pitches, positions, pairs) array
+            [N]
+        approach : (pitches, positions) array
+            By how much the pinion has turned [m].
+        """
+        candidates = self.flanks.candidates
+        rho = np.repeat(candidates.rho[:, None], len(force), axis=1)
+        rho = rho + np.where(candidates.edge, 0.0, moved_places(self.moves, force, approach))
+        if self.own is not None:
+            rho = np.where(candidates.edge, self.own.edge_rho(self.flanks, self.setup, approach), rho)
+        ends = [profile.flank_rho for profile in self.setup.pair.teeth_profiles]
+        return np.stack([np.clip(radii, *end) for radii, end in zip(rho, ends, strict=True)])
+
+
+def moved_side(
+    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
+) -> MovedSide:
+    """Flanks of one side with contacts that move; arguments as for ``loaded_flanks``."""
+    own = None
+    if setup.beyond_path:
+        own = moved_flanks(setup, bodies, flanks, greatest_force(bodies, flanks.candidates, force), tables)
+    return MovedSide(setup, flanks, contact_moves(bodies, flanks.candidates, setup.beyond_path), own)
