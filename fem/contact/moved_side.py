@@ -136,7 +136,7 @@ class MovedSide:
         )
 
     def turned_levers(self) -> Array:
-        """By what part of the pinion's base radius levers about the wheel's axis are longer (positions, pairs)."""
+        """Part of the pinion's base radius by which levers about the wheel's axis are longer (positions, pairs)."""
         if self.own is None:
             return np.zeros_like(self.lever_ratios)
         return np.asarray(self.flanks.candidates.lever[0, : self.setup.positions] / self.lever_ratios - 1.0)

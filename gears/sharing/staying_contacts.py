@@ -1,4 +1,4 @@
-"""Contacts that stay where undeformed flanks touch: forces coupled by a compliance, with laws of their own."""
+"""Contacts that stay where undeformed flanks touch: forces coupled by a compliance, and a law for each."""
 
 from __future__ import annotations
 

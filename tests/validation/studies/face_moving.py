@@ -16,7 +16,7 @@ import numpy as np
 
 import fem
 from base import Array
-from fem.contact import moving_cells, moving_face
+from fem.contact import moved_side
 from fem.contact.face_errors import face_load_factors
 from fem.contact.solver import ContactState, solve_contact
 from fem.laws.edge_tables import EdgeTables
@@ -73,20 +73,20 @@ def rows(name: str, bodies: fem.PairCompliance, position: float, torque: float, 
     """Print a line."""
     stays, moves = (figures(solved(bodies, position, torque, face, moving)) for moving in (False, True))
     change = [100 * (b / a - 1) for a, b in zip(stays, moves, strict=True)]
-    others, smoothing = [], moving_face.tooth_smoothing
+    others, smoothing = [], moved_side.tooth_smoothing
     for how in (np.eye, lambda n: np.full((n, n), 1 / n)):
-        moving_face.tooth_smoothing = following(how)
+        moved_side.tooth_smoothing = following(how)
         others.append(100 * (deflection(solved(bodies, position, torque, face, True)) / stays[0] - 1))
-    moving_face.tooth_smoothing = smoothing
-    cells = moving_face.moving_cells
+    moved_side.tooth_smoothing = smoothing
+    on_cells = moved_side.MovedSide.on_cells
 
-    def together(*args: object) -> moving_cells.MovingCells:
-        found = cells(*args)
-        return replace(found, along=np.zeros_like(found.along))
+    def together(*args: object) -> MovingContacts:
+        contacts = on_cells(*args)
+        return replace(contacts, along=np.zeros_like(contacts.along))
 
-    moving_face.moving_cells = together
+    moved_side.MovedSide.on_cells = together
     others.append(100 * (deflection(solved(bodies, position, torque, face, True)) / stays[0] - 1))
-    moving_face.moving_cells = cells
+    moved_side.MovedSide.on_cells = on_cells
     print(
         f"{name:42s} D {stays[0]:8.3f} {change[0]:+.3f} %  tangent {stays[1]:8.2f} {change[1]:+.3f} %  "
         f"K {stays[2]:.4f} {moves[2]:.4f}  slices, mean, corners together {others[0]:+.3f} {others[1]:+.3f} "
