@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -10,21 +11,21 @@ import numpy as np
 
 from base import Array, Integers, record
 from fem.contact.cell_laws import CellLaws, between_middles
-from fem.contact.cell_matrix import cell_coupling
+from fem.contact.cell_matrix import cell_coupling, cross_coupling
+from fem.contact.contact_sides import ContactSides
 from fem.contact.partial_cells import WITHIN, gap_drops, partial_cells
 from fem.elasticity.flamant import hertz_half_width
-from fem.laws.local_law import FilmLaw, PairLaws
 from fem.pair.face_shafts import HeldShafts, shafts_under_face
 from fem.pair.wide_contact import shared_by_width
+from gears.sharing.active_set import share_forces
+from gears.sharing.staying_contacts import DeflectionLaw, JointLaw, StayingContacts
 
 if TYPE_CHECKING:
     from fem.contact.cell_coupling import CellCoupling
     from fem.laws.contact_candidates import ContactCandidates
-    from fem.laws.mesh_setup import MeshSetup
     from fem.pair.face_setting import FaceSetting
     from fem.pair.pair_compliance import PairCompliance
     from gears import GearPair, LoadShare
-    from gears.sharing.staying_contacts import DeflectionLaw
 
 __all__ = ["CellContact", "CellShare", "along_cells"]
 
@@ -63,18 +64,42 @@ class CellShare:
 
 @record
 class CellContact:
-    """What is shared over the face of whole pairs, arguments as of ``gears.share_load``."""
+    """What is shared over the face of whole pairs.
 
-    setup: MeshSetup
+    Attributes
+    ----------
+    bodies : PairCompliance
+    whole : (torques, 1, 1) array
+        Torques over the base radius [N].
+    sides : ContactSides
+        Contacts of whole pairs, on one side of the teeth or both.
+    """
+
     bodies: PairCompliance
     whole: Array
-    candidates: ContactCandidates
-    lever_ratios: Array
-    matrix: Array
-    laws: PairLaws
-    gaps: Array
-    oil: FilmLaw | None
-    tilted_lever_ratios: Array | None
+    sides: ContactSides
+
+    @property
+    def pair(self) -> GearPair:
+        """Gears in mesh."""
+        return self.sides.setups[0].pair
+
+    def faces(self, face: FaceSetting) -> tuple[FaceSetting, ...]:
+        """A face of the loaded side as either side has it."""
+        return (face, face.opposite(self.pair.working_pressure_angle))[: len(self.sides.flanks)]
+
+    def coupling(self, face: FaceSetting) -> CellCoupling:
+        """Compliance of the bodies between cells of all pairs."""
+        parts = [
+            cell_coupling(face, self.bodies, side.candidates, side.lever_ratios, side.matrix)
+            for side in self.sides.flanks
+        ]
+        if len(parts) == 1:
+            return parts[0]
+        cross = self.sides.matrix[:, : self.sides.count, self.sides.count :]
+        return parts[0].beside(
+            parts[1], cross_coupling(face, self.bodies, self.sides.setups[0].back, self.sides.flanks, cross)
+        )
 
     def shared(
         self, face: FaceSetting, near: Array, rise: Array | None = None, *, held: bool = True
@@ -84,6 +109,7 @@ class CellContact:
         Parameters
         ----------
         face : FaceSetting
+            Of the loaded side.
         near : (torques, ..., pairs, parts) array
             Forces to begin with, on some parts of it [N].
         rise : (torques, ..., pairs, cells) array, optional
@@ -92,57 +118,40 @@ class CellContact:
         held : bool
             Whether the share is measured from the first touch on shafts that are held; else it counts the shafts.
         """
-        from gears.sharing.load_sharing import share_load
-
-        cells, unit = face.cells, self.setup.pair.face_width / face.cells
-        apart, film = self._apart(face), None if self.oil is None else CellLaws(self.oil, cells)
-        cell_lever_ratios = (
-            None if self.tilted_lever_ratios is None else np.repeat(self.tilted_lever_ratios, cells, axis=-1)
-        )
-        start, laws = (
-            _flat(between_middles(near, cells) * (near.shape[-1] / cells)),
-            CellLaws(self.laws, cells),
-        )
-
-        shafts = shafts_under_face(face, self.setup.pair)
+        cells, unit = face.cells, self.pair.face_width / face.cells
+        apart, oil = self._apart(face), self.sides.oil
+        film = None if oil is None else CellLaws(oil, cells)
+        sign, levers = np.repeat(self.sides.sign, cells), self._levers(cells)
+        start = _flat(between_middles(near, cells) * (near.shape[-1] / cells))
+        laws, shafts = CellLaws(self.sides.laws, cells), shafts_under_face(face, self.pair)
 
         @lru_cache(maxsize=1)  # large ones are kept nowhere else
         def coupling(strip: float) -> tuple[CellCoupling, CellCoupling]:
             """Of the bodies, and with the shafts."""
-            own = cell_coupling(
-                replace(face, strip=strip), self.bodies, self.candidates, self.lever_ratios, self.matrix
-            )
-            return own, own if shafts is None else own.plus(shafts.compliance, self.lever_ratios)
+            own = self.coupling(replace(face, strip=strip))
+            return own, own if shafts is None else own.plus(shafts.compliance, self.sides.lever_ratios)
 
         @lru_cache(maxsize=1)
-        def law(strip: float, torques: tuple[int, ...]) -> DeflectionLaw:
+        def law(strip: float, torques: tuple[int, ...]) -> JointLaw:
             return (
                 laws if rise is None else partial_cells(laws, coupling(strip)[0], _flat(rise)[list(torques)])
             )
 
         def share(strip: float, torques: Integers) -> LoadShare:
             alone, stiff = coupling(strip)
-            own, first = (
-                law(strip, tuple(torques.tolist())),
-                apart if rise is None else apart - _flat(rise)[torques],
-            )
-            least = first.min(axis=-1)
-            load_share = share_load(
-                self.whole[torques],
-                stiff,
-                own,
-                first - least[..., None],
-                film,
-                cell_lever_ratios,
-                start[torques],
-            )
+            own = law(strip, tuple(torques.tolist()))
+            first = apart if rise is None else apart - _flat(rise)[torques]
+            # the turn is counted from the first touch, so that small ones keep their digits beside gaps
+            least = first[..., sign > 0.0].min(axis=-1)
+            contacts = StayingContacts(stiff, own, film, first - sign * least[..., None], levers, sign)
+            load_share = _settled(contacts, self.whole[torques], start[torques])
             load_share = replace(load_share, transmission_error=load_share.transmission_error + least)
             return _unique(load_share, alone, own, film)
 
         def widest(load_share: LoadShare) -> Array:
             return self._half_widths(_by_cells(load_share.forces, cells).max(axis=-1) / unit)
 
-        mean = self._half_widths(near.sum(axis=-1) / self.setup.pair.face_width)
+        mean = self._half_widths(near.sum(axis=-1) / self.pair.face_width)
         load_share, strips = shared_by_width(share, widest, unit, mean)
         bends = np.zeros_like(load_share.forces)
         slopes = np.zeros_like(bends), np.zeros_like(bends)
@@ -155,22 +164,18 @@ class CellContact:
             if held and shafts is not None:
                 slope = law(strip, tuple(torques.tolist())).slope(forces)
                 slope = slope if film is None else slope - film.slope(forces)
-                by_tilt = nothing + shafts.levers(self.lever_ratios)
+                by_tilt = nothing + shafts.levers(self.sides.lever_ratios)
                 slopes[0][torques], slopes[1][torques] = alone.solved(
                     slope, np.ones_like(forces), by_tilt, forces > 0.0, wanted
                 )
-        remaining_gaps = bends + apart - load_share.transmission_error[..., None]
+        remaining_gaps = bends + apart - sign * load_share.transmission_error[..., None]
         if film is not None:
             remaining_gaps = remaining_gaps - film.approach(np.zeros_like(load_share.forces))
         bends, remaining_gaps = _by_cells(bends, cells), _by_cells(remaining_gaps, cells)
         reached = None
         if held and shafts is not None:
             load_share, reached = shafts.held(
-                load_share,
-                self.lever_ratios,
-                self.gaps,
-                slopes,
-                1.0 if cell_lever_ratios is None else cell_lever_ratios,
+                load_share, self.sides.lever_ratios, self.sides.gaps, slopes, levers
             )
         return CellShare(
             load_share,
@@ -186,53 +191,81 @@ class CellContact:
 
         By a solution with as many cells, or fewer.
         """
-        return gap_drops(face.gaps_within(self.setup.pair, self._radius, WITHIN), coarse.bends)
+        return gap_drops(self._over_sides(face, _gaps_within), coarse.bends)
+
+    def open(self, face: FaceSetting, forces: Array, approach: Array) -> Array:
+        """Gaps that forces leave, each the smallest of its cell (torques, ..., pairs, cells) [m].
+
+        Parameters
+        ----------
+        face : FaceSetting
+            Of the loaded side.
+        forces : (torques, pitches, positions, pairs, cells) array
+            [N]
+        approach : (torques, pitches, positions) array
+            D [m].
+        """
+        loads, sign = _flat(forces), np.repeat(self.sides.sign, face.cells)
+        wanted = np.ones(loads.shape[:-1], dtype=bool)
+        bends = self.coupling(face).applied(loads, wanted, np.zeros_like(loads))
+        gaps, oil = bends + self._apart(face) - sign * approach[..., None], self.sides.oil
+        if oil is not None:
+            gaps = gaps - CellLaws(oil, face.cells).approach(np.zeros_like(loads))
+        drops = gap_drops(self._over_sides(face, _gaps_within), _by_cells(bends, face.cells))
+        return np.asarray(_by_cells(gaps, face.cells) - drops)
+
+    def _levers(self, cells: int) -> Array:
+        """Levers of the cells' forces (positions, pairs cells)."""
+        tilted = self.sides.tilted_lever_ratios
+        return np.repeat(np.ones_like(self.sides.lever_ratios) if tilted is None else tilted, cells, axis=-1)
 
     def _apart(self, face: FaceSetting) -> Array:
         """Gaps without load, beyond where the first place of the face touches (pitches, positions, pairs cells) [m]."""
-        apart = self.gaps[..., None] + along_cells(face, self.setup.pair, self.candidates)
-        return _flat(np.where(self.candidates.touchable[..., None], apart, np.inf))
+        apart = self.sides.gaps[..., None] + self._over_sides(face, along_cells)
+        return _flat(np.where(self.sides.touchable[..., None], apart, np.inf))
 
-    @property
-    def _radius(self) -> Array:
-        return _radius(self.candidates)
+    def _over_sides(
+        self, face: FaceSetting, along: Callable[[FaceSetting, GearPair, ContactCandidates], Array]
+    ) -> Array:
+        """What gaps along the face are, of all pairs (positions, pairs, places)."""
+        sides = zip(self.faces(face), self.sides.flanks, strict=True)
+        return np.concatenate([along(each, self.pair, side.candidates) for each, side in sides], axis=1)
 
     def _half_widths(self, line_load: Array) -> Array:
         """Largest half-widths of contacts of two flanks (torques,) [m] by line loads (torques, ..., pairs)."""
-        flanks, modulus = (
-            self.candidates.touchable & ~self.candidates.edge,
-            self.bodies.pinion.law.plane_modulus,
-        )
+        flanks, modulus = self.sides.on_flank, self.bodies.pinion.law.plane_modulus
         other = self.bodies.wheel.law.plane_modulus
-        load = np.where(flanks, line_load / self.lever_ratios, 0.0)
-        radius = np.where(flanks, self._radius, 1.0)
+        load = np.where(flanks, line_load / self.sides.lever_ratios, 0.0)
+        radius = np.where(flanks, self.sides.radius, 1.0)
         wide = hertz_half_width(load, radius, 2.0 / (1.0 / modulus + 1.0 / other))
         return np.asarray(wide.max(axis=(1, 2, 3)))
 
     def at(self, torque: int, pitch: int, position: int) -> CellContact:
         """The same at a single torque and position."""
-        row, candidates = slice(position, position + 1), self.candidates
-        return replace(
-            self,
-            whole=self.whole[torque : torque + 1],
-            candidates=replace(
-                candidates,
-                rho=candidates.rho[:, row],
-                touchable=candidates.touchable[row],
-                edge=candidates.edge[row],
-            ),
-            lever_ratios=self.lever_ratios[row],
-            matrix=self.matrix[row],
-            laws=self.laws.at(position),
-            gaps=self.gaps[pitch : pitch + 1, row],
-            oil=None if self.oil is None else FilmLaw(self.oil.film, self.oil.rho1[row]),
-            tilted_lever_ratios=None if self.tilted_lever_ratios is None else self.tilted_lever_ratios[row],
-        )
+        whole = np.broadcast_to(self.whole, (len(self.whole), *self.sides.gaps.shape[:-1]))
+        single = whole[torque, pitch, position].reshape(1, 1, 1)
+        return replace(self, whole=single, sides=self.sides.at(pitch, position))
+
+
+def _settled(contacts: StayingContacts, whole: Array, start: Array) -> LoadShare:
+    """Share of cells, from forces to begin with."""
+    from gears.tooth.errors import LoadSharingError
+
+    share = share_forces(contacts, whole + np.zeros(start.shape[:-1]), start, None)
+    if share is None:
+        allowed = "must have deflections that grow with the force"
+        raise LoadSharingError.at("cells", "no solution", allowed, "give fewer cells, or more torque")
+    return share
 
 
 def along_cells(face: FaceSetting, pair: GearPair, candidates: ContactCandidates) -> Array:
     """Gaps of cells beyond where the first place of the face touches (positions, pairs, cells) [m]."""
     return np.maximum(face.gaps(pair, _radius(candidates)) - face.least_gap(pair), 0.0)
+
+
+def _gaps_within(face: FaceSetting, pair: GearPair, candidates: ContactCandidates) -> Array:
+    """Gaps at equal distances along the face (positions, pairs, places) [m]."""
+    return face.gaps_within(pair, _radius(candidates), WITHIN)
 
 
 def _radius(candidates: ContactCandidates) -> Array:

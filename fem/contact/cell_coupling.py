@@ -107,6 +107,18 @@ class CellCoupling(Coupling):
             blocks.append(coupled.reshape(k * n, k * n))
         return CellCoupling(self.cells, tuple(blocks), self.unknowns)
 
+    def beside(self, other: CellCoupling, cross: tuple[Array, ...]) -> CellCoupling:
+        """Of these cells and others after them, coupled by blocks between those that may touch (m, others) [m/N]."""
+        chosen = (
+            np.concatenate([first, second + self.unknowns])
+            for first, second in zip(self.cells, other.cells, strict=True)
+        )
+        blocks = (
+            np.block([[first, between], [between.T, second]])
+            for first, between, second in zip(self.blocks, cross, other.blocks, strict=True)
+        )
+        return CellCoupling(tuple(chosen), tuple(blocks), self.unknowns + other.unknowns)
+
     def definite(self, slope: Array, active: Booleans, wanted: Booleans) -> bool:
         """Whether cells that bear yield to every change of their forces, with slopes of their laws (..., n) [m/N].
 

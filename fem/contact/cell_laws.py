@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from base import Array, record
-from fem.laws.local_law import FilmLaw, PairLaws
+from gears.sharing.staying_contacts import JointLaw
 
 __all__ = ["CellLaws", "between_middles"]
 
@@ -14,7 +14,7 @@ __all__ = ["CellLaws", "between_middles"]
 class CellLaws:
     """Laws of pairs, asked for the cells of their faces: (..., positions, pairs cells)."""
 
-    whole: PairLaws | FilmLaw
+    whole: JointLaw
     cells: int
 
     def approach(self, force: Array) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,10 +16,11 @@ from fem.pair.face_setting import FREE_ENDS, SLICES, FaceSetting
 from fem.pair.unequal_widths import cosines, overhang, overhang_across
 
 if TYPE_CHECKING:
+    from fem.contact.loaded_flanks import LoadedFlanks
     from fem.laws.contact_candidates import ContactCandidates
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["cell_coupling", "cell_matrix", "cross_matrix", "in_blocks"]
+__all__ = ["cell_coupling", "cell_matrix", "cross_coupling", "cross_matrix", "in_blocks"]
 
 MOST_KEPT = 8_000_000
 """Numbers of a compliance up to which it is kept."""
@@ -46,12 +47,69 @@ def cell_coupling(
 
     if size > MOST_KEPT:
         return cut()
-    laws = (bodies.pinion.law.plane_modulus, bodies.wheel.law.plane_modulus)
     arrays = (candidates.rho, candidates.touchable, lever_ratios, matrix)
-    pair = bodies.pair
-    size_of = (pair.module, pair.face_width, pair.face_widths, pair.face_offsets, bodies.reach)
-    key = (bodies.meshed, laws, size_of, face.coupled, *(array.tobytes() for array in arrays))
+    key = (*_kept_by(bodies), face.coupled, *(array.tobytes() for array in arrays))
     return GearStore().over_face("cells", key, cut)
+
+
+def cross_coupling(
+    face: FaceSetting, bodies: PairCompliance, back: bool, flanks: Sequence[LoadedFlanks], matrix: Array
+) -> tuple[Array, ...]:
+    """Compliance between cells that may touch on the loaded side and on the other, of each position [m/N].
+
+    Parameters
+    ----------
+    face : FaceSetting
+    bodies : PairCompliance
+    back : bool
+        Whether back flanks are the loaded ones.
+    flanks : (LoadedFlanks, LoadedFlanks)
+        Of both sides, the loaded one first.
+    matrix : (positions, pairs, others) array
+        The plane's (``fem.contact.contact_sides.between``) [m/N].
+    """
+    loaded, other = flanks
+    front, rear = (other, loaded) if back else (loaded, other)
+    plane = np.swapaxes(matrix, 1, 2) if back else matrix
+    cells, own = face.cells, np.arange(face.cells)
+
+    def cut() -> tuple[Array, ...]:
+        blocks: list[Array] = []
+        step = max(1, MOST_AT_ONCE // (plane[0].size * cells**2))
+        for first in range(0, len(plane), step):
+            of = slice(first, first + step)
+            levers = front.lever_ratios[of], rear.lever_ratios[of]
+            sides = front.candidates.at(of), rear.candidates.at(of)
+            between = cross_matrix(face, bodies, *sides, levers, plane[of])
+            rows, columns = (
+                [(np.flatnonzero(row)[:, None] * cells + own).ravel() for row in side.touchable]
+                for side in sides
+            )
+            chosen = zip(between, rows, columns, strict=True)
+            blocks += (each.take(row, axis=0).take(column, axis=1) for each, row, column in chosen)
+        return tuple(block.T for block in blocks) if back else tuple(blocks)
+
+    touching = [side.candidates.touchable.sum(axis=-1) * cells for side in (front, rear)]
+    if np.sum(touching[0] * touching[1]) > MOST_KEPT:
+        return cut()
+    arrays = (
+        array
+        for side in (front, rear)
+        for array in (side.candidates.rho, side.candidates.touchable, side.lever_ratios)
+    )
+    key = (*_kept_by(bodies), back, face.coupled, *(array.tobytes() for array in (plane, *arrays)))
+    return GearStore().over_face("cells across", key, cut)
+
+
+def _kept_by(bodies: PairCompliance) -> tuple[Any, ...]:
+    """What decides how a pair couples cells, but for their places."""
+    laws = (bodies.pinion.law.plane_modulus, bodies.wheel.law.plane_modulus)
+    pair = bodies.pair
+    return (
+        bodies.meshed,
+        laws,
+        (pair.module, pair.face_width, pair.face_widths, pair.face_offsets, bodies.reach),
+    )
 
 
 def in_blocks(matrices: Callable[[slice], Array], touchable: Booleans, cells: int) -> CellCoupling:

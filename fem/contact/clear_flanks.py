@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Booleans
+from fem.contact.contact_sides import between
 from fem.contact.loaded_flanks import FlanksInPlace, flanks_in_place
-from fem.contact.opposite_flanks import OppositeShare, between
+from fem.contact.opposite_flanks import OppositeShare
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
 
@@ -38,6 +39,7 @@ def stays_clear(
     film: Film | None,
     flanks: FlanksInPlace,
     alone: LoadShare,
+    cells: Array | None,
     apart: Booleans,
     reach: float,
 ) -> OppositeShare | None:
@@ -47,8 +49,8 @@ def stays_clear(
     ----------
     setup, bodies, force, film, flanks, apart, reach
         As for ``share_with_opposite``.
-    alone : LoadShare
-        Solution without the other side.
+    alone, cells : LoadShare, (torques, pitches, positions, pairs, cells) array or None
+        Solution without the other side, and forces on its cells [N].
     """
     other = flanks_in_place(setup.opposite, film, reach)
     touch = flanks.candidates.gap.min(axis=-1, keepdims=True)
@@ -61,6 +63,10 @@ def stays_clear(
     if setup.moving_contact:  # both sides roll on, by D and by D + j
         turn = alone.transmission_error + max(setup.pair.backlash, 0.0)
         doubt += (ROLLED / setup.pair.module * turn)[..., None]
+    if cells is not None:  # under the heaviest cell no more than under its line load on the whole face
+        heaviest = cells.shape[-1] * cells.max(axis=-1)
+        sizes = (np.abs(matrix) @ heaviest[..., None])[..., 0]
+        moved = -sizes
     clearance = behind + alone.transmission_error[..., None] + moved - doubt * sizes
     if not np.all((clearance > 0.0) | apart[:, None, None, None]):
         return None
@@ -75,7 +81,6 @@ def stays_clear(
         nothing,
         clearance,
         np.zeros(touch.shape[:-1]),
-        setup.face is not None,
         (closing - setup.pair.backlash).max(axis=(1, 2)),
     )
 

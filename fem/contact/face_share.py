@@ -21,12 +21,11 @@ import numpy as np
 from base import Array, record
 from fem.contact.cell_contact import CellContact
 from fem.contact.face_errors import CellErrors, cell_errors, half_as_many
-from fem.laws.local_law import Film, FilmLaw, PairLaws, film_yielding
+from fem.laws.local_law import Film, film_yielding
 from fem.pair.face_shafts import HeldShafts
 
 if TYPE_CHECKING:
-    from fem.laws.contact_candidates import ContactCandidates
-    from fem.laws.mesh_setup import MeshSetup
+    from fem.contact.contact_sides import ContactSides
     from fem.pair.pair_compliance import PairCompliance
     from gears import LoadShare
 
@@ -51,8 +50,6 @@ class FaceShare:
         As of ``fem.contact.cell_contact.CellShare``.
     least : float
         Turn at which the first place of the face touches, from where straight, aligned gears do [m].
-    lost : two (2, torques, pitches, positions, pairs) arrays or None
-        Parts of both base radii by which levers of forces, and of further ones, are shorter where contacts move.
     """
 
     forces: Array
@@ -62,7 +59,12 @@ class FaceShare:
     strips: Array
     rise: Array
     least: float
-    lost: tuple[Array, Array] | None = None
+
+    def of_pairs(self, pairs: slice) -> FaceShare:
+        """The same of some of the pairs."""
+        parts = (array[..., pairs, :] for array in (self.forces, self.remaining_gaps, self.rise))
+        forces, remaining_gaps, rise = parts
+        return replace(self, forces=forces, remaining_gaps=remaining_gaps, rise=rise)
 
     @property
     def open(self) -> Array:
@@ -84,19 +86,16 @@ class FaceShare:
         return self.least + self.bent(number)
 
 
-def share_over_face(
-    setup: MeshSetup,
-    bodies: PairCompliance,
-    whole: Array,
-    candidates: ContactCandidates,
-    lever_ratios: Array,
-    matrix: Array,
-    laws: PairLaws,
-    gaps: Array,
-    oil: FilmLaw | None,
-    tilted_lever_ratios: Array | None,
-) -> tuple[LoadShare, FaceShare]:
-    """Share forces over pairs and cells, arguments as of ``gears.share_load`` for whole faces.
+def share_over_face(bodies: PairCompliance, whole: Array, sides: ContactSides) -> tuple[LoadShare, FaceShare]:
+    """Share forces over pairs and cells.
+
+    Parameters
+    ----------
+    bodies : PairCompliance
+    whole : (torques, 1, 1) array
+        Torques over the base radius [N].
+    sides : ContactSides
+        Contacts of whole pairs, on one side of the teeth or both.
 
     Returns
     -------
@@ -105,25 +104,17 @@ def share_over_face(
     FaceShare
         Of their cells.
     """
-    from gears.sharing.load_sharing import share_load
-
+    setup = sides.setups[0]
     assert setup.face is not None
-    over = CellContact(
-        setup, bodies, whole, candidates, lever_ratios, matrix, laws, gaps, oil, tilted_lever_ratios
-    )
-    plane = share_load(whole, matrix, laws, gaps, oil, tilted_lever_ratios)
+    over = CellContact(bodies, whole, sides)
     few, _ = half_as_many(setup.face)
-    coarse = over.shared(few, plane.forces[..., None], held=False)
+    coarse = over.shared(few, sides.share(whole).forces[..., None], held=False)
     coarse = over.shared(few, coarse.forces, over.gap_drops(few, coarse))
     fine = over.shared(setup.face, coarse.forces, over.gap_drops(setup.face, coarse))
     errors = cell_errors(over, setup.face, fine, coarse)
-    share, remaining_gaps = (
-        of_pairs(fine.share, setup.face.cells),
-        settled_gaps(fine.remaining_gaps, fine.forces),
-    )
-    return share, FaceShare(
+    return of_pairs(fine.share, setup.face.cells), FaceShare(
         fine.forces,
-        remaining_gaps,
+        settled_gaps(fine.remaining_gaps, fine.forces),
         errors,
         fine.shafts,
         fine.strips,

@@ -62,6 +62,19 @@ class LoadedFlanks(FlanksInPlace):
     laws: PairLaws
     largest: Array
 
+    def at(self, position: int) -> LoadedFlanks:
+        """Flanks of a single position, but for their gaps."""
+        row = slice(position, position + 1)
+        return LoadedFlanks(
+            self.candidates.at(row),
+            self.lever_ratios[row],
+            None if self.oil is None else self.oil.at(position),
+            self.tilted_lever_ratios[row],
+            self.matrix[row],
+            self.laws.at(position),
+            self.largest,
+        )
+
 
 def flanks_in_place(setup: MeshSetup, film: Film | None, reach: float) -> FlanksInPlace:
     """Place the flanks that bear in a setting; arguments as of ``loaded_flanks``."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -13,12 +13,34 @@ from fem.contact.face_share import FaceShare, of_pairs, settled_gaps
 from fem.contact.moved_side import MovedSide
 from fem.contact.moving_contacts import MovingContacts
 from fem.pair.face_shafts import HeldShafts, joined, shafts_under_face
-from gears.sharing.active_set import LoadShare, share_forces
+from gears.sharing.active_set import ContactForces, LoadShare, share_forces
 
 if TYPE_CHECKING:
+    from fem.laws.mesh_setup import MeshSetup
     from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["MovedShare", "moved_share"]
+
+
+class Rolling(ContactForces, Protocol):
+    """Contacts that move, of pairs or of cells."""
+
+    def all_bent(self, loads: Array) -> Array:
+        """As ``bent``, at all positions."""
+
+    def lever_losses(self, share: LoadShare) -> tuple[Array, Array]:
+        """Parts of base radii (2, ..., pairs) by which levers of pairs' forces, and of further ones, are shorter."""
+
+
+class Moving(Protocol):
+    """Flanks whose contacts move, on one side of the teeth or on both."""
+
+    @property
+    def setup(self) -> MeshSetup:
+        """Of the loaded side."""
+
+    def contacts(self, bodies: PairCompliance, rise: Array | None = None, strip: float = 0.0) -> Rolling:
+        """Put contacts together: pairs in the plane, or their cells."""
 
 
 @record
@@ -44,15 +66,15 @@ class MovedShare:
 
 
 def moved_share(
-    side: MovedSide, bodies: PairCompliance, whole: Array, stays: LoadShare, over: FaceShare | None
+    flanks: Moving, bodies: PairCompliance, whole: Array, stays: LoadShare, over: FaceShare | None
 ) -> MovedShare | None:
     """Solve with contacts that move.
 
     Parameters
     ----------
-    side : MovedSide
+    flanks : MovedSide or MovedSides
     bodies : PairCompliance
-    whole : (torques, 1, 1) array
+    whole : (torques, ...) array
         Torques over the base radius [N].
     stays, over : LoadShare, FaceShare or None
         Of contacts that stay, and of their cells: what is begun with, and whose errors are taken over.
@@ -62,86 +84,105 @@ def moved_share(
     MovedShare or None
         None where Newton's method does not settle: the deflection is far beyond the first order.
     """
+    whole = whole + np.zeros_like(stays.stiffness)
     if over is not None:
-        return _over_face(side, bodies, whole, over)
-    contacts = side.in_plane()
-    share = share_forces(
-        contacts, whole + np.zeros_like(stays.stiffness), stays.forces, stays.transmission_error
-    )
+        return _over_face(flanks, bodies, whole, stays, over)
+    contacts = flanks.contacts(bodies)
+    share = share_forces(contacts, whole, stays.forces, stays.transmission_error)
     if share is None:
         return None
-    turn, lost = share.transmission_error, contacts.lever_losses(share)
-    open_ = contacts.unloaded(share.forces, turn, contacts.all_bent(share.forces))
-    return MovedShare(replace(share, iterations=share.iterations + stays.iterations), open_, lost)
+    open_ = contacts.unloaded(share.forces, share.transmission_error, contacts.all_bent(share.forces))
+    iterations = share.iterations + stays.iterations
+    return MovedShare(replace(share, iterations=iterations), open_, contacts.lever_losses(share))
 
 
-def _over_face(side: MovedSide, bodies: PairCompliance, whole: Array, stays: FaceShare) -> MovedShare | None:
+def _over_face(
+    flanks: Moving, bodies: PairCompliance, whole: Array, stays: LoadShare, over: FaceShare
+) -> MovedShare | None:
     """Solve on cells, for all torques with strips of one width together."""
-    setup = side.setup
-    assert setup.face is not None
-    forces, remaining_gaps = np.zeros_like(stays.forces), np.zeros_like(stays.forces)
-    lost = tuple(np.zeros((2, *stays.forces.shape[:-1])) for _ in range(2))
+    forces, remaining_gaps = np.zeros_like(over.forces), np.zeros_like(over.forces)
+    lost = tuple(np.zeros((2, *over.forces.shape[:-1])) for _ in range(2))
     order, shares, held = [], [], []
-    for strip in np.unique(stays.strips):
-        torques = np.flatnonzero(stays.strips == strip)
-        rise, near = stays.rise[torques], stays.forces[torques]
-        contacts = side.on_cells(bodies, rise, float(strip))
-        solved = _on_shafts(side, contacts, whole[torques], near)
+    for strip in np.unique(over.strips):
+        torques = np.flatnonzero(over.strips == strip)
+        rise, near, asked = over.rise[torques], over.forces[torques], whole[torques]
+        contacts = flanks.contacts(bodies, rise, float(strip))
+        solved: _Solved | None
+        if isinstance(flanks, MovedSide) and over.shafts is not None:
+            assert isinstance(contacts, MovingContacts)
+            solved = _on_shafts(flanks, contacts, asked, near)
+        else:
+            share = _solved(contacts, asked, near, stays.transmission_error[torques])
+            solved = (
+                None
+                if share is None
+                else _Solved(share, _open(contacts, share), contacts.lever_losses(share))
+            )
         if solved is None:
             return None
-        share, open_, losses, brought = solved
-        forces[torques] = contacts.split(share.forces)
-        remaining_gaps[torques] = settled_gaps(contacts.split(open_) + rise, forces[torques])
-        for lost_part, loss in zip(lost, losses, strict=True):
+        forces[torques] = solved.share.forces.reshape(near.shape)
+        remaining_gaps[torques] = settled_gaps(solved.open.reshape(near.shape) + rise, forces[torques])
+        for lost_part, loss in zip(lost, solved.lost, strict=True):
             lost_part[:, torques] = loss
-        held += [] if brought is None else [brought]
-        shares.append(of_pairs(share, setup.face.cells))
+        held += [] if solved.shafts is None else [solved.shafts]
+        shares.append(of_pairs(solved.share, near.shape[-1]))
         order.append(torques)
     back = np.argsort(np.concatenate(order))
     reached = joined(held, back) if held else None
-    face = replace(stays, forces=forces, remaining_gaps=remaining_gaps, shafts=reached)
+    face = replace(over, forces=forces, remaining_gaps=remaining_gaps, shafts=reached)
     return MovedShare(_in_order(shares, back), face.open, (lost[0], lost[1]), face)
 
 
-def _on_shafts(
-    side: MovedSide, contacts: MovingContacts, whole: Array, near: Array
-) -> tuple[LoadShare, Array, tuple[Array, Array], HeldShafts | None] | None:
-    """Share of cells, gaps that are left, what levers lose, and the shafts that are held where the load brings them."""
+@record
+class _Solved:
+    """Share of cells, gaps that are left, what levers lose, and shafts where the load has brought them."""
+
+    share: LoadShare
+    open: Array
+    lost: tuple[Array, Array]
+    shafts: HeldShafts | None = None
+
+
+def _on_shafts(side: MovedSide, contacts: MovingContacts, whole: Array, near: Array) -> _Solved | None:
+    """Solve on shafts that give way, held where the load brings them."""
     setup, lever_ratios = side.setup, side.lever_ratios
     assert setup.face is not None
-    shafts, yielding = shafts_under_face(setup.face, setup.pair), contacts
-    if shafts is not None:  # corners touch at the approach of the flanks, to which shafts do not contribute
-        bent = (
-            shafts.bent(near, side.flanks.lever_ratios).sum(axis=-2)[..., None, :] / lever_ratios[..., None]
-        )
-        contacts = replace(contacts, along=contacts.along + bent.reshape(*bent.shape[:-2], -1))
-        assert isinstance(contacts.coupling, CellCoupling)
-        yielding = replace(contacts, coupling=contacts.coupling.plus(shafts.compliance, lever_ratios))
-    share = _solved(yielding, whole, near)
+    shafts = shafts_under_face(setup.face, setup.pair)
+    assert shafts is not None
+    # corners touch at the approach of the flanks, to which shafts do not contribute
+    bent = shafts.bent(near, side.flanks.lever_ratios).sum(axis=-2)[..., None, :] / lever_ratios[..., None]
+    contacts = replace(contacts, along=contacts.along + bent.reshape(*bent.shape[:-2], -1))
+    assert isinstance(contacts.coupling, CellCoupling)
+    yielding = replace(contacts, coupling=contacts.coupling.plus(shafts.compliance, lever_ratios))
+    share = _solved(yielding, whole, near, None)
     if share is None:
         return None
     turn = share.transmission_error
-    open_ = yielding.unloaded(share.forces, turn, yielding.all_bent(share.forces))
-    open_ = np.where(contacts.touchable, open_, np.inf)
-    brought = None
-    if shafts is not None:
-        at = contacts.linearised(share.forces, turn, contacts.all_bent(share.forces))
-        by_tilt = np.zeros_like(share.forces) + shafts.levers(lever_ratios)
-        bears, wanted = share.forces > 0.0, np.ones(turn.shape, dtype=bool)
-        slopes = at.jacobian.solved(at.own, at.reach, by_tilt, bears, wanted)
-        gap = side.flanks.candidates.gap
-        gaps = gap - gap.min(axis=-1, keepdims=True)
-        share, brought = shafts.held(share, lever_ratios, gaps, slopes, at.further_lever_ratios)
-        share = replace(share, stiffness=share.stiffness - at.stiff)
-    return share, open_, yielding.lever_losses(replace(share, transmission_error=turn)), brought
+    open_ = _open(yielding, share)
+    at = contacts.linearised(share.forces, turn, contacts.all_bent(share.forces))
+    by_tilt = np.zeros_like(share.forces) + shafts.levers(lever_ratios)
+    bears, wanted = share.forces > 0.0, np.ones(turn.shape, dtype=bool)
+    slopes = at.jacobian.solved(at.own, at.reach, by_tilt, bears, wanted)
+    gap = side.flanks.candidates.gap
+    gaps = gap - gap.min(axis=-1, keepdims=True)
+    share, brought = shafts.held(share, lever_ratios, gaps, slopes, at.further_lever_ratios)
+    share = replace(share, stiffness=share.stiffness - at.stiff)
+    lost = yielding.lever_losses(replace(share, transmission_error=turn))
+    return _Solved(share, open_, lost, brought)
 
 
-def _solved(contacts: MovingContacts, whole: Array, near: Array) -> LoadShare | None:
+def _open(contacts: Rolling, share: LoadShare) -> Array:
+    """Gaps that a share leaves to cells that do not bear (..., n) [m]."""
+    bent = contacts.all_bent(share.forces)
+    gaps = contacts.unloaded(share.forces, share.transmission_error, bent)
+    return np.where(contacts.touchable, gaps, np.inf)
+
+
+def _solved(contacts: Rolling, whole: Array, near: Array, approach: Array | None) -> LoadShare | None:
     """Forces on cells, from those of contacts that stay (torques, ..., pairs, cells), or from as much spread evenly."""
     even = np.repeat(near.mean(axis=-1, keepdims=True), near.shape[-1], axis=-1)
     for start in (near, even):
-        begin = start.reshape(*near.shape[:-2], -1)
-        share = share_forces(contacts, whole + np.zeros(begin.shape[:-1]), begin, None)
+        share = share_forces(contacts, whole, start.reshape(*near.shape[:-2], -1), approach)
         if share is not None:
             return share
     return None

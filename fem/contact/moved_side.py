@@ -79,6 +79,12 @@ class MovedSide:
         """Levers over kappa r_b1 (positions, pairs) at D = 0, where what corners add by D is not counted yet."""
         return self.flanks.tilted_lever_ratios if self.own is None else self.own.tilted_lever_ratios
 
+    def contacts(
+        self, bodies: PairCompliance, rise: Array | None = None, strip: float = 0.0
+    ) -> MovingContacts:
+        """Put the contacts together, in the plane or on cells of the face; arguments as of ``on_cells``."""
+        return self.in_plane() if rise is None else self.on_cells(bodies, rise, strip)
+
     def in_plane(self) -> MovingContacts:
         """Put the contacts together that bear alike over the face: a single cell."""
         gaps, smoothing = self.gaps, np.ones((*self.lever_ratios.shape, 1, 1))

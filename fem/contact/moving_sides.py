@@ -14,26 +14,32 @@ levers are shorter by half of dX/dD G on the loaded side, and longer by half of 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, Booleans, record
+from fem.contact.cell_coupling import CellCoupling
+from fem.contact.cell_matrix import cross_coupling
+from fem.contact.contact_sides import between, both_sides
+from fem.contact.cross_coupling import CellCross, CrossCoupling, PlaneCross
 from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
+from fem.contact.moved_share import MovedShare, moved_share
 from fem.contact.moved_side import MovedSide, moved_side
 from fem.contact.moving_contacts import MovingContacts
-from fem.contact.opposite_flanks import ROUNDING, BothSides, between, both_sides
-from gears.sharing.active_set import Linearised, LoadShare, share_forces
-from gears.sharing.load_coupling import DenseCoupling
+from fem.contact.opposite_flanks import SharedContacts
+from gears.sharing.active_set import Linearised, LoadShare
 
 if TYPE_CHECKING:
+    from fem.contact.face_share import FaceShare
     from fem.laws.edge_tables import EdgeTables
     from fem.laws.local_law import Film
     from fem.laws.mesh_setup import MeshSetup
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["BothMoved", "MovingSides", "both_moved", "moving_sides"]
+__all__ = ["BothMoved", "MovedSides", "MovingSides", "both_moved"]
 
 STEP = 1e-3
 """Part of the module over which X is differentiated by the place."""
@@ -46,22 +52,22 @@ class MovingSides:
     Attributes
     ----------
     front, back : MovingContacts
-        In the plane.
+        On cells of the face, or in the plane.
     play : (pitches, positions) array
         Turn between the first touches of both sides [m].
-    cross : (3, positions, front pairs, back pairs) array
-        X [m/N], and its derivatives by the places of the pinion's loaded and other flanks [1/N].
+    cross : CrossCoupling
+        X, and its derivatives by the places of the pinion's loaded and other flanks.
     """
 
     front: MovingContacts
     back: MovingContacts
     play: Array
-    cross: Array
+    cross: CrossCoupling
 
     @property
     def count(self) -> int:
-        """Pairs on the loaded side."""
-        return int(self.cross.shape[-2])
+        """Contacts on the loaded side."""
+        return int(self.front.touchable.shape[-1])
 
     @property
     def apart(self) -> bool:
@@ -86,60 +92,55 @@ class MovingSides:
         """D' by which the other flanks have rolled on [m]."""
         return np.asarray(-(approach + self.play))
 
-    def _crossing(self, approach: Array) -> Array:
-        """X where the pinion has turned by D."""
-        turn, behind = approach[..., None, None], self.behind(approach)[..., None, None]
-        return np.asarray(self.cross[0] + turn * self.cross[1] + behind * self.cross[2])
-
-    def crossed(self, loads: Array) -> tuple[Array, Array]:
-        """dX/dD G, and dX/dD' F, by which the levers on either side are shorter."""
-        front, back = self.split(loads)
-        turned = self.cross[1] - self.cross[2]
-        return (turned @ back[..., None])[..., 0], -(np.swapaxes(turned, -1, -2) @ front[..., None])[..., 0]
-
-    def _pressed(self, loads: Array, approach: Array) -> Array:
-        """X G and X F (..., front and back pairs) [m]."""
-        (front, back), cross = self.split(loads), self._crossing(approach)
-        sides = (cross @ back[..., None])[..., 0], (np.swapaxes(cross, -1, -2) @ front[..., None])[..., 0]
-        return np.concatenate(sides, axis=-1)
-
     def bent(self, loads: Array, wanted: Booleans, known: Array | None) -> Array:
-        """What each side bends by itself (2, ..., n), as of ``MovingContacts``."""
-        before = (None, None) if known is None else self.split(known)
-        sides = zip((self.front, self.back), self.split(loads), before, strict=True)
-        return np.concatenate([side.bent(force, wanted, row) for side, force, row in sides], axis=-1)
+        """What sides bend by themselves and each other (5, ..., n), as of ``MovingContacts`` and ``CrossCoupling``."""
+        before = np.zeros((5, *loads.shape)) if known is None else known
+        sides = zip((self.front, self.back), self.split(loads), self.split(before[:2]), strict=True)
+        own = np.concatenate([side.bent(force, wanted, row) for side, force, row in sides], axis=-1)
+        return np.concatenate([own, self.cross.applied(*self.split(loads), wanted, before[2:])])
+
+    def all_bent(self, loads: Array) -> Array:
+        """The same at all positions."""
+        return self.bent(loads, np.ones(loads.shape[:-1], dtype=bool), None)
+
+    def _pressed(self, approach: Array, bent: Array) -> Array:
+        """X G and X F (..., front and back contacts) [m] where the pinion has turned by D."""
+        turn, behind = approach[..., None], self.behind(approach)[..., None]
+        return np.asarray(bent[2] + turn * bent[3] + behind * bent[4])
+
+    def crossed(self, bent: Array) -> tuple[Array, Array]:
+        """dX/dD G, and dX/dD' F, by which the levers on either side are shorter."""
+        front, back = self.split(bent[3] - bent[4])
+        return front, -back
 
     def linearised(self, loads: Array, approach: Array, bent: Array) -> Linearised:
         """As of ``ContactForces``."""
-        (front, back), (front_bent, back_bent) = self.split(loads), self.split(bent)
+        (front, back), (front_bent, back_bent) = self.split(loads), self.split(bent[:2])
         here = self.front.linearised(front, approach, front_bent)
         there = self.back.linearised(back, self.behind(approach), back_bent)
-        front_loss, back_loss = self.crossed(loads)
-        assert isinstance(here.jacobian, DenseCoupling)
-        assert isinstance(there.jacobian, DenseCoupling)
+        front_loss, back_loss = self.crossed(bent)
         return Linearised(
-            np.concatenate([here.residual, there.residual], axis=-1) + self._pressed(loads, approach),
+            np.concatenate([here.residual, there.residual], axis=-1) + self._pressed(approach, bent),
             np.concatenate([here.reach - front_loss, back_loss - there.reach], axis=-1),
             np.concatenate(
                 [here.further_lever_ratios - front_loss, back_loss - there.further_lever_ratios], axis=-1
             ),
             here.carried - there.carried - np.sum(front_loss * front, axis=-1),
             np.concatenate([here.own, there.own], axis=-1),
-            here.jacobian.beside(there.jacobian, self._crossing(approach)),
+            self.cross.beside(here.jacobian, there.jacobian, approach, self.behind(approach)),
             here.stiff + there.stiff,
         )
 
     def unloaded(self, loads: Array, approach: Array, bent: Array) -> Array:
         """As of ``ContactForces``."""
-        (front, back), (front_bent, back_bent) = self.split(loads), self.split(bent)
+        (front, back), (front_bent, back_bent) = self.split(loads), self.split(bent[:2])
         here = self.front.unloaded(front, approach, front_bent)
         there = self.back.unloaded(back, self.behind(approach), back_bent)
-        return np.concatenate([here, there], axis=-1) + self._pressed(loads, approach)
+        return np.concatenate([here, there], axis=-1) + self._pressed(approach, bent)
 
     def open(self, share: LoadShare) -> Array:
         """Gaps that a share leaves where nothing bears (..., n) [m]."""
-        bent = self.bent(share.forces, np.ones(share.stiffness.shape, dtype=bool), None)
-        return self.unloaded(share.forces, share.transmission_error, bent)
+        return self.unloaded(share.forces, share.transmission_error, self.all_bent(share.forces))
 
     def of_sides(self, share: LoadShare) -> tuple[LoadShare, LoadShare]:
         """Share of either side, by the turn that closes its gaps."""
@@ -150,92 +151,71 @@ class MovingSides:
             replace(share, forces=loads[1], transmission_error=behind, pair_stiffness=-slopes[1]),
         )
 
-    def lever_losses(self, share: LoadShare) -> tuple[tuple[Array, Array], ...]:
-        """Of either side, as of ``MovingContacts``."""
-        sides = zip((self.front, self.back), self.of_sides(share), self.crossed(share.forces), strict=True)
-        return tuple(contacts.lever_losses(part, crossing) for contacts, part, crossing in sides)
+    def lever_losses(self, share: LoadShare) -> tuple[Array, Array]:
+        """Of the pairs on both sides, as of ``MovingContacts``."""
+        crossing = self.crossed(self.all_bent(share.forces))
+        sides = zip((self.front, self.back), self.of_sides(share), crossing, strict=True)
+        half, whole = zip(*(contacts.lever_losses(part, by) for contacts, part, by in sides), strict=True)
+        return np.concatenate(half, axis=-1), np.concatenate(whole, axis=-1)
 
 
-def moving_sides(bodies: PairCompliance, front: MovedSide, back: MovedSide) -> MovingSides:
-    """Put both sides together, the loaded one first."""
-    setup = front.setup
-    step, turn = STEP * setup.pair.module, np.array([1.0, 0.0])[:, None, None]
-    ratio_products = (front.flanks.lever_ratios / front.lever_ratios)[:, :, None] * (
-        back.flanks.lever_ratios / back.lever_ratios
-    )[:, None, :]
+@record
+class MovedSides:
+    """Flanks on both sides whose contacts move, the loaded one first."""
 
-    def coupling(first: float, second: float) -> Array:
-        here, there = (
-            replace(
-                side.flanks,
-                candidates=replace(side.flanks.candidates, rho=side.flanks.candidates.rho + by * turn),
+    front: MovedSide
+    back: MovedSide
+
+    @property
+    def setup(self) -> MeshSetup:
+        """Of the loaded side."""
+        return self.front.setup
+
+    def contacts(self, bodies: PairCompliance, rise: Array | None = None, strip: float = 0.0) -> MovingSides:
+        """As of ``MovedSide``, with the pairs on the other side after those of the loaded one."""
+        sides, setup = (self.front, self.back), self.setup
+        count = len(self.front.flanks.candidates.offset)
+        step, turn = STEP * setup.pair.module, np.array([1.0, 0.0])[:, None, None]
+        face = None if setup.face is None or rise is None else replace(setup.face, strip=strip)
+
+        def rolled(by: tuple[float, float]) -> tuple[LoadedFlanks, LoadedFlanks]:
+            first, second = (
+                replace(
+                    side.flanks,
+                    lever_ratios=side.lever_ratios,
+                    candidates=replace(side.flanks.candidates, rho=side.flanks.candidates.rho + way * turn),
+                )
+                for side, way in zip(sides, by, strict=True)
             )
-            for side, by in ((front, first), (back, second))
-        )
-        return np.asarray(between(setup, bodies, here, there) * ratio_products)
+            return first, second
 
-    rolls = [
-        (coupling(*ahead) - coupling(*behind)) / (2 * step)
-        for ahead, behind in (((step, 0.0), (-step, 0.0)), ((0.0, step), (0.0, -step)))
-    ]
-    touches = (side.flanks.candidates.gap.min(axis=-1) for side in (front, back))
-    play = setup.pair.backlash + sum(touches)
-    cross = np.stack([coupling(0.0, 0.0), *rolls])
-    return MovingSides(front.in_plane(), back.in_plane(), np.asarray(play), cross)
+        ways = ((0.0, 0.0), (step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step))
+        cross: CrossCoupling
+        if face is None or rise is None:
+            still, *others = (between(setup, bodies, *rolled(by)) for by in ways)
+            contacts = [side.in_plane() for side in sides]
+            cross = PlaneCross(np.stack([still, *_derivatives(others, step)]))
+        else:
+            still_cells, *other_cells = (
+                cross_coupling(face, bodies, setup.back, flanks, between(setup, bodies, *flanks))
+                for flanks in map(rolled, ways)
+            )
+            parts = rise[..., :count, :], rise[..., count:, :]
+            contacts = [side.on_cells(bodies, part, strip) for side, part in zip(sides, parts, strict=True)]
+            by_position = (_derivatives(others, step) for others in zip(*other_cells, strict=True))
+            slopes = zip(*by_position, strict=True)
+            here, there = (each.coupling for each in contacts)
+            assert isinstance(here, CellCoupling)
+            assert isinstance(there, CellCoupling)
+            cross = CellCross((here.cells, there.cells), (still_cells, *slopes))
+        touches = (side.flanks.candidates.gap.min(axis=-1) for side in sides)
+        play = np.asarray(setup.pair.backlash + sum(touches))
+        return MovingSides(contacts[0], contacts[1], play, cross)
 
 
-def _between(
-    problem: MovingSides, stays: BothSides, force: Array, alone: LoadShare | None, apart: Booleans
-) -> LoadShare | None:
-    """Share forces (torques, 1 or pitches, 1 or positions) [N] among both sides.
-
-    Parameters
-    ----------
-    problem : MovingSides
-    stays : BothSides
-        The same contacts that stay: what is begun with where flanks on both sides bear.
-    force : (torques, pitches, positions) array
-        [N]
-    alone : LoadShare or None
-        Of the loaded side by itself, kept where it lets nothing overlap; None without a torque.
-    apart : (torques,) boolean array
-        Torques for which it is kept whatever it lets overlap.
-
-    Returns
-    -------
-    LoadShare or None
-        Of both sides; None where Newton's method does not settle.
-    """
-    clear, near = np.zeros(force.shape, dtype=bool), None
-    if alone is not None:
-        nothing = np.zeros((*force.shape, problem.cross.shape[-1]))
-        near = replace(
-            alone,
-            forces=np.concatenate([alone.forces, nothing], axis=-1),
-            pair_stiffness=np.concatenate([alone.pair_stiffness, nothing], axis=-1),
-        )
-        remaining_gaps = problem.open(near)[..., problem.count :]
-        clear = np.all(remaining_gaps >= -ROUNDING * np.abs(near.transmission_error)[..., None], axis=-1)
-        clear |= apart[:, None, None]
-        if clear.all():
-            return near
-        force = np.where(apart[:, None, None], np.min(force[~apart]), force)
-    begin = stays.share(force)
-    moved = share_forces(problem, force, begin.forces, begin.transmission_error)
-    if moved is None and near is not None:
-        begin_alone = np.where(clear[..., None], begin.forces, near.forces)
-        approach = np.where(clear, begin.transmission_error, near.transmission_error)
-        moved = share_forces(problem, force, begin_alone, approach)
-    if moved is None or near is None:
-        return moved
-    pairs = clear[..., None]
-    return LoadShare(
-        np.where(pairs, near.forces, moved.forces),
-        np.where(clear, near.transmission_error, moved.transmission_error),
-        np.where(clear, near.stiffness, moved.stiffness),
-        np.where(pairs, near.pair_stiffness, moved.pair_stiffness),
-        near.iterations + moved.iterations,
-    )
+def _derivatives(values: Sequence[Array], step: float) -> tuple[Array, Array]:
+    """By both places, from values ahead of and behind either."""
+    return (values[0] - values[1]) / (2 * step), (values[2] - values[3]) / (2 * step)
 
 
 @record
@@ -244,19 +224,19 @@ class BothMoved:
 
     Attributes
     ----------
-    problem : MovingSides
-    front, back : MovedSide
-    share : LoadShare
-        Of both sides, one after the other; of contacts that stay where ``settled`` is False.
+    sides : MovedSides
+    moved : MovedShare
+        Of the pairs on both sides, one after the other; of contacts that stay where ``settled`` is False.
+    behind : (torques, pitches, positions) array
+        D' by which the other flanks have rolled on [m].
     rest : (pitches, positions) array
         D without torque, as of ``fem.contact.opposite_flanks.OppositeShare`` [m].
     settled : bool
     """
 
-    problem: MovingSides
-    front: MovedSide
-    back: MovedSide
-    share: LoadShare
+    sides: MovedSides
+    moved: MovedShare
+    behind: Array
     rest: Array
     settled: bool
 
@@ -267,7 +247,7 @@ def both_moved(
     force: Array,
     film: Film | None,
     flanks: LoadedFlanks,
-    alone: tuple[LoadShare, MovedSide | None] | None,
+    alone: tuple[MovedSide, LoadShare, FaceShare | None] | None,
     apart: Booleans,
     reach: float,
     tables: EdgeTables,
@@ -278,26 +258,61 @@ def both_moved(
     ----------
     setup, bodies, force, film, flanks, apart, reach, tables
         As for ``fem.contact.opposite_flanks.share_with_opposite``.
-    alone : (LoadShare, MovedSide) or None
-        The loaded side by itself, solved; None without a torque.
+    alone : (MovedSide, LoadShare, FaceShare or None) or None
+        The loaded side by itself, solved, and its cells; None without a torque.
     """
-    most, whole = float(np.max(force)), force[:, None, None]
+    most = float(np.max(force))
     other = loaded_flanks(setup.opposite, bodies, film, reach, most, tables)
-    stays = both_sides(setup, bodies, flanks, other)
-    front = None if alone is None else alone[1]
-    front = moved_side(setup, bodies, flanks, most, tables) if front is None else front
-    back = moved_side(setup.opposite, bodies, other, most, tables)
-    problem = moving_sides(bodies, front, back)
-    pressed, rest = stays.pressed(), np.zeros(problem.play.shape)
-    asked = whole + 0.0 * pressed
-    share = _between(problem, stays, asked, None if alone is None else alone[0], apart)
-    if share is None:
-        return BothMoved(problem, front, back, stays.share(asked), rest, False)
-    settled = True
-    if pressed.any():
+    staying = both_sides(setup, bodies, flanks, other)
+    front = moved_side(setup, bodies, flanks, most, tables) if alone is None else alone[0]
+    sides = MovedSides(front, moved_side(setup.opposite, bodies, other, most, tables))
+    asked = np.where(apart, np.min(force, where=~apart, initial=np.inf), force)[:, None, None]
+    asked = asked + np.zeros(staying.gaps.shape[:-1])
+    clear, kept, begin = np.zeros(asked.shape, dtype=bool), None, None
+    if alone is not None:
+        kept = SharedContacts.alone(staying, bodies, alone[1], alone[2], even=False)
+        clear = _clear(sides, bodies, kept) | apart[:, None, None]
+    if kept is not None and clear.all():
+        moved, settled = _unmoved(kept), True
+    else:
+        begin = SharedContacts.jointly(staying, bodies, asked)
+        solved = moved_share(sides, bodies, asked, begin.share, begin.face)
+        if solved is None and kept is not None and kept.face is None:
+            solved = moved_share(sides, bodies, asked, begin.with_kept(kept, ~clear).share, None)
+        settled = solved is not None
+        moved = _unmoved(begin) if solved is None else solved
+        if kept is not None and solved is not None:
+            moved = _with_kept(moved, kept, clear if kept.face is None else clear & apart[:, None, None])
+    rest = np.zeros(staying.gaps.shape[:-1])
+    pressed = staying.pressed()
+    if settled and pressed.any():
         small = np.where(pressed, 0.0, max(float(np.min(force)), 1.0))[None]
-        begin = stays.share(small)
-        free = share_forces(problem, small, begin.forces, begin.transmission_error)
+        light = SharedContacts.jointly(staying, bodies, small)
+        free = moved_share(sides, bodies, small, light.share, light.face)
         settled = free is not None
-        rest = rest if free is None else np.where(pressed, free.transmission_error[0], 0.0)
-    return BothMoved(problem, front, back, share, rest, settled)
+        rest = rest if free is None else np.where(pressed, free.share.transmission_error[0], 0.0)
+    touches = (side.flanks.candidates.gap.min(axis=-1) for side in (sides.front, sides.back))
+    play = setup.pair.backlash + sum(touches)
+    return BothMoved(sides, moved, -(moved.share.transmission_error + play), rest, settled)
+
+
+def _clear(sides: MovedSides, bodies: PairCompliance, kept: SharedContacts) -> Booleans:
+    """Where nothing overlaps on the other side (torques, pitches, positions).
+
+    On cells nowhere unless nothing does at all, by the compliance where nothing has rolled on.
+    """
+    if kept.face is not None:
+        return np.full(kept.clear.shape, bool(kept.clear.all()))
+    return replace(kept, open=sides.contacts(bodies).open(kept.share)).clear
+
+
+def _unmoved(shared: SharedContacts) -> MovedShare:
+    """A share whose levers lose nothing."""
+    nothing = np.zeros((2, *shared.share.forces.shape))
+    return MovedShare(shared.share, shared.open, (nothing, nothing), shared.face)
+
+
+def _with_kept(moved: MovedShare, kept: SharedContacts, clear: Booleans) -> MovedShare:
+    """The same with the loaded side alone where that holds."""
+    mixed = replace(kept, share=moved.share, face=moved.face, open=moved.open).with_kept(kept, clear)
+    return replace(moved, share=mixed.share, face=mixed.face)

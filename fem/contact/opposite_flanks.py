@@ -10,26 +10,27 @@ with B of the mirrored gears and X of loads on one side seen from the other (``f
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, Booleans, Integers, part, quantity, record
-from fem.contact.loaded_flanks import FlanksInPlace, LoadedFlanks, hub_lever, loaded_flanks
+from fem.contact.cell_contact import CellContact
+from fem.contact.contact_sides import ContactSides, both_sides
+from fem.contact.face_share import FaceShare, share_over_face
+from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
 from fem.laws.contact_candidates import ContactCandidates
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
-from gears import LoadShare
+from gears.sharing.active_set import LoadShare
 from gears.tooth.errors import LoadSharingError
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
-    from gears.sharing.staying_contacts import DeflectionLaw
 
-__all__ = ["BothSides", "OppositeFlanks", "OppositeShare", "between", "both_sides", "share_with_opposite"]
+__all__ = ["OppositeFlanks", "OppositeShare", "SharedBySides", "SharedContacts", "share_with_opposite"]
 
 ROUNDING = 1e-12
 """Overlap over the deflection that is none."""
@@ -76,12 +77,14 @@ class OppositeShare:
     rest : (pitches, positions) array
         Transmission error without torque, from where the loaded flanks touch: not 0 where teeth overlap that are
         pressed together [m].
-    cells : bool
-        Whether loads were to vary along the face.
     reached : (torques,) array
         By how much D closes gaps on this side [m].
+    refused : bool
+        Whether flanks on both sides are refused together.
     lost : tuple of int
         Numbers of the torques for which no load sharing was found.
+    face : FaceShare or None
+        Cells of this side.
     """
 
     candidates: ContactCandidates
@@ -92,9 +95,10 @@ class OppositeShare:
     pair_stiffness: Array
     open: Array
     rest: Array
-    cells: bool
     reached: Array
+    refused: bool = False
     lost: tuple[int, ...] = ()
+    face: FaceShare | None = None
 
     @property
     def bears(self) -> bool:
@@ -121,10 +125,10 @@ class OppositeShare:
         candidates, turned = self.candidates, self.forces[number]
         if number in self.lost:
             return "no load sharing with back flanks was found; give more backlash, or reduce the torque"
-        if self.cells and (np.any(turned > 0.0) or np.any(self.open[number] < -NOTHING)):
+        if self.refused and (np.any(turned > 0.0) or np.any(self.open[number] < -NOTHING)):
             return (
-                "flanks on both sides bear, which know no cells of the face; give more backlash, raise the torque, "
-                "or leave leads, alignment and cells out"
+                "flanks on both sides bear, which is not known on shafts that give way; give more backlash, or leave "
+                "the shafts out"
             )
         if candidates.edge.any() and np.any(turned[..., candidates.edge] > self.largest):
             return "a tip edge of a back flank presses over more than the strips cover; give more backlash"
@@ -138,141 +142,25 @@ class OppositeShare:
 
 
 @record
-class _Joined:
-    """Laws of the pairs on either side, one after the other."""
+class SharedBySides:
+    """Forces shared among the flanks on both sides.
 
-    first: DeflectionLaw
-    second: DeflectionLaw
-    count: int
-
-    def approach(self, force: Array) -> Array:
-        """Deflection or separation (..., pairs) [m]."""
-        return self._of(self.first.approach, self.second.approach, force)
-
-    def slope(self, force: Array) -> Array:
-        """Its derivative [m/N]."""
-        return self._of(self.first.slope, self.second.slope, force)
-
-    def _of(self, first: Callable[[Array], Array], second: Callable[[Array], Array], force: Array) -> Array:
-        sides = first(force[..., : self.count]), second(force[..., self.count :])
-        return np.concatenate(sides, axis=-1)
-
-
-def across(
-    bodies: PairCompliance, front: ContactCandidates, back: ContactCandidates, before: bool = False
-) -> Array:
-    """Compliance between contacts of front and back flanks (positions, front pairs, back pairs) [m/N].
-
-    The rotation of each body on its hub is felt by all teeth, by the levers of the forces about its axis, as in the
-    compliance of either side: with a weak hub it is all but a small part, and what both sides yield would else not be
-    that of one body. The rest dies away with the teeth between; forces at tip edges are taken along the normals of the
-    flanks in it. By the mesh before the last refinement if asked.
+    Attributes
+    ----------
+    share : LoadShare
+        Of the loaded flanks.
+    opposite : OppositeShare
+        Of the others.
+    open : (torques, pitches, positions, pairs) array
+        Gaps that are left on the loaded side [m].
+    face : FaceShare or None
+        Cells of the loaded side.
     """
-    positions, pair = len(front.place), bodies.pair
-    if "coupling" in bodies.left_out:
-        return np.zeros((positions, len(front.offset), len(back.offset)))
-    moved = np.zeros((positions, len(front.offset), len(back.offset)))
-    back_flanks = (bodies.back_before if before else None) or bodies.back_flanks
-    numbers, hubs = (pair.pinion.teeth, pair.wheel.teeth), (bodies.pinion, bodies.wheel)
-    for gear, (flexible, teeth, hub) in enumerate(zip(back_flanks, numbers, hubs, strict=True)):
-        here, there = front.teeth[gear, :positions, :, None], back.teeth[gear, :positions, None, :]
-        # following teeth of the pinion stand clockwise, those of the wheel anticlockwise
-        tooth = _nearest(here - there if gear == 0 else there - here, teeth)
-        seen = flexible.across(tooth, front.rho[gear][:, :, None], back.rho[gear][:, None, :])
-        felt = np.isin(tooth, list(flexible.series))
-        first, second = (hub_lever(hub, side.rho[gear], side.leaning[gear]) for side in (front, back))
-        turned = first[:, :, None] * second[:, None, :]  # torques of the two sides are opposed
-        moved = moved + seen + hub.hub_windup * (felt - turned)
-    return np.asarray(moved / pair.face_width + bodies.common_across)
 
-
-def _nearest(steps: Integers, teeth: int) -> Integers:
-    """Steps round a gear by the shorter way."""
-    half = teeth // 2
-    return np.asarray((steps + half) % teeth - half)
-
-
-@record
-class BothSides:
-    """Loaded flanks and those on the other side, one after the other, as ``share_between`` asks for them."""
-
-    count: int
-    matrix: Array
-    laws: _Joined
-    oil: _Joined | None
-    gaps: Array
-    sides: Array
-    tilted_lever_ratios: Array | None
-
-    def open(self, loads: Array, approach: Array) -> Array:
-        """Gaps that are left where pairs do not bear."""
-        bent = (self.matrix @ loads[..., None])[..., 0] + self.gaps - self.sides * approach[..., None]
-        return np.asarray(bent if self.oil is None else bent - self.oil.approach(np.zeros_like(bent)))
-
-    def pressed(self) -> Array:
-        """Where teeth overlap without a torque (pitches, positions).
-
-        Films alone float them within their backlash, of any size: they thicken without bound as they bear less.
-        """
-        clear = self.gaps
-        return np.asarray(clear[..., : self.count].min(axis=-1) + clear[..., self.count :].min(axis=-1) < 0.0)
-
-    def share(self, force: Array) -> LoadShare:
-        """Share forces (torques, 1 or pitches, 1 or positions) [N]."""
-        from gears.sharing.both_flanks import share_between
-
-        return share_between(
-            force, self.matrix, self.laws, self.gaps, self.sides, self.oil, self.tilted_lever_ratios
-        )
-
-
-def between(
-    setup: MeshSetup,
-    bodies: PairCompliance,
-    flanks: FlanksInPlace,
-    other: FlanksInPlace,
-    before: bool = False,
-) -> Array:
-    """Compliance between the loaded flanks and the others, for F' = kappa F (positions, pairs, others) [m/N]."""
-    front, back = (other, flanks) if setup.back else (flanks, other)
-    compliance = across(bodies, front.candidates, back.candidates, before) / (
-        front.lever_ratios[:, :, None] * back.lever_ratios[:, None, :]
-    )
-    return np.swapaxes(compliance, 1, 2) if setup.back else compliance
-
-
-def both_sides(
-    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, other: LoadedFlanks
-) -> BothSides:
-    """Put the loaded flanks of a setting and the others together."""
-    count, more = len(flanks.candidates.offset), len(other.candidates.offset)
-    matrix = np.zeros((setup.positions, count + more, count + more))
-    matrix[:, :count, :count], matrix[:, count:, count:] = flanks.matrix, other.matrix
-    cross = between(setup, bodies, flanks, other)
-    matrix[:, :count, count:], matrix[:, count:, :count] = cross, np.swapaxes(cross, 1, 2)
-    touch = flanks.candidates.gap.min(axis=-1, keepdims=True)
-    behind = setup.pair.backlash + other.candidates.gap + touch
-    oil = None if flanks.oil is None or other.oil is None else _Joined(flanks.oil, other.oil, count)
-    return BothSides(
-        count,
-        matrix,
-        _Joined(flanks.laws, other.laws, count),
-        oil,
-        np.concatenate([flanks.candidates.gap - touch, behind], axis=-1),
-        np.repeat([1.0, -1.0], [count, more]),
-        np.concatenate([flanks.tilted_lever_ratios, other.tilted_lever_ratios], axis=-1)
-        if setup.friction
-        else None,
-    )
-
-
-def _lost(sides: BothSides, force: Array) -> bool:
-    """Whether no load sharing is found under the force of one torque (pitches, positions) [N]."""
-    try:
-        sides.share(force[None])
-    except LoadSharingError:
-        return True
-    return False
+    share: LoadShare
+    opposite: OppositeShare
+    open: Array
+    face: FaceShare | None
 
 
 def share_with_opposite(
@@ -281,11 +169,11 @@ def share_with_opposite(
     force: Array,
     film: Film | None,
     flanks: LoadedFlanks,
-    alone: LoadShare | None,
+    alone: tuple[LoadShare, FaceShare | None] | None,
     apart: Booleans,
     reach: float,
     tables: EdgeTables,
-) -> tuple[LoadShare, OppositeShare, Array]:
+) -> SharedBySides:
     """Share forces (torques,) [N] among the flanks on both sides.
 
     Parameters
@@ -296,69 +184,162 @@ def share_with_opposite(
         [N]
     flanks : LoadedFlanks
         Of the side that the torque loads.
-    alone : LoadShare or None
-        Solution without the other side, kept where it lets nothing overlap; None without a torque.
+    alone : (LoadShare, FaceShare or None) or None
+        Solution without the other side, and its cells, kept where it lets nothing overlap; None without a torque.
     apart : (torques,) boolean array
         Torques for which it is kept whatever it lets overlap.
-
-    Returns
-    -------
-    (LoadShare, OppositeShare, array)
-        Of the loaded flanks and of the others, and the gaps that are left on the loaded side.
     """
     other = loaded_flanks(setup.opposite, bodies, film, reach, float(np.max(force)), tables)
     sides = both_sides(setup, bodies, flanks, other)
-    whole, count = force[:, None, None], sides.count
-    pressed = sides.pressed()
-    loaded_share, clear = alone, np.zeros((len(force), *pressed.shape), dtype=bool)
-    loads = np.zeros((len(force), *sides.gaps.shape))
-    if alone is not None:
-        loads[..., :count] = alone.forces
-        remaining_gaps = sides.open(loads, alone.transmission_error)[..., count:]
-        clear = np.all(remaining_gaps >= -ROUNDING * np.abs(alone.transmission_error)[..., None], axis=-1)
-        clear |= apart[:, None, None]
-    slopes, rest = np.zeros_like(loads), np.zeros(pressed.shape)
-    if alone is not None:
-        slopes[..., :count] = alone.pair_stiffness
-    if not (
-        clear.all() or (alone is not None and setup.face is not None)
-    ):  # loads of cells have no both sides
+    refused = on_shafts(setup)
+    kept = None if alone is None else SharedContacts.alone(sides, bodies, *alone, even=refused)
+    joint, lost = kept, np.zeros(len(force), dtype=bool)
+    if kept is None or not (np.all(kept.clear | apart[:, None, None]) or refused):
         asked = np.where(apart, float(np.min(force, where=~apart, initial=np.inf)), force)
         try:
-            joint = sides.share(asked[:, None, None] + 0.0 * pressed)
+            joint = SharedContacts.jointly(sides, bodies, asked)
         except LoadSharingError:
-            lost = tuple(n for n in np.flatnonzero(~apart).tolist() if _lost(sides, asked[n] + 0.0 * pressed))
-            if alone is None or not lost:
+            lost = ~apart & np.array([_lost(sides, bodies, one_force) for one_force in asked])
+            if kept is None or not lost.any():
                 raise
-            without = apart | np.isin(np.arange(len(force)), lost)
-            kept, opposite, remaining_gaps = share_with_opposite(
-                setup, bodies, force, film, flanks, alone, without, reach, tables
-            )
-            return kept, replace(opposite, lost=lost), remaining_gaps
-        loads = np.where(clear[..., None], loads, joint.forces)
-        slopes = np.where(clear[..., None], slopes, joint.pair_stiffness)
-        moved, tangent = joint.transmission_error, joint.stiffness
-        if alone is not None:
-            moved = np.where(clear, alone.transmission_error, moved)
-            tangent = np.where(clear, alone.stiffness, tangent)
-        loaded_share = LoadShare(loads[..., :count], moved, tangent, slopes[..., :count], joint.iterations)
-    assert loaded_share is not None
-    if pressed.any():
-        small = np.where(pressed, 0.0, max(float(np.max(force, where=~apart, initial=0.0)), 1.0))
-        rest = np.where(pressed, sides.share(small).transmission_error, 0.0)
-    remaining_gaps = sides.open(loads, loaded_share.transmission_error)
-    touch = flanks.candidates.gap.min(axis=-1)
-    closing = bodies.turning * whole - loaded_share.transmission_error - touch - setup.pair.backlash
-    opposite = OppositeShare(
-        other.candidates,
-        other.lever_ratios,
-        other.tilted_lever_ratios,
-        other.largest,
-        loads[..., count:],
-        slopes[..., count:],
-        remaining_gaps[..., count:],
-        rest,
-        setup.face is not None,
-        closing.max(axis=(1, 2)),
-    )
-    return loaded_share, opposite, remaining_gaps[..., :count]
+            if not np.all(lost | apart):
+                asked = np.where(lost | apart, np.min(asked[~(lost | apart)]), asked)
+                joint = SharedContacts.jointly(sides, bodies, asked)
+        if kept is not None and joint is not None:
+            joint = joint.with_kept(kept, kept.clear | (apart | lost)[:, None, None])
+    assert joint is not None
+    return joint.by_sides(bodies, force, other, refused, tuple(np.flatnonzero(lost).tolist()))
+
+
+def on_shafts(setup: MeshSetup) -> bool:
+    """Whether shafts give way under the face, which is not known where both sides bear."""
+    return setup.face is not None and setup.face.shafts != (None, None)
+
+
+def _lost(sides: ContactSides, bodies: PairCompliance, force: float) -> bool:
+    """Whether no load sharing is found under a force [N]."""
+    try:
+        SharedContacts.jointly(sides, bodies, np.array([force]))
+    except LoadSharingError:
+        return True
+    return False
+
+
+@record
+class SharedContacts:
+    """Share of all pairs on both sides.
+
+    Attributes
+    ----------
+    sides : ContactSides
+    share : LoadShare
+    face : FaceShare or None
+    open : (torques, pitches, positions, pairs) array
+        Gaps that are left [m].
+    """
+
+    sides: ContactSides
+    share: LoadShare
+    face: FaceShare | None
+    open: Array
+
+    @classmethod
+    def alone(
+        cls, sides: ContactSides, bodies: PairCompliance, share: LoadShare, over: FaceShare | None, even: bool
+    ) -> SharedContacts:
+        """Of a loaded side that bears alone; gaps of the other side by even loads where asked for."""
+        more, setup = sides.matrix.shape[-1] - sides.count, sides.setups[0]
+        nothing = np.zeros((*share.stiffness.shape, more))
+        forces, slopes = (
+            np.concatenate([values, nothing], axis=-1) for values in (share.forces, share.pair_stiffness)
+        )
+        whole = replace(share, forces=forces, pair_stiffness=slopes)
+        if over is None or setup.face is None:
+            return cls(sides, whole, None, sides.open(whole))
+        cells = np.zeros((*nothing.shape, setup.face.cells))
+        loads = np.concatenate([over.forces, cells], axis=-2)
+        if even:
+            left = np.repeat(sides.open(whole)[..., sides.count :, None], setup.face.cells, axis=-1)
+        else:
+            contact = CellContact(bodies, np.zeros((len(loads), 1, 1)), sides)
+            left = contact.open(setup.face, loads, share.transmission_error)[..., sides.count :, :]
+        gaps = np.concatenate([over.remaining_gaps, left], axis=-2)
+        rise = np.concatenate([over.rise, cells], axis=-2)
+        face = replace(over, forces=loads, remaining_gaps=gaps, rise=rise)
+        return cls(sides, whole, face, face.open)
+
+    @classmethod
+    def jointly(cls, sides: ContactSides, bodies: PairCompliance, force: Array) -> SharedContacts:
+        """Of forces (torques,), or (torques, pitches, positions) [N]."""
+        whole = force[:, None, None] if force.ndim == 1 else force
+        if sides.setups[0].face is None:
+            share = sides.share(whole + np.zeros(sides.gaps.shape[:-1]))
+            return cls(sides, share, None, sides.open(share))
+        share, face = share_over_face(bodies, whole, sides)
+        return cls(sides, share, face, face.open)
+
+    @property
+    def clear(self) -> Booleans:
+        """Where nothing overlaps on the other side (torques, pitches, positions)."""
+        gaps, turn = self.open[..., self.sides.count :], self.share.transmission_error
+        return np.asarray(np.all(gaps >= -ROUNDING * np.abs(turn)[..., None], axis=-1))
+
+    def with_kept(self, kept: SharedContacts, clear: Booleans) -> SharedContacts:
+        """The same with another share where that holds."""
+        chosen = clear[..., None]
+        names, mine, other = ("transmission_error", "stiffness"), self.share, kept.share
+        share = replace(
+            mine,
+            forces=np.where(chosen, other.forces, mine.forces),
+            pair_stiffness=np.where(chosen, other.pair_stiffness, mine.pair_stiffness),
+            **{name: np.where(clear, getattr(other, name), getattr(mine, name)) for name in names},
+        )
+        face = self.face
+        if face is not None and kept.face is not None:
+            cells, arrays = chosen[..., None], ("forces", "remaining_gaps", "rise")
+            mixed = {name: np.where(cells, getattr(kept.face, name), getattr(face, name)) for name in arrays}
+            face = replace(face, **mixed)
+        open_ = self.sides.open(share) if face is None else face.open
+        return SharedContacts(self.sides, share, face, open_)
+
+    def rest(self, bodies: PairCompliance, force: Array) -> Array:
+        """Transmission error without torque (pitches, positions) [m]; 0 where teeth are not pressed together."""
+        pressed = self.sides.pressed()
+        if not pressed.any() or (on_shafts(self.sides.setups[0])):
+            return np.zeros(pressed.shape)
+        small = np.where(pressed, 0.0, max(float(np.max(force, initial=0.0)), 1.0))
+        free = SharedContacts.jointly(self.sides, bodies, small[None])
+        return np.where(pressed, free.share.transmission_error[0], 0.0)
+
+    def by_sides(
+        self,
+        bodies: PairCompliance,
+        force: Array,
+        other: LoadedFlanks,
+        refused: bool,
+        lost: tuple[int, ...],
+    ) -> SharedBySides:
+        """Both sides by themselves, for forces (torques,) [N]."""
+        sides, share, setup = self.sides, self.share, self.sides.setups[0]
+        loaded, behind = slice(0, sides.count), slice(sides.count, None)
+        touch = sides.flanks[0].candidates.gap.min(axis=-1)
+        closing = bodies.turning * force[:, None, None] - share.transmission_error - touch
+        opposite = OppositeShare(
+            other.candidates,
+            other.lever_ratios,
+            other.tilted_lever_ratios,
+            other.largest,
+            share.forces[..., behind],
+            share.pair_stiffness[..., behind],
+            self.open[..., behind],
+            self.rest(bodies, force),
+            (closing - setup.pair.backlash).max(axis=(1, 2)),
+            refused,
+            lost,
+            None if self.face is None else self.face.of_pairs(behind),
+        )
+        front = replace(
+            share, forces=share.forces[..., loaded], pair_stiffness=share.pair_stiffness[..., loaded]
+        )
+        face = None if self.face is None else self.face.of_pairs(loaded)
+        return SharedBySides(front, opposite, self.open[..., loaded], face)

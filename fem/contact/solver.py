@@ -9,19 +9,19 @@ import numpy as np
 
 from base import Array
 from fem.contact.clear_flanks import stays_clear
+from fem.contact.contact_sides import one_side
 from fem.contact.contact_state import ContactState
 from fem.contact.face_share import FaceShare, share_over_face
 from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
 from fem.contact.moved_share import moved_share
-from fem.contact.moved_side import moved_side
+from fem.contact.moved_side import MovedSide, moved_side
 from fem.contact.moving_sides import BothMoved, both_moved
-from fem.contact.opposite_flanks import OppositeShare, share_with_opposite
+from fem.contact.opposite_flanks import OppositeShare, on_shafts, share_with_opposite
 from fem.laws.contact_candidates import REACHES
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
 from gears.sharing.active_set import LoadShare
-from gears.sharing.load_sharing import share_load
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
@@ -59,18 +59,18 @@ def solve_contact(
         state = solve_one_side(setup, bodies, force, flanks, tables) if np.all(force) else None
         if state is None or np.max(state.closing + state.touch) <= flanks.candidates.reach_gap:
             break
-    if state is None or setup.two_sided or _near(flanks, state, setup.pair.tight):
+    if state is None or setup.two_sided or _near(setup, flanks, state):
         state = _two_sided(setup, bodies, force, film, flanks, state, reach, tables)
     return state
 
 
-def _near(flanks: LoadedFlanks, state: ContactState, tight: bool) -> bool:
+def _near(setup: MeshSetup, flanks: LoadedFlanks, state: ContactState) -> bool:
     """Whether the other side may bear: teeth bend by no more than the deflection and the film between them.
 
     That side's gap is left by j + D - b_1 - b_2 - s', with b the bending of two loaded teeth, b <= D + s each, and
     s' its own film. Teeth that deviations alone make jam are left to one side unless the pair is tight.
     """
-    if np.min(flanks.candidates.back_gap) < 0.0 and not tight:
+    if np.min(flanks.candidates.back_gap) < 0.0 and not setup.pair.tight:
         return False
     film = 0.0
     if flanks.oil is not None:
@@ -119,26 +119,12 @@ def _staying(
     setup: MeshSetup, bodies: PairCompliance, whole: Array, flanks: LoadedFlanks
 ) -> tuple[LoadShare, FaceShare | None, Array]:
     """Share of contacts that stay, of their cells where the face has any, and gaps that are left."""
-    gaps = flanks.candidates.gap - flanks.candidates.gap.min(axis=-1, keepdims=True)
-    levers = flanks.tilted_lever_ratios if setup.friction else None
-    if setup.face is not None:
-        share, over = share_over_face(
-            setup,
-            bodies,
-            whole,
-            flanks.candidates,
-            flanks.lever_ratios,
-            flanks.matrix,
-            flanks.laws,
-            gaps,
-            flanks.oil,
-            levers,
-        )
-        return share, over, over.open
-    share = share_load(whole, flanks.matrix, flanks.laws, gaps, flanks.oil, levers)
-    bent = (flanks.matrix @ share.forces[..., None])[..., 0]
-    propped = 0.0 if flanks.oil is None else flanks.oil.approach(np.zeros_like(share.forces))
-    return share, None, bent + gaps - propped - share.transmission_error[..., None]
+    sides = one_side(setup, flanks)
+    if setup.face is None:
+        share = sides.share(whole)
+        return share, None, sides.open(share)
+    share, over = share_over_face(bodies, whole, sides)
+    return share, over, over.open
 
 
 def _two_sided(
@@ -157,32 +143,35 @@ def _two_sided(
         apart = np.array([bool(alone.refusal(n)) for n in range(len(force))])
         if apart.all():
             return alone
+        over = None if alone.face is None else alone.face.forces
         clear = (
             None
             if setup.two_sided
-            else stays_clear(setup, bodies, force, film, flanks, alone.share, apart, reach)
+            else stays_clear(setup, bodies, force, film, flanks, alone.share, over, apart, reach)
         )
         if clear is not None:
             return replace(alone, opposite=clear)
-    if setup.moving_contact and setup.face is None:
-        by_itself = None if alone is None else (alone.share, alone.side)
+    if setup.moving_contact and not on_shafts(setup):
+        by_itself = None
+        if alone is not None and alone.side is not None:
+            by_itself = alone.side, alone.share, alone.face
         solved = both_moved(setup, bodies, force, film, flanks, by_itself, apart, reach, tables)
         return _moved_solution(setup, bodies, force, solved, alone)
-    share, opposite, remaining_gaps = share_with_opposite(
-        setup, bodies, force, film, flanks, None if alone is None else alone.share, apart, reach, tables
-    )
+    kept = None if alone is None else (alone.share, alone.face)
+    solved_sides = share_with_opposite(setup, bodies, force, film, flanks, kept, apart, reach, tables)
+    share, opposite = solved_sides.share, solved_sides.opposite
     if alone is not None and not opposite.bears:
         return replace(alone, opposite=opposite)
-    closing = share.transmission_error - bodies.turning * force[:, None, None]
     return ContactState(
         flanks.candidates,
         share,
         flanks.lever_ratios,
         flanks.tilted_lever_ratios,
         flanks.largest,
-        closing,
-        remaining_gaps,
+        share.transmission_error - bodies.turning * force[:, None, None],
+        solved_sides.open,
         alone is None or alone.settled,
+        face=solved_sides.face,
         opposite=opposite,
     )
 
@@ -191,29 +180,37 @@ def _moved_solution(
     setup: MeshSetup, bodies: PairCompliance, force: Array, solved: BothMoved, alone: ContactState | None
 ) -> ContactState:
     """Solution with flanks on both sides that move, for forces (torques,) [N]."""
-    problem, share, whole = solved.problem, solved.share, force[:, None, None]
-    front, back = solved.front.flanks, solved.back.flanks
-    turn, loads = share.transmission_error, problem.split(share.forces)
-    slopes, open_ = problem.split(share.pair_stiffness), problem.split(problem.open(share))
-    closing = bodies.turning * whole - turn - front.candidates.gap.min(axis=-1) - setup.pair.backlash
+    share, whole, face = solved.moved.share, force[:, None, None], solved.moved.face
+    front, back = solved.sides.front, solved.sides.back
+    loaded, behind = slice(0, front.lever_ratios.shape[-1]), slice(front.lever_ratios.shape[-1], None)
+    turn, touch = share.transmission_error, front.flanks.candidates.gap.min(axis=-1)
+    closing = bodies.turning * whole - turn - touch - setup.pair.backlash
     opposite = OppositeShare(
-        back.candidates,
-        solved.back.lever_ratios,
-        solved.back.tilted_lever_ratios,
-        back.largest,
-        loads[1],
-        slopes[1],
-        open_[1],
+        back.flanks.candidates,
+        back.lever_ratios,
+        back.tilted_lever_ratios,
+        back.flanks.largest,
+        share.forces[..., behind],
+        share.pair_stiffness[..., behind],
+        solved.moved.open[..., behind],
         solved.rest,
-        False,
         closing.max(axis=(1, 2)),
+        face=None if face is None else face.of_pairs(behind),
     )
     if alone is not None and not opposite.bears:
         return replace(alone, opposite=opposite, settled=solved.settled)
-    sides, states = (solved.front, solved.back), []
-    for side, part, gaps, lost in zip(
-        sides, problem.of_sides(share), open_, problem.lever_losses(share), strict=True
+    states = []
+    for side, pairs, approach, sign in (
+        (front, loaded, turn, 1.0),
+        (back, behind, solved.behind, -1.0),
     ):
+        part = replace(
+            share,
+            forces=share.forces[..., pairs],
+            transmission_error=approach,
+            pair_stiffness=sign * share.pair_stiffness[..., pairs],
+        )
+        half, further = (loss[..., pairs] for loss in solved.moved.lost)
         states.append(
             ContactState(
                 side.flanks.candidates,
@@ -221,11 +218,18 @@ def _moved_solution(
                 side.lever_ratios,
                 side.tilted_lever_ratios,
                 side.flanks.largest,
-                part.transmission_error - bodies.turning * whole,
-                gaps,
+                approach - bodies.turning * whole,
+                solved.moved.open[..., pairs],
                 solved.settled,
                 side,
-                lost,
+                (half, further),
+                None if face is None else replace(face.of_pairs(pairs), least=_least(side)),
             )
         )
     return replace(states[0], opposite=opposite, back=states[1])
+
+
+def _least(side: MovedSide) -> float:
+    """Turn at which the first place of the face touches [m]."""
+    face = side.setup.face
+    return 0.0 if face is None else face.least_gap(side.setup.pair)

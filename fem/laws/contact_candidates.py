@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import ceil
 from typing import TYPE_CHECKING
 
@@ -78,6 +79,18 @@ class ContactCandidates:
     chamfered: Booleans
     reach_gap: float
 
+    def at(self, rows: slice) -> ContactCandidates:
+        """Contacts at some positions of a base pitch, with what bodies and laws need; gaps stay those of all."""
+        return replace(
+            self,
+            place=self.place[rows],
+            rho=self.rho[:, rows],
+            touchable=self.touchable[rows],
+            edge=self.edge[rows],
+            leaning=self.leaning[:, rows],
+            teeth=self.teeth[:, rows],
+        )
+
     def corners(self) -> tuple[tuple[int, Booleans], ...]:
         """Which gear's tip edge touches where: the wheel's (1) before A, the pinion's (0) after E."""
         before = self.edge & (self.place < 0.5 * (self.place.min() + self.place.max()))
@@ -138,10 +151,11 @@ def contact_candidates(setup: MeshSetup, reach: float = REACHES[0]) -> ContactCa
     teeth, other = setup.teeth(steps), setup.opposite
     by_tooth = setup.pitch_gap(teeth) + setup.tooth_gap(teeth, rho) / np.where(touchable, lever[0], 1.0)
     rolling = setup.rolling_gap(place)
-    gaps = gap + rolling + by_tooth + (0.0 if setup.face is None else setup.face.least_gap(pair))
+    along, along_behind = (0.0 if side.face is None else side.face.least_gap(pair) for side in (setup, other))
+    gaps = gap + rolling + by_tooth + along
     least = float(np.min(by_tooth) + np.min(rolling))
     behind = other.pitch_gap(other.teeth(steps)) + setup.rolling_gap(np.clip(other_place, start, end))
-    back = np.where(touchable, behind, np.inf).min(axis=-1)
+    back = np.where(touchable, behind, np.inf).min(axis=-1) + along_behind
     numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
     tiles = (1, setup.pitches, 1)
     return ContactCandidates(

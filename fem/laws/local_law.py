@@ -231,6 +231,10 @@ class FilmLaw:
     film: Film
     rho1: Array
 
+    def at(self, position: int) -> FilmLaw:
+        """Law of a single position."""
+        return FilmLaw(self.film, self.rho1[position : position + 1])
+
     def approach(self, force: Array) -> Array:
         """Separation (..., positions, pairs) [m]."""
         return self.value_and_slope(force)[0]

@@ -82,7 +82,8 @@ class MeshSetup:
     @property
     def opposite(self) -> MeshSetup:
         """The same gears and positions with the other flanks loaded."""
-        return replace(self, back=not self.back)
+        face = None if self.face is None else self.face.opposite(self.pair.working_pressure_angle)
+        return replace(self, back=not self.back, face=face)
 
     @cached_property
     def mirror(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -58,6 +59,10 @@ class FaceSetting:
     def coupled(self) -> tuple[Any, ...]:
         """What decides how bodies couple cells, whatever stands between the flanks and under the gears."""
         return self.cells, self.model, self.strip
+
+    def opposite(self, working_pressure_angle: float) -> FaceSetting:
+        """The face of the flanks on the other side of the teeth: leads are those of both, axes tilt another way."""
+        return replace(self, alignment=self.alignment.opposite(working_pressure_angle))
 
     @property
     def slope(self) -> float:

@@ -50,7 +50,7 @@ def lubricate_face(
     tolerance = min(resolution.sampling, resolution.transmission_error)
     cycle = teeth.cycle(dry.position.size, table, tolerance, table.varied())
     face = cycle.face
-    assert face is not None  # flanks on both sides are refused
+    assert face is not None
     forces = face.line_load * teeth.pair.face_width / face.line_load.shape[-1]
     yields = yielding_over_face(table, cycle.rho1, forces, cycle.load_share)
     secant = teeth.force / (teeth.force / cycle.secant_stiffness + yields)

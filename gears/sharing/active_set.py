@@ -128,7 +128,7 @@ def share_forces(
     loads : (..., n) array
         Forces to begin with [N]; one at least is above 0 everywhere.
     approach : (...) array or None
-        Turn to begin with [m]; None takes the mean that the contacts which bear ask for.
+        Turn to begin with [m]; None takes that with the smallest overlap of the contacts that bear.
 
     Returns
     -------
@@ -141,7 +141,8 @@ def share_forces(
     bent, wanted = problem.bent(loads, everywhere, None), everywhere
     if approach is None:
         at = problem.linearised(loads, np.zeros(loads.shape[:-1]), bent)
-        approach = np.mean(at.residual, axis=-1, where=active)
+        asked = np.sum(at.reach * at.residual, axis=-1, where=active)
+        approach = asked / np.sum(at.reach**2, axis=-1, where=active)
     slopes, before = np.zeros_like(loads), np.zeros(loads.shape[:-1])
     for iteration in range(1, ITERATIONS + 1):
         at = problem.linearised(loads, approach, bent)

@@ -97,7 +97,8 @@ class Alignment:
     in_plane : float
         In the plane of action: opens the gap of the loaded flanks by ``in_plane z/b`` [m].
     out_of_plane : float
-        Across the plane of action [m]. Involutes keep touching along their line of action when they are shifted
+        Across the plane of action, positive where it brings the axes apart at z > 0 [m]; the sign counts where flanks
+        on both sides of the teeth bear. Involutes keep touching along their line of action when they are shifted
         across it, so that the gap grows by its square alone, ``(out_of_plane z/b)^2/(2 R)`` with R the radius of
         relative curvature.
 
@@ -109,6 +110,37 @@ class Alignment:
 
     in_plane: float = 0.0  # f_Sigma beta projected, m
     out_of_plane: float = 0.0  # f_Sigma delta projected, m
+
+    def opposite(self, working_pressure_angle: float) -> Alignment:
+        r"""The same axes as the flanks on the other side of the teeth see them.
+
+        Both lines of action stand at the working pressure angle from the normal of the line of centres, on either side
+        of it. With :math:`2\alpha_w` between their directions
+
+        .. math:: f'_{in} = -f_{in}\cos 2\alpha_w + f_{out}\sin 2\alpha_w, \qquad
+            f'_{out} = f_{in}\sin 2\alpha_w + f_{out}\cos 2\alpha_w .
+
+        Parameters
+        ----------
+        working_pressure_angle : float
+            alpha_w [rad].
+
+        Examples
+        --------
+        Axes that are only further apart at one end open both sides alike:
+
+        >>> import numpy as np
+        >>> alpha = np.radians(20.0)
+        >>> apart = Alignment(20e-6 * np.sin(alpha), 20e-6 * np.cos(alpha))
+        >>> other = apart.opposite(alpha)
+        >>> bool(np.allclose([other.in_plane, other.out_of_plane], [apart.in_plane, apart.out_of_plane]))
+        True
+        """
+        cosine, sine = np.cos(2.0 * working_pressure_angle), np.sin(2.0 * working_pressure_angle)
+        return Alignment(
+            float(-self.in_plane * cosine + self.out_of_plane * sine),
+            float(self.in_plane * sine + self.out_of_plane * cosine),
+        )
 
     def faults(self, path: str) -> tuple[Fault, ...]:
         """All faults of the values, empty when there are none."""

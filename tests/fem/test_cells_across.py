@@ -13,8 +13,8 @@ import fem.influence.back_face
 import fem.pair.face_across
 from base import Array
 from fem.contact.cell_matrix import cell_matrix, cross_matrix
+from fem.contact.contact_sides import between
 from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
-from fem.contact.opposite_flanks import between
 from fem.influence.gear_store import GearStore, forget_gears
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.mesh_setup import MeshSetup

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import fem
+from fem.contact.contact_sides import both_sides
 from fem.contact.loaded_flanks import loaded_flanks
-from fem.contact.opposite_flanks import both_sides
 from fem.laws.contact_candidates import REACHES
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.mesh_setup import MeshSetup
