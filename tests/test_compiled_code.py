@@ -17,7 +17,7 @@ MOTION = """
 import dataclasses, json
 import numpy as np
 import dynamics
-from dynamics.flow.exact_flow import turning_points
+from dynamics.flow.motions import turning_points
 from dynamics.branches.sensitivity import map_derivatives
 
 both = dynamics.GearOscillator(

@@ -13,7 +13,6 @@ from dynamics.attraction.multi_sweeps import MultiSweep, multi_sweep
 from dynamics.branches.branch import KINDS, NEIMARK_SACKER, Branch, SpecialPoint, Stretch, of_kind, stretches
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import SEARCHED, ordered, whole_numbers
-from dynamics.model.oscillator import GearOscillator
 from dynamics.model.protocol import PeriodicOscillator, periodic_only
 from dynamics.orbits.finding import find_orbits
 from dynamics.orbits.shooting import find_orbit
@@ -183,9 +182,7 @@ def diagram(
         most = faults.whole("max_branches", max_branches, 1, 100_000, "100 is usual")
     builder = BranchTree(oscillator, parameter, (low, high), longest, most, max_step, progress=progress)
     at = [low + (k + 0.5) / number * (high - low) for k in range(number)]
-    unsure = (
-        _follow_searched(builder, oscillator, wanted, at) if isinstance(oscillator, GearOscillator) else []
-    )
+    unsure = _follow_searched(builder, oscillator, wanted, at) if oscillator.is_exact else []
     for value, state, known in starts:
         if low <= value <= high:
             orbit = find_orbit(oscillator.with_parameter(parameter, value), state, periods=known)
@@ -200,7 +197,7 @@ def diagram(
 
 
 def _follow_searched(
-    builder: BranchTree, oscillator: GearOscillator, periods: Sequence[int], at: Sequence[float]
+    builder: BranchTree, oscillator: Any, periods: Sequence[int], at: Sequence[float]
 ) -> list[float]:
     """Follow what searches find; values at which something may be missing."""
     unsure = []

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import singledispatch
 
 import numpy as np
 
-from base import Faults, InputError
+from base import Array, Faults, InputError
 from dynamics.branches.arclength import follow
 from dynamics.branches.branch import Branch, SpecialPoint
 from dynamics.branches.branch_problem import BranchProblem, Steps, checked_range
@@ -97,6 +98,7 @@ def continue_branch(
     return follow(problem, orbit.state, value, steps, progress)
 
 
+@singledispatch
 def orbits_over(
     oscillator: Oscillator,
     parameter: str,
@@ -122,15 +124,38 @@ def orbits_over(
     tolerance : float, optional
         Of a step of the stepwise flow; tables of the exact flow are always the full ones.
     """
-    low, high = (np.array([bound], dtype=np.float64) for bound in bounds)
-    if isinstance(oscillator, GearOscillator):
-        return ExactBranch(oscillator, (parameter,), periods, low, high, scale)
-    if isinstance(oscillator, DriveOscillator):
-        return DriveProblem(oscillator, (parameter,), periods, low, high, scale)
-    if isinstance(oscillator, SmoothOscillator):
-        step_tolerance = TOLERANCE if tolerance is None else tolerance
-        return FlowProblem(oscillator, (parameter,), periods, low, high, scale, step_tolerance)
     raise unserved(oscillator)
+
+
+@orbits_over.register
+def _exact(
+    oscillator: GearOscillator, parameter: str, periods: int, bounds: tuple[float, float], scale: float,
+    tolerance: float | None = None,
+) -> ExactBranch:  # fmt: skip
+    return ExactBranch(oscillator, (parameter,), periods, *_ends(bounds), scale)
+
+
+@orbits_over.register
+def _of_drive(
+    oscillator: DriveOscillator, parameter: str, periods: int, bounds: tuple[float, float], scale: float,
+    tolerance: float | None = None,
+) -> DriveProblem:  # fmt: skip
+    return DriveProblem(oscillator, (parameter,), periods, *_ends(bounds), scale)
+
+
+@orbits_over.register
+def _stepwise(
+    oscillator: SmoothOscillator, parameter: str, periods: int, bounds: tuple[float, float], scale: float,
+    tolerance: float | None = None,
+) -> FlowProblem:  # fmt: skip
+    step_tolerance = TOLERANCE if tolerance is None else tolerance
+    return FlowProblem(oscillator, (parameter,), periods, *_ends(bounds), scale, step_tolerance)
+
+
+def _ends(bounds: tuple[float, float]) -> tuple[Array, Array]:
+    """Range of the one parameter, as problems take it."""
+    low, high = bounds
+    return np.array([low], dtype=np.float64), np.array([high], dtype=np.float64)
 
 
 def doubled_orbit(

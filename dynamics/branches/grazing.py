@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, InputError, RangeWarning, Stopwatch, quantity, record
 from dynamics.branches.branch import SpecialPoint
-from dynamics.flow.exact_flow import exact_flow, turning_points
-from dynamics.flow.motions import period_map
+from dynamics.flow.exact_flow import exact_flow
+from dynamics.flow.motions import period_map, turning_points
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import ordered
 from dynamics.model.oscillator import GearOscillator

@@ -13,7 +13,7 @@ from base import Array, Cost, Integers, Stopwatch, in_blocks
 from dynamics.flow.exact_flow import REASONS
 from dynamics.kernels.drives import STRIDE
 from dynamics.model.drive_oscillator import DriveOscillator
-from dynamics.model.protocol import EPS, Flow, MapResult, Stretches, lost_motion
+from dynamics.model.protocol import EPS, MapResult, PartedFlow, Stretches, lost_motion
 
 # of motions expanded about the start of a cell, a radian of every time scale long: 1/17! is rounding
 DEGREE = 16
@@ -24,7 +24,7 @@ Arrays = tuple[Array, Array, Array, Array, Array, Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
-class DriveFlow(Flow):
+class DriveFlow(PartedFlow):
     """The exact flow of a drive train, tabulated for the compiled kernels.
 
     Parameters
@@ -37,6 +37,7 @@ class DriveFlow(Flow):
 
     tolerance = EPS
     noise = 64.0 * EPS
+    beside = "take differences"
 
     oscillator: DriveOscillator
     arrays: Arrays

@@ -12,8 +12,7 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, Integers, Stopwatch, in_blocks
 from dynamics.model.limits import POSITIVE, REFINEMENT, TAYLOR_DEGREE
 from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import EPS, Flow, MapResult, Stretches, exact_only, lost_motion
-from dynamics.model.states import checked_state
+from dynamics.model.protocol import EPS, MapResult, PartedFlow, Stretches, lost_motion
 
 # of the Taylor tables; a quarter of a radian to each side of the middle leaves less than rounding
 DEGREE = 13
@@ -21,7 +20,7 @@ REASONS = {1: "the motion grew beyond 1e150", 2: "a cell held more than 10 000 i
 
 
 @dataclass(frozen=True, eq=False)
-class ExactFlow(Flow):
+class ExactFlow(PartedFlow):
     """The exact flow of an oscillator, tabulated for the compiled kernels.
 
     Parameters
@@ -242,38 +241,3 @@ def propagated(table: ExactFlow, states: npt.ArrayLike, periods: int, backwards:
     table.settle(at, np.empty((0, 4)), 0.0, periods, labels)  # nowhere to settle: followed to the end
     at[labels == -2] = np.nan
     return np.asarray(at * turn)
-
-
-@exact_only
-def turning_points(oscillator: GearOscillator | ExactFlow, state: npt.ArrayLike, periods: int = 1) -> Array:
-    """Every extremum of X from a state at tau = 0.
-
-    Parameters
-    ----------
-    oscillator : GearOscillator or ExactFlow
-        The oscillator.
-    state : array_like, shape (2,)
-        X and V at tau = 0.
-    periods : int
-        Excitation periods.
-
-    Returns
-    -------
-    ndarray, shape (k, 5)
-        Time, X, acceleration, region (1, 0, -1) and the coordinate of the region (X - D, X, X + D), which
-        keeps its digits next to the limit of the backlash.
-
-    Raises
-    ------
-    InputError
-        If the state is not finite, or the motion grows beyond all bounds.
-
-    Examples
-    --------
-    >>> from dynamics import FourierStiffness, GearOscillator
-    >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
-    >>> turning_points(oscillator, (0.5, 0.2)).shape[1]
-    5
-    """
-    t = oscillator if isinstance(oscillator, ExactFlow) else exact_flow(oscillator)
-    return t.sampled(checked_state(state), periods, 0)[1]

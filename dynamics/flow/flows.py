@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import singledispatch
 
 from base import Faults, InputError
-from dynamics.flow.drive_flow import drive_flow
-from dynamics.flow.exact_flow import exact_flow
+from dynamics.flow.drive_flow import DriveFlow, drive_flow
+from dynamics.flow.exact_flow import ExactFlow, exact_flow
 from dynamics.flow.stepwise_flow import StepwiseFlow
 from dynamics.flow.table_reuse import TableReuse
 from dynamics.model.drive_oscillator import DriveOscillator
@@ -16,12 +17,8 @@ from dynamics.model.protocol import Flow, Oscillator
 from dynamics.model.smooth_oscillator import SmoothOscillator
 
 
-def flow_of(
-    oscillator: Oscillator,
-    tolerance: float | None = None,
-    parameters: tuple[str, ...] = (),
-    extrema: bool = False,
-) -> Flow:
+@singledispatch
+def flow_of(oscillator: Oscillator, tolerance: float | None = None) -> Flow:
     """Make an oscillator ready to be followed.
 
     Parameters
@@ -31,41 +28,37 @@ def flow_of(
     tolerance : float, optional
         Of a step (stepwise flow) or of one period's map (exact flow of one freedom); that of several freedoms leaves
         rounding alone, whatever is asked for.
-    parameters : tuple of str
-        Parameters to differentiate by, stepwise flow alone.
-    extrema : bool
-        Whether extrema of X are among the events, stepwise flow alone.
+
+    Returns
+    -------
+    Flow
+        `Flow.slopes` adds derivatives by parameters to the stepwise one.
 
     Raises
     ------
     InputError
-        If the tolerance is out of range or there is no such parameter; also if derivatives by parameters or extrema
-        of the exact flow are asked for, which `map_derivatives` and `turning_points` give.
+        If the tolerance is out of range, or there is no flow for such an oscillator.
     """
-    if isinstance(oscillator, SmoothOscillator):
-        return StepwiseFlow(oscillator, tolerance, parameters, extrema)
-    if not isinstance(oscillator, GearOscillator | DriveOscillator):
-        raise unserved(oscillator)
-    drives = isinstance(oscillator, DriveOscillator)
-    asked = (
-        (
-            "parameters",
-            parameters,
-            "take differences" if drives else "take dynamics.branches.sensitivity.map_derivatives",
-        ),
-        ("extrema", extrema, "take trajectory" if drives else "take dynamics.flow.exact_flow.turning_points"),
-    )
-    with Faults() as faults:
-        for name, value, remedy in asked:
-            if value:
-                faults.add(name, value, f"must be left out for a {type(oscillator).__name__}", remedy)
-        if tolerance is not None:
-            faults.number("tolerance", tolerance, POSITIVE)
-    if isinstance(oscillator, GearOscillator):
-        return exact_flow(oscillator, tolerance=tolerance)
+    raise unserved(oscillator)
+
+
+@flow_of.register
+def _exact(oscillator: GearOscillator, tolerance: float | None = None) -> ExactFlow:
+    return exact_flow(oscillator, tolerance=tolerance)
+
+
+@flow_of.register
+def _of_drive(oscillator: DriveOscillator, tolerance: float | None = None) -> DriveFlow:
+    _check(tolerance)
     return drive_flow(oscillator)
 
 
+@flow_of.register
+def _stepwise(oscillator: SmoothOscillator, tolerance: float | None = None) -> StepwiseFlow:
+    return StepwiseFlow(oscillator, tolerance)
+
+
+@singledispatch
 def flows_along(
     oscillator: Oscillator, parameter: str, tolerance: float | None = None
 ) -> Callable[[Oscillator], Flow]:
@@ -85,14 +78,24 @@ def flows_along(
     InputError
         If the tolerance is out of range or there is no such parameter; or by the callable, as by `flow_of`.
     """
-    if isinstance(oscillator, GearOscillator):
-        with Faults() as faults:
-            if tolerance is not None:
-                faults.number("tolerance", tolerance, POSITIVE)
-        line = TableReuse(oscillator, parameter, tolerance)
-        if line.first > 0:  # else it is all made anew, and there is nothing to keep
-            return line.at
     return lambda here: flow_of(here, tolerance)
+
+
+@flows_along.register
+def _tables_along(
+    oscillator: GearOscillator, parameter: str, tolerance: float | None = None
+) -> Callable[[Oscillator], Flow]:
+    _check(tolerance)
+    line = TableReuse(oscillator, parameter, tolerance)
+    if line.first > 0:  # else it is all made anew, and there is nothing to keep
+        return line.at
+    return lambda here: flow_of(here, tolerance)
+
+
+def _check(tolerance: float | None) -> None:
+    with Faults() as faults:
+        if tolerance is not None:
+            faults.number("tolerance", tolerance, POSITIVE)
 
 
 def unserved(oscillator: object) -> InputError:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
+from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.flow.flows import flow_of
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import PERIODS, POINTS, TRANSIENT
@@ -99,20 +99,26 @@ def period_map(
     array([0.3, 0. ])
     """
     watch = Stopwatch()
-    flow = oscillator if isinstance(oscillator, Flow) else flow_of(oscillator, tolerance, parameters, extrema)
-    at = checked_state(state, size=flow.dimension)
-    if isinstance(oscillator, Flow) and periods > 0 <= skip:  # else the checks would cost as much as a period
-        return oscillator.follow(at, periods, skip)
-    with Faults() as faults:
-        n = faults.whole("periods", periods, *PERIODS)
-        n_skip = faults.whole("skip", skip, *TRANSIENT)
     if isinstance(oscillator, Flow):
-        return oscillator.follow(at, n, n_skip)
+        at = checked_state(state, size=oscillator.dimension)
+        fine = periods > 0 <= skip  # the checks would cost as much as a period
+        return oscillator.follow(at, *((periods, skip) if fine else _checked_spans(periods, skip)))
+    flow = flow_of(oscillator, tolerance).slopes(parameters, extrema)
+    at = checked_state(state, size=flow.dimension)
+    n, n_skip = _checked_spans(periods, skip)
     here, there = flow.follow(at, n, n_skip), flow.finer().follow(at, n, n_skip, derivatives=False)
     size = max(float(np.max(np.abs(here.states))), oscillator.floor)
     error = float(np.max(np.abs(here.state - there.state))) / size
     cost = replace(here.cost + there.cost, seconds=watch.seconds)
     return replace(here, error=error, cost=cost)
+
+
+def _checked_spans(periods: int, skip: int) -> tuple[int, int]:
+    """Periods that are kept and those skipped, as whole numbers."""
+    with Faults() as faults:
+        n = faults.whole("periods", periods, *PERIODS)
+        n_skip = faults.whole("skip", skip, *TRANSIENT)
+    return n, n_skip
 
 
 def trajectory(
@@ -178,6 +184,41 @@ def trajectory(
     )
 
 
+@periodic_only
+def turning_points(oscillator: PeriodicOscillator | Flow, state: npt.ArrayLike, periods: int = 1) -> Array:
+    """Every extremum of X, in several freedoms of y, from a state at tau = 0.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator, DriveOscillator or Flow
+        The oscillator, or its exact flow.
+    state : array_like, shape (dimension,)
+        State at tau = 0.
+    periods : int
+        Excitation periods.
+
+    Returns
+    -------
+    ndarray, shape (k, 5)
+        Time, X, acceleration, region (1, 0, -1) and the coordinate of the region (X - D, X, X + D), which
+        keeps its digits next to the limit of the backlash.
+
+    Raises
+    ------
+    InputError
+        If the state is not finite, or the motion grows beyond all bounds.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> oscillator = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.2, 0.6, half_backlash=0.2)
+    >>> turning_points(oscillator, (0.5, 0.2)).shape[1]
+    5
+    """
+    flow = oscillator if isinstance(oscillator, Flow) else flow_of(oscillator)
+    return flow.sampled(checked_state(state, size=flow.dimension), periods, 0)[1]
+
+
 @record
 class ForceRange:
     """Minimum and maximum force of a motion, over the mean force."""
@@ -197,14 +238,6 @@ def mesh_force(oscillator: PeriodicOscillator, motion: Trajectory) -> Array:
     InputError
         If the oscillator has a force that is not piecewise linear.
     """
-    if not isinstance(oscillator, PeriodicOscillator):
-        name, allowed = (
-            type(oscillator).__name__,
-            "must be a GearOscillator or a DriveOscillator in mesh_force",
-        )
-        raise InputError.at(
-            "oscillator", name, allowed, "restoring_force gives the force of a SmoothOscillator"
-        )
     return oscillator.contact_force(oscillator.frequency * motion.tau, motion.x)
 
 

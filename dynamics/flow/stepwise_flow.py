@@ -71,6 +71,10 @@ class StepwiseFlow(Flow):
         tolerance = max(self.tolerance / 32.0, 4e-15) if self.tolerance > 4e-15 else 2e-15
         return StepwiseFlow(self.oscillator, tolerance, (), self.extrema)
 
+    def slopes(self, parameters: tuple[str, ...] = (), extrema: bool = False) -> StepwiseFlow:
+        """The same with derivatives by parameters, and with extrema met and noted."""
+        return StepwiseFlow(self.oscillator, self.tolerance, parameters, extrema)
+
     def follow(self, state: Array, periods: int = 1, skip: int = 0, derivatives: bool = True) -> MapResult:
         """Follow a state; the derivatives cover the periods skipped, too."""
         from dynamics.kernels.stepwise.propagating import iterate

@@ -181,6 +181,21 @@ class GearOscillator(PeriodicOscillator, PlanarOscillator):
             return np.array([self.half_backlash + force / k, 0.0])
         return np.array([math.copysign(self.half_backlash, force) + force / k, 0.0])
 
+    def balanced(self, tau: Array) -> Array:
+        """States at rest where force and stiffness balance; where the stiffness is small or negative, that of its mean.
+
+        Without a second flank nothing balances a force that opens the first: what is left there is its edge.
+        """
+        k = self.stiffness(self.frequency * tau)
+        mean = abs(self.stiffness.mean)
+        force = self.force(tau)
+        pressed = force / np.maximum(k, 0.2 * mean if mean > 0.0 else 1.0)
+        if self.one_sided and self.mean_force < 0.0:
+            pressed = np.maximum(pressed, 0.0)
+        side = -1.0 if self.mean_force < 0.0 and not self.one_sided else 1.0
+        x = side * self.half_backlash + pressed
+        return np.stack([x, np.zeros_like(x)], axis=1)
+
     def force(self, tau: npt.ArrayLike) -> Array:
         """Right-hand side of the equation, shape of `tau`."""
         angle = self.frequency * np.asarray(tau, dtype=np.float64)

@@ -1,8 +1,9 @@
 """What an oscillator and its flow offer; every function that takes any oscillator asks for no more.
 
 There are three kinds of flow: the exact one of `GearOscillator`, that of `DriveOscillator` in several freedoms, and the
-stepwise one of `SmoothOscillator`; `dynamics.flow.flows` makes the one that an oscillator has. A state is a vector:
-displacements, then their speeds.
+stepwise one of `SmoothOscillator`; `dynamics.flow.flows.flow_of` makes the one that an oscillator has. What not every
+flow offers is asked for: derivatives by parameters (`Flow.slopes`), parts of a period (`Flow.parted`). A state is a
+vector: displacements, then their speeds.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from typing import Any, ClassVar, NamedTuple, ParamSpec, Self, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Cost, InputError, Integers, quantity, record
+from base import Array, Cost, Faults, InputError, Integers, quantity, record
 from dynamics.model.excitation import Harmonics, as_series, largest
 from dynamics.model.naming import natural_size, unknown, value_at, with_value
 from dynamics.model.stiffness import FourierStiffness
@@ -100,6 +101,8 @@ class Flow(ABC):
     """Length of a state."""
     noise: float
     """Residual, over the size of the motion and the stretch of the map, below which nothing gets."""
+    beside: ClassVar = "take dynamics.branches.sensitivity.map_derivatives"
+    """What gives derivatives by parameters where the flow itself has none."""
 
     @abstractmethod
     def follow(self, state: Array, periods: int = 1, skip: int = 0, derivatives: bool = True) -> MapResult:
@@ -122,6 +125,28 @@ class Flow(ABC):
     @abstractmethod
     def stretches(self, state: Array, sizes: Sequence[int], keep: bool = False) -> Stretches:
         """Growth of all directions along a motion, over stretches of so many periods each."""
+
+    def slopes(self, parameters: tuple[str, ...] = (), extrema: bool = False) -> Flow:
+        """The same flow with derivatives by parameters, and with extrema among its events.
+
+        Raises
+        ------
+        InputError
+            If there is no such parameter; or if the flow has none of these: it names what gives them.
+        """
+        asked = (
+            ("parameters", parameters, self.beside),
+            ("extrema", extrema, "take dynamics.flow.motions.turning_points"),
+        )
+        with Faults() as faults:
+            for name, value, remedy in asked:
+                if value:
+                    faults.add(name, value, "must be left out with the exact flow", remedy)
+        return self
+
+    def parted(self) -> PartedFlow | None:
+        """The flow over parts of a period, as shooting over many stretches takes it; None if it has no such parts."""
+        return None
 
     def calm(self, state: Array, limit: int, longest: int) -> tuple[Array, int, str]:
         """State after `limit` periods or when the motion repeats to rounding, periods followed, message."""
@@ -170,6 +195,34 @@ class Flow(ABC):
                         distance, wait = float(gaps[home]), int(homes[home, -1])
             used += period
         return used
+
+
+class PartedFlow(Flow):
+    """A flow that is tabulated in cells of a period, and can be followed from any cell to any other."""
+
+    @property
+    @abstractmethod
+    def cells(self) -> int:
+        """Cells per period."""
+
+    @abstractmethod
+    def finer(self) -> PartedFlow:
+        """The same with half the cell."""
+
+    @abstractmethod
+    def part(self, first: int, number: int, state: Array, counts: Integers) -> tuple[Array, Array, float]:
+        """State after some cells, its derivative by the state before, time in contact if asked for; `counts` grow.
+
+        All nan if the motion is lost.
+        """
+
+    @abstractmethod
+    def damped(self, contact: float, periods: int) -> float:
+        """Integral of the trace of all damping over whole periods, by the time in contact."""
+
+    def parted(self) -> PartedFlow:
+        """The flow itself."""
+        return self
 
 
 class Oscillator(ABC):
@@ -236,6 +289,18 @@ class Oscillator(ABC):
     def contact_motion(self, tau: Array, states: Array) -> tuple[Array, Array]:
         """Displacement that the backlash limits, and its rate, of states (k, dimension) at times (k,)."""
 
+    def contact_force(self, angle: Array, x: Array) -> Array:
+        """Force of the contact at angles of the excitation.
+
+        Raises
+        ------
+        InputError
+            If it is no periodic stiffness times the deflection past a backlash.
+        """
+        allowed = "must be a GearOscillator or a DriveOscillator in mesh_force"
+        remedy = "restoring_force gives the force of a SmoothOscillator"
+        raise InputError.at("oscillator", type(self).__name__, allowed, remedy)
+
     def with_frequency_step(self, state: Array, before: float, after: float) -> Array:
         """State at tau = 0 just after the frequency has changed there: what is counted without the error stays."""
         return state
@@ -291,6 +356,10 @@ class PeriodicOscillator(Oscillator):
         same: Any = self  # a dataclass, as all oscillators are
         changed: Self = replace(same, **{self.stiffness_name: stiffness})
         return changed
+
+    @abstractmethod
+    def balanced(self, tau: Array) -> Array:
+        """States at rest at some times, shape (k, dimension), near which a slow motion stays."""
 
     @abstractmethod
     def deflection(self, x: npt.ArrayLike) -> Array:

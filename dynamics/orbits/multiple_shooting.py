@@ -4,19 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from base import Array, Integers
-from dynamics.flow.drive_flow import DriveFlow
-from dynamics.flow.exact_flow import ExactFlow
-from dynamics.model.drive_oscillator import DriveOscillator
-from dynamics.model.oscillator import GearOscillator
+from dynamics.model.protocol import PartedFlow, PeriodicOscillator
 
-Parted: TypeAlias = ExactFlow | DriveFlow
-"""Flows that follow parts of a period."""
 # four radians at most of every time scale: a stretch multiplies errors by less than 1e4
 CELLS_PER_STRETCH = 8
 MOST = 250  # stretches
@@ -62,7 +55,7 @@ class Chain:
 
 
 def shoot_in_stretches(
-    oscillator: GearOscillator | DriveOscillator, table: Parted, guess: Array, periods: int, limit: int
+    oscillator: PeriodicOscillator, table: PartedFlow, guess: Array, periods: int, limit: int
 ) -> Chain | None:
     """Newton's method with step halving on the states at the starts of all stretches; None if it does not arrive.
 
@@ -71,9 +64,9 @@ def shoot_in_stretches(
 
     Parameters
     ----------
-    oscillator : GearOscillator or DriveOscillator
+    oscillator : PeriodicOscillator
         The oscillator.
-    table : ExactFlow or DriveFlow
+    table : PartedFlow
         Its tables.
     guess : ndarray, shape (size,)
         State at tau = 0.
@@ -83,28 +76,30 @@ def shoot_in_stretches(
         Newton iterations.
     """
     firsts = stretch_starts(table, periods)
-    tau = firsts[:-1] * (oscillator.period / table.cells)
-    for nodes in (_followed(oscillator, table, guess, firsts), _balanced(oscillator, tau)):
+    tau = np.asarray(firsts[:-1] * (oscillator.period / table.cells), dtype=np.float64)
+    for nodes in (_followed(oscillator, table, guess, firsts), oscillator.balanced(tau)):
         chain = _newton(table, nodes, firsts, limit, oscillator.floor)
         if chain is not None:
             return replace(chain, error=_error(table, chain, periods))
     return None
 
 
-def stretch_starts(table: Parted, periods: int) -> Integers:
+def stretch_starts(table: PartedFlow, periods: int) -> Integers:
     """First cells of the stretches, and the cell after the last; every period begins with a stretch."""
     each = max(1, min(table.cells // CELLS_PER_STRETCH, MOST // periods))
     return np.round(np.linspace(0, table.cells * periods, each * periods + 1)).astype(np.int64)
 
 
-def _error(table: Parted, chain: Chain, periods: int) -> float:
+def _error(table: PartedFlow, chain: Chain, periods: int) -> float:
     """Largest Newton step that tables with half the cell would still take, over the size of the motion."""
     ends, factors, _, _ = stretches(table.finer(), chain.nodes, 2 * stretch_starts(table, periods))
     step = newton_step(factors, ends - np.roll(chain.nodes, -1, axis=0))
     return float(np.max(np.abs(step))) / max(float(np.max(np.abs(chain.nodes))), 1e-300)
 
 
-def stretches(table: Parted, nodes: Array, firsts: Integers) -> tuple[Array, Array, tuple[int, int], float]:
+def stretches(
+    table: PartedFlow, nodes: Array, firsts: Integers
+) -> tuple[Array, Array, tuple[int, int], float]:
     """Ends and Jacobians of all stretches, impacts and time in contact; nan where the motion is lost."""
     size = nodes.shape[1]
     ends, factors = np.empty_like(nodes), np.empty((len(nodes), size, size))
@@ -146,7 +141,7 @@ def newton_step(factors: Array, gap: Array) -> Array:
     return np.asarray(solved.reshape(m, size))
 
 
-def _newton(table: Parted, nodes: Array, firsts: Integers, limit: int, floor: float) -> Chain | None:
+def _newton(table: PartedFlow, nodes: Array, firsts: Integers, limit: int, floor: float) -> Chain | None:
     scale = max(float(np.max(np.abs(nodes))), floor)
     best, kept, step, factor = math.inf, None, np.zeros_like(nodes), 1.0
     trial = nodes
@@ -175,12 +170,10 @@ def _newton(table: Parted, nodes: Array, firsts: Integers, limit: int, floor: fl
     return kept if best <= 1e-14 * 64.0 * stretch * scale else None
 
 
-def _followed(
-    oscillator: GearOscillator | DriveOscillator, table: Parted, guess: Array, firsts: Integers
-) -> Array:
+def _followed(oscillator: PeriodicOscillator, table: PartedFlow, guess: Array, firsts: Integers) -> Array:
     """Nodes on the motion from the guess; where it grows far beyond what drives it, the slow balance."""
-    tau = firsts[:-1] * (oscillator.period / table.cells)
-    nodes = _balanced(oscillator, tau)
+    tau = np.asarray(firsts[:-1] * (oscillator.period / table.cells), dtype=np.float64)
+    nodes = oscillator.balanced(tau)
     bound = 20.0 * max(float(np.max(np.abs(guess))), float(np.max(np.abs(nodes))), oscillator.half_backlash)
     state, counts = guess.copy(), np.zeros(2, dtype=np.int64)
     for i, length in enumerate(np.diff(firsts)):
@@ -189,21 +182,3 @@ def _followed(
         nodes[i] = state
         state = np.nan_to_num(table.part(int(firsts[i]), int(length), state, counts)[0], nan=np.inf)
     return nodes
-
-
-def _balanced(oscillator: GearOscillator | DriveOscillator, tau: npt.NDArray[np.floating]) -> Array:
-    """States at rest where force and stiffness balance; where the stiffness is small or negative, that of its mean.
-
-    Without a second flank nothing balances a force that opens the first: what is left there is its edge.
-    """
-    if isinstance(oscillator, DriveOscillator):
-        return oscillator.balanced(np.asarray(tau, dtype=np.float64))
-    k = oscillator.stiffness(oscillator.frequency * tau)
-    mean = abs(oscillator.stiffness.mean)
-    force = oscillator.force(tau)
-    pressed = force / np.maximum(k, 0.2 * mean if mean > 0.0 else 1.0)
-    if oscillator.one_sided and oscillator.mean_force < 0.0:
-        pressed = np.maximum(pressed, 0.0)
-    side = -1.0 if oscillator.mean_force < 0.0 and not oscillator.one_sided else 1.0
-    x = side * oscillator.half_backlash + pressed
-    return np.stack([x, np.zeros_like(x)], axis=1)

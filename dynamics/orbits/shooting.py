@@ -10,12 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, part, quantity, record
-from dynamics.flow.drive_flow import DriveFlow
-from dynamics.flow.exact_flow import ExactFlow
 from dynamics.flow.flows import flow_of
-from dynamics.model.drive_oscillator import DriveOscillator
 from dynamics.model.limits import NEWTON_STEPS, ORBIT_PERIODS, TRANSIENT
-from dynamics.model.oscillator import GearOscillator
 from dynamics.model.protocol import EPS, Flow, MapResult, Oscillator
 from dynamics.model.states import checked_state
 from dynamics.orbits.multiple_shooting import shoot_in_stretches
@@ -206,20 +202,18 @@ def find_orbit(
 
 
 def _in_stretches(
-    oscillator: Oscillator, flow: Flow, guess: Array, n: int, limit: int, size: float, lost: bool, watch: Stopwatch,
+    oscillator: Any, flow: Flow, guess: Array, n: int, limit: int, size: float, lost: bool, watch: Stopwatch,
     used: int,
 ) -> Orbit | None:  # fmt: skip
     """Orbit by multiple shooting, from which even an orbit of a multiplier of 1e18 keeps its digits.
 
-    Of the exact flows alone; tried where one shot is lost, or is not enough for a long orbit.
+    Of flows alone that can be followed by parts of a period; tried where one shot is lost, or is not enough for a long
+    orbit.
     """
-    if not (
-        isinstance(oscillator, GearOscillator | DriveOscillator) and isinstance(flow, ExactFlow | DriveFlow)
-    ):
+    parts = flow.parted()
+    if parts is None or (not lost and parts.cells * n <= LONG):
         return None
-    if not lost and flow.cells * n <= LONG:
-        return None
-    chain = shoot_in_stretches(oscillator, flow, guess, n, limit)
+    chain = shoot_in_stretches(oscillator, parts, guess, n, limit)
     if chain is None:
         return None
     nodes = chain.nodes
@@ -234,7 +228,7 @@ def _in_stretches(
         return _in_stretches(oscillator, flow, nodes[0], least, limit, size, True, watch, used)
     message = f"converged in {chain.iterations} iterations on {len(nodes)} stretches"
     cost = Cost(watch.seconds, nodes.size, chain.iterations, used + n * chain.iterations)
-    decay = -flow.damped(chain.contact, n)
+    decay = -parts.damped(chain.contact, n)
     image = MapResult(np.roll(starts, -1, axis=0), chain.jacobian, decay, np.array([chain.counts]), "", cost)
     return make_orbit(
         oscillator, nodes[0].copy(), n, image, chain.residual, chain.error, cost, True, message, nodes=nodes

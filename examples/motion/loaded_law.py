@@ -32,7 +32,7 @@ from dynamics import (
     TabulatedContact,
     fit_fourier,
 )
-from dynamics.flow.exact_flow import turning_points
+from dynamics.flow.motions import turning_points
 from gears import BasicRack, Gear, GearPair, Material
 
 Array = NDArray[np.float64]

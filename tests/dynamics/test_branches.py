@@ -20,7 +20,7 @@ from dynamics import (
     period_map,
     sweep,
 )
-from dynamics.flow.exact_flow import turning_points
+from dynamics.flow.motions import turning_points
 from tests.validation.article_motion import lubricated, starved
 
 

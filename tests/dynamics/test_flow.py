@@ -19,7 +19,8 @@ from hypothesis import strategies as st
 import dynamics
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, period_map, trajectory
-from dynamics.flow.exact_flow import DEGREE, exact_flow, turning_points
+from dynamics.flow.exact_flow import DEGREE, exact_flow
+from dynamics.flow.motions import turning_points
 
 EPS = np.finfo(float).eps
 unit = st.floats(-1.0, 1.0)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator
-from dynamics.orbits.multiple_shooting import _balanced
 
 PLAIN = GearOscillator(FourierStiffness(1.0, (0.2,), (0.0,)), 0.05, 0.1, 0.0, 0.8, half_backlash=0.5)
 
@@ -26,9 +25,9 @@ def test_a_second_flank_is_rested_on_where_there_is_one(force):
 def test_nothing_holds_what_falls_off_a_single_flank(force):
     falling = replace(PLAIN, mean_force=force, one_sided=True)
     assert np.array_equal(falling.rest_state(), np.zeros(2))
-    starts = _balanced(falling, np.linspace(0.0, falling.period, 7))
+    starts = falling.balanced(np.linspace(0.0, falling.period, 7))
     assert np.all(starts[:, 0] == 0.5)
-    shaken = _balanced(replace(falling, error_amplitude=1.0), np.linspace(0.0, falling.period, 7))
+    shaken = replace(falling, error_amplitude=1.0).balanced(np.linspace(0.0, falling.period, 7))
     assert np.all(shaken[:, 0] >= 0.5)
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, period_map
 from dynamics.branches.sensitivity import map_derivatives
-from dynamics.flow.exact_flow import turning_points
+from dynamics.flow.motions import turning_points
 
 STATE = np.array([0.5, 0.2])
 

@@ -25,7 +25,7 @@ from dynamics.branches.branch import MEETS
 from dynamics.branches.branch_problem import MapPoint, Steps
 from dynamics.branches.sensitivity import map_derivatives
 from dynamics.branches.stepwise_problem import PeriodMap
-from dynamics.flow.exact_flow import turning_points
+from dynamics.flow.motions import turning_points
 
 KAPPA = FourierStiffness(1.0, (0.18,), (0.0,))
 
