@@ -8,8 +8,8 @@ from base import Array, InputError
 from dynamics.attraction.escapes import STRETCH, Cover
 from dynamics.attraction.manifolds import is_direct_saddle
 from dynamics.flow.exact_flow import exact_flow
+from dynamics.flow.protocol import Flow
 from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import Flow
 from dynamics.model.states import apart
 from dynamics.orbits.shooting import Orbit, find_orbit
 

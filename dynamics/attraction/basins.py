@@ -9,9 +9,10 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, InputError, Integers, Stopwatch, part, quantity, record
 from dynamics.attraction.known_attractors import KnownAttractors
+from dynamics.flow.protocol import Flow
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import LONGEST_PERIOD, PATIENT, RADIUS, checked_axis
-from dynamics.model.protocol import Flow, Oscillator, settling_periods
+from dynamics.model.protocol import Oscillator, settling_periods
 from dynamics.model.states import apart, checked_state
 from dynamics.motion.exponents import stretch_rate
 from dynamics.motion.sweeps import APERIODIC, creeping, long_flow, orbit_tolerance, repeat_after

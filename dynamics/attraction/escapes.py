@@ -17,9 +17,10 @@ import numpy.typing as npt
 from base import Array, Booleans, Cost, Faults, InputError, Stopwatch, part, quantity, record
 from base.results import EXACT
 from dynamics.attraction.basins import Attractor
+from dynamics.flow.protocol import Flow
 from dynamics.model.limits import PERIODS, STARTS, ordered
 from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import Flow, exact_only, settling_periods
+from dynamics.model.protocol import exact_only, settling_periods
 from dynamics.model.states import checked_state
 from dynamics.motion.sweeps import APERIODIC, long_flow
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from base import Array, Integers
-from dynamics.model.protocol import Flow
+from dynamics.flow.protocol import Flow
 
 
 class KnownAttractors:

@@ -13,8 +13,8 @@ from base import Array, InputError
 from dynamics.branches.branch_problem import MapPoint
 from dynamics.branches.stepwise_problem import PeriodMap
 from dynamics.flow.drive_flow import DriveFlow, tabulated
+from dynamics.flow.protocol import MapResult
 from dynamics.model.drive_oscillator import DriveOscillator
-from dynamics.model.protocol import MapResult
 from dynamics.orbits.shooting import multipliers_of
 
 # of the parameter's range: differences, whose error only slows Newton's method down; the shorter ones beside impacts

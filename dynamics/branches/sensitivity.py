@@ -7,9 +7,10 @@ import numpy.typing as npt
 
 from base import Array, Faults, quantity, record
 from dynamics.branches.corrector import OrbitProblem
+from dynamics.flow.protocol import lost_motion
 from dynamics.model.limits import PERIODS
 from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import exact_only, lost_motion
+from dynamics.model.protocol import exact_only
 from dynamics.model.states import checked_state
 
 

@@ -11,9 +11,10 @@ import numpy as np
 
 from base import Array, Cost, Integers, Stopwatch, in_blocks
 from dynamics.flow.exact_flow import REASONS
+from dynamics.flow.protocol import MapResult, PartedFlow, Stretches, lost_motion
 from dynamics.kernels.drives import STRIDE
 from dynamics.model.drive_oscillator import DriveOscillator
-from dynamics.model.protocol import EPS, MapResult, PartedFlow, Stretches, lost_motion
+from dynamics.model.protocol import EPS
 
 # of motions expanded about the start of a cell, a radian of every time scale long: 1/17! is rounding
 DEGREE = 16

@@ -10,9 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Integers, Stopwatch, in_blocks
+from dynamics.flow.protocol import MapResult, PartedFlow, Stretches, lost_motion
 from dynamics.model.limits import POSITIVE, REFINEMENT, TAYLOR_DEGREE
 from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import EPS, MapResult, PartedFlow, Stretches, lost_motion
+from dynamics.model.protocol import EPS
 
 # of the Taylor tables; a quarter of a radian to each side of the middle leaves less than rounding
 DEGREE = 13

@@ -8,12 +8,13 @@ from functools import singledispatch
 from base import Faults, InputError
 from dynamics.flow.drive_flow import DriveFlow, drive_flow
 from dynamics.flow.exact_flow import ExactFlow, exact_flow
+from dynamics.flow.protocol import Flow
 from dynamics.flow.stepwise_flow import StepwiseFlow
 from dynamics.flow.table_reuse import TableReuse
 from dynamics.model.drive_oscillator import DriveOscillator
 from dynamics.model.limits import POSITIVE
 from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import Flow, Oscillator
+from dynamics.model.protocol import Oscillator
 from dynamics.model.smooth_oscillator import SmoothOscillator
 
 

@@ -9,9 +9,10 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.flow.flows import flow_of
+from dynamics.flow.protocol import Flow, MapResult
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import PERIODS, POINTS, TRANSIENT
-from dynamics.model.protocol import Flow, MapResult, Oscillator, PeriodicOscillator, periodic_only
+from dynamics.model.protocol import Oscillator, PeriodicOscillator, periodic_only
 from dynamics.model.states import checked_state
 
 

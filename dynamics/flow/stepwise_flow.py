@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from base import Array, Cost, Faults, Integers, Stopwatch
+from dynamics.flow.protocol import Flow, MapResult, Stretches, lost_motion
 from dynamics.model.limits import STEP_TOLERANCE
-from dynamics.model.protocol import Flow, MapResult, Stretches, lost_motion
 from dynamics.model.smooth_oscillator import SmoothOscillator
 
 TOLERANCE = 1e-12

@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
+from dynamics.flow.protocol import Flow, lost_motion
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import AVERAGED, BATCHES, TRANSIENT, checked_grid
-from dynamics.model.protocol import Flow, Oscillator, lost_motion, settling_periods
+from dynamics.model.protocol import Oscillator, settling_periods
 from dynamics.model.states import checked_state
 from dynamics.motion.sweeps import long_flow
 

@@ -11,9 +11,10 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
 from dynamics.flow.flows import flow_of, flows_along
+from dynamics.flow.protocol import Flow
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import KEPT, LONGEST_PERIOD, TRANSIENT, checked_grid
-from dynamics.model.protocol import EPS, Flow, Oscillator, settling_periods
+from dynamics.model.protocol import EPS, Oscillator, settling_periods
 from dynamics.model.states import checked_state
 from dynamics.orbits.shooting import find_orbit, motion_label
 

@@ -14,9 +14,10 @@ from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.flow.exact_flow import exact_flow, propagated
 from dynamics.flow.flows import flow_of
 from dynamics.flow.motions import period_map
+from dynamics.flow.protocol import Flow
 from dynamics.model.limits import SEARCHED, whole_numbers
 from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import Flow, PeriodicOscillator, exact_only, settling_periods
+from dynamics.model.protocol import PeriodicOscillator, exact_only, settling_periods
 from dynamics.model.states import Region, checked_region
 from dynamics.orbits.index import index_at_infinity
 from dynamics.orbits.shooting import Orbit, find_orbit

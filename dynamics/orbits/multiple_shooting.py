@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from base import Array, Integers
-from dynamics.model.protocol import PartedFlow, PeriodicOscillator
+from dynamics.flow.protocol import PartedFlow
+from dynamics.model.protocol import PeriodicOscillator
 
 # four radians at most of every time scale: a stretch multiplies errors by less than 1e4
 CELLS_PER_STRETCH = 8

@@ -11,8 +11,9 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, part, quantity, record
 from dynamics.flow.flows import flow_of
+from dynamics.flow.protocol import Flow, MapResult
 from dynamics.model.limits import NEWTON_STEPS, ORBIT_PERIODS, TRANSIENT
-from dynamics.model.protocol import EPS, Flow, MapResult, Oscillator
+from dynamics.model.protocol import EPS, Oscillator
 from dynamics.model.states import checked_state
 from dynamics.orbits.multiple_shooting import shoot_in_stretches
 

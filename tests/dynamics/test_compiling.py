@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -76,3 +77,13 @@ def test_numbers_in_numbas_own_way(tmp_path):
     )
     for one, other in zip(short, plain, strict=True):
         np.testing.assert_allclose(other, one, rtol=0, atol=1e-11)
+
+
+def test_no_numba_is_installed_whose_insides_were_not_tried():
+    """The dependency ends before the minor version after the last one tried."""
+    from dynamics.kernels.compiling import TRIED
+
+    text = (Path(dynamics.__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8")
+    (numba,) = (line for line in tomllib.loads(text)["project"]["dependencies"] if line.startswith("numba"))
+    major, minor = max(tuple(map(int, version.strip(".").split("."))) for version in TRIED)
+    assert numba.endswith(f",<{major}.{minor + 1}")
