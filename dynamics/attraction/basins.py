@@ -132,7 +132,9 @@ def basins(
         longest = faults.whole("max_period", max_period, *LONGEST_PERIOD)
         wait = settling_periods(oscillator) if limit is None else faults.whole("limit", limit, *PATIENT)
     flow = long_flow(oscillator, tolerance)
-    starts = _starts(oscillator, np.stack(np.meshgrid(xs, vs, indexing="ij"), axis=-1), plane, through)
+    starts = starting_states(
+        oscillator, np.stack(np.meshgrid(xs, vs, indexing="ij"), axis=-1), plane, through
+    )
     labels = np.full(len(starts), UNDECIDED, dtype=np.int64)
     search = _Found(oscillator, flow, longest, near, wait)
     sample = np.unique(np.linspace(0, len(starts) - 1, min(len(starts), SEEDS)).astype(np.int64))
@@ -172,10 +174,25 @@ def basins(
     )
 
 
-def _starts(
+def starting_states(
     oscillator: Oscillator, grid: Array, plane: npt.ArrayLike | None, through: npt.ArrayLike | None
 ) -> Array:
-    """Starting states, shape (k, dimension), of distances along two directions, shape (x, v, 2)."""
+    """Starting states, shape (k, dimension), of distances along two directions, shape (any, 2).
+
+    Parameters
+    ----------
+    oscillator : Oscillator
+        The oscillator.
+    grid : ndarray, shape (any, 2)
+        Distances from `through` along the two directions.
+    plane, through : array_like, optional
+        As of `basins`.
+
+    Raises
+    ------
+    InputError
+        If the directions are not independent, or of another length than a state.
+    """
     along, centre = oscillator.start_plane()
     if plane is not None:
         along = np.array(plane, dtype=np.float64)

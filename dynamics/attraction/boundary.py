@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from base import Array, Cost, Faults, Integers, Stopwatch, quantity, record
-from dynamics.attraction.basins import Attractor
+from dynamics.attraction.basins import Attractor, starting_states
 from dynamics.attraction.known_attractors import KnownAttractors
-from dynamics.flow.exact_flow import exact_flow
 from dynamics.model.limits import CONFIDENCE, RADIUS
-from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import exact_only
+from dynamics.model.protocol import Oscillator
 from dynamics.model.states import Region, checked_region
+from dynamics.motion.sweeps import long_flow
 
 CORNERS = np.array([(0, 0), (0, 1), (1, 0), (1, 1)])  # of a cell, in cells
 COUNTED = 5  # last levels from which the dimension is taken
@@ -26,7 +26,11 @@ class BasinBoundary:
 
     headline = ("dimension", "dimension_error")
 
-    points: Array = quantity("1", "X and V amid the smallest cells whose corners differ", "cell state")
+    points: Array = quantity(
+        "1",
+        "X and V, or distances along the two directions, amid the smallest cells whose corners differ",
+        "cell state",
+    )
     cell: tuple[float, float] = quantity("1", "sides of these cells", "state")
     counts: Integers = quantity(
         "1", "cells with different corners at every level; from one to the next the sides are halved", "level"
@@ -86,12 +90,13 @@ def share_interval(hits: int, starts: int, confidence: float = 0.95) -> tuple[fl
     return max((middle - half) / whole, 0.0), min((middle + half) / whole, 1.0)
 
 
-@exact_only
 def basin_boundary(
-    oscillator: GearOscillator,
+    oscillator: Oscillator,
     attractors: Sequence[Attractor],
     region: Region,
     *,
+    plane: npt.ArrayLike | None = None,
+    through: npt.ArrayLike | None = None,
     cells: int = 16,
     levels: int = 6,
     limit: int = 2000,
@@ -102,12 +107,14 @@ def basin_boundary(
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : Oscillator
         The oscillator.
     attractors : sequence of Attractor
         Periodic ones, as `basins` finds them; what reaches none of them within `limit` is one further kind.
     region : ((x0, x1), (v0, v1))
-        Starts.
+        Starts: X and V; in several freedoms how far they are from `through` along the two directions of `plane`.
+    plane, through : array_like, optional
+        As of `basins`.
     cells : int
         Cells along each side at the first level. A tongue that passes between their corners is missed.
     levels : int
@@ -148,7 +155,11 @@ def basin_boundary(
         if not homes:
             faults.add("attractors", len(attractors), "must hold a periodic one", "find them with basins")
         region = checked_region(faults, region)
-    labeller = _Labeller(KnownAttractors(exact_flow(oscillator), homes, near), wait)
+    labeller = _Labeller(
+        KnownAttractors(long_flow(oscillator, None), homes, near),
+        wait,
+        lambda places: starting_states(oscillator, places, plane, through),
+    )
     origin, width = np.array(region)[:, 0], np.ptp(region, axis=1)
     corners = np.array([(i, j) for i in range(side) for j in range(side)], dtype=np.int64)
     counts, shares, fine = [], np.zeros(len(homes) + 1), True
@@ -182,8 +193,8 @@ def basin_boundary(
 class _Labeller:
     """Labels of corners, each followed once."""
 
-    def __init__(self, homes: KnownAttractors, limit: int) -> None:
-        self.homes, self.limit = homes, limit
+    def __init__(self, homes: KnownAttractors, limit: int, starts: Callable[[Array], Array]) -> None:
+        self.homes, self.limit, self.starts = homes, limit, starts
         self.known: dict[tuple[float, float], int] = {}
 
     def at(self, cells: Integers, low: Array, size: Array, number: int) -> Integers:
@@ -193,7 +204,7 @@ class _Labeller:
         # exact: dyadic shares of the region
         keys = [(float(i) / number, float(j) / number) for i, j in unique]
         new = [k for k, key in enumerate(keys) if key not in self.known]
-        labels = self.homes.settle(low + unique[new] * size, self.limit)
+        labels = self.homes.settle(self.starts(low + unique[new] * size), self.limit)
         labels[labels < 0] = self.homes.number
         self.known.update((keys[k], int(label)) for k, label in zip(new, labels, strict=True))
         return np.array([self.known[key] for key in keys], dtype=np.int64)[back].reshape(-1, 4)

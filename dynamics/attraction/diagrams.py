@@ -91,13 +91,11 @@ class Diagram(AsArray):
 
     def _plane(self, values: Array, states: Array) -> Array:
         """X and V at tau = 0 of states at values of the parameter."""
-        if self.oscillator.is_exact:
-            return states
         rows = [
-            self.oscillator.with_parameter(self.parameter, value).contact_motion(np.zeros(1), state[None])
+            self.oscillator.with_parameter(self.parameter, value).in_plane(state[None])
             for value, state in zip(values.tolist(), states, strict=True)
         ]
-        return np.array(rows).reshape(-1, 2)
+        return np.concatenate([np.empty((0, 2)), *rows])
 
 
 @periodic_only

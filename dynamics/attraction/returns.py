@@ -54,7 +54,7 @@ def branch_returns(branch: Branch, oscillator: Any) -> Array:
     # (point, period, X and V): the last period ends where the orbit began
     points = np.array(
         [
-            _in_plane(one, flow_of(one).follow(state, branch.periods, 0, False).states[: branch.periods - 1])
+            one.in_plane(flow_of(one).follow(state, branch.periods, 0, False).states[: branch.periods - 1])
             for one, state in zip(here, branch.states, strict=True)
         ]
     )
@@ -65,11 +65,3 @@ def branch_returns(branch: Branch, oscillator: Any) -> Array:
         for period in range(branch.periods - 1)
     ]
     return np.concatenate(pieces)
-
-
-def _in_plane(oscillator: Any, states: Array) -> Array:
-    """X and V of states at the start of a period, rows (X, V)."""
-    if oscillator.is_exact:
-        return states
-    rows = [oscillator.contact_motion(np.zeros(1), state[None]) for state in states]
-    return np.array(rows).reshape(-1, 2)

@@ -89,6 +89,10 @@ class Oscillator(ABC):
     def contact_motion(self, tau: Array, states: Array) -> tuple[Array, Array]:
         """Displacement that the backlash limits, and its rate, of states (k, dimension) at times (k,)."""
 
+    def in_plane(self, states: Array) -> Array:
+        """X and V, in several freedoms y and its rate, of states (k, dimension) at tau = 0; shape (k, 2)."""
+        return np.column_stack(self.contact_motion(np.zeros(len(states)), states))
+
     def contact_force(self, angle: Array, x: Array) -> Array:
         """Force of the contact at angles of the excitation.
 

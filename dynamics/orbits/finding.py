@@ -340,7 +340,7 @@ def reach(oscillator: PeriodicOscillator) -> Region:
     """Box of X and V, from the middle of basins, somewhat larger than what long motions from three starts cover."""
     centre = oscillator.start_plane()[1]
     states = np.vstack([centre, _long_motions(oscillator, flow_of(oscillator))[0]])
-    plane = np.column_stack(oscillator.contact_motion(np.zeros(len(states)), states))
+    plane = oscillator.in_plane(states)
     return _around(np.max(np.abs(plane[1:] - plane[0]), axis=0, initial=1e-9))
 
 

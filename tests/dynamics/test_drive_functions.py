@@ -29,9 +29,9 @@ TAKEN = {
     "multi_sweep": lambda: dynamics.multi_sweep(DRIVE, "frequency", [0.89, 0.91], seeds=1, starts=2, limit=100),
     "run_up": lambda: dynamics.run_up(DRIVE, (0.89, 0.91), 64),
     "basins": lambda: dynamics.basins(DRIVE, (-0.1, 0.1, 2), (-0.1, 0.1, 2), limit=40),
+    "basin_boundary": None,  # tests.dynamics.test_drive_global
 }  # fmt: skip
 REFUSED = {
-    "basin_boundary": ((), ((0.0, 1.0), (0.0, 1.0))),
     "boundary_crisis": ("frequency", (0.8, 0.9)),
     "carried_point": ("frequency", None, "mean_force", 0.1),
     "chaos_end": ("frequency", (0.1, 0.2), (0.5, 0.6)),
