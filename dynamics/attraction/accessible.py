@@ -7,10 +7,10 @@ import numpy as np
 from base import Array, InputError
 from dynamics.attraction.escapes import STRETCH, Cover
 from dynamics.attraction.manifolds import is_direct_saddle
-from dynamics.flow.exact_flow import exact_flow
 from dynamics.flow.protocol import Flow
-from dynamics.model.oscillator import GearOscillator
+from dynamics.model.protocol import Oscillator
 from dynamics.model.states import apart
+from dynamics.motion.sweeps import long_flow
 from dynamics.orbits.shooting import Orbit, find_orbit
 
 MOTIONS = 24  # that have to leave
@@ -24,7 +24,7 @@ SAMPLED = 40  # samples of the attractor of which the distance to the next is lo
 SPACED = 3.0  # times this distance: nearer saddles count as on the attractor
 
 
-def accessible_saddles(oscillator: GearOscillator, states: Array, longest: int) -> list[Orbit]:
+def accessible_saddles(oscillator: Oscillator, states: Array, longest: int) -> list[Orbit]:
     """Saddles near the ways by which motions leave what was an attractor, the nearest to it first.
 
     Motions that escape pass the saddle with whose stable manifold the attractor has collided: near recurrences of their
@@ -34,9 +34,9 @@ def accessible_saddles(oscillator: GearOscillator, states: Array, longest: int) 
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : Oscillator
         Just past the end of the attractor.
-    states : (n, 2) array
+    states : (n, dimension) array
         Samples of the attractor before its end; the more, the better points on it are recognised.
     longest : int
         Longest period of a saddle.
@@ -51,12 +51,12 @@ def accessible_saddles(oscillator: GearOscillator, states: Array, longest: int) 
     if len(states) < ENOUGH:
         allowed = f"must have {ENOUGH} samples of its chaos, or be periodic"
         raise InputError.at("attractor", f"{len(states)} samples", allowed, "take that of chaos_end")
-    flow, cover = exact_flow(oscillator), Cover.of(states)
+    flow, cover = long_flow(oscillator, None), Cover.of(oscillator.in_plane(states))
     size = float(np.max(np.ptp(states, axis=0)))
     met: list[Orbit] = []
     escaped = stayed = 0
     for start in states[:: max(1, len(states) // (2 * MOTIONS))]:
-        motion = _leaving(flow, start, cover)
+        motion = _leaving(oscillator, flow, start, cover)
         if motion is None:
             stayed += 1
             if stayed >= STAYING and escaped == 0:
@@ -80,14 +80,14 @@ def accessible_saddles(oscillator: GearOscillator, states: Array, longest: int) 
     return [saddle for distance, saddle in ranked if distance > SPACED * spacing]
 
 
-def _leaving(flow: Flow, start: Array, cover: Cover) -> Array | None:
+def _leaving(oscillator: Oscillator, flow: Flow, start: Array, cover: Cover) -> Array | None:
     """States of a motion about where it leaves the cover; None if it stays."""
-    at, before = start, np.empty((0, 2))
+    at, before = start, start[None][:0]
     for _ in range(LONGEST):
         motion = flow.follow(at, STRETCH, derivatives=False)
         if motion.message:
             return None
-        out = np.flatnonzero(cover.outside(motion.states))
+        out = np.flatnonzero(cover.outside(oscillator.in_plane(motion.states)))
         states = np.vstack([before[-BEFORE:], motion.states])
         if len(out):
             gone = len(states) - STRETCH + int(out[0])
@@ -96,7 +96,7 @@ def _leaving(flow: Flow, start: Array, cover: Cover) -> Array | None:
     return None
 
 
-def _saddles(oscillator: GearOscillator, states: Array, size: float, longest: int, met: list[Orbit]) -> None:
+def _saddles(oscillator: Oscillator, states: Array, size: float, longest: int, met: list[Orbit]) -> None:
     """Add the saddles that Newton's method finds from near recurrences of a motion."""
     for n in range(1, min(longest, len(states) - 1) + 1):
         gap = np.max(np.abs(states[n:] - states[:-n]), axis=1)

@@ -16,7 +16,6 @@ from dynamics.attraction.manifolds import is_direct_saddle
 from dynamics.branches.branch import Branch
 from dynamics.branches.continuation import continue_branch
 from dynamics.model.limits import ordered
-from dynamics.model.protocol import exact_only
 from dynamics.motion.sweeps import sweep
 from dynamics.orbits.shooting import Orbit
 
@@ -43,7 +42,7 @@ class Crisis:
     side: int = quantity(
         "1",
         "branch of the saddle's unstable manifold on which the attractor lies: 1 or -1 along the eigenvector of "
-        "positive X",
+        "positive X, in several freedoms of a positive first displacement",
         default=0,
     )
     overshoot: tuple[float, float] = quantity(
@@ -70,7 +69,6 @@ class Crisis:
     )
 
 
-@exact_only
 def boundary_crisis(
     saddle: Orbit,
     parameter: str = "frequency",
@@ -92,7 +90,7 @@ def boundary_crisis(
     saddle : Orbit
         A saddle with a multiplier above 1 within the bounds.
     parameter : str
-        As in `GearOscillator.with_parameter`.
+        One of the `parameters` of its oscillator.
     bounds : tuple of float
         On one side of the crisis each.
     points : int

@@ -9,11 +9,10 @@ from dynamics.attraction.accessible import accessible_saddles
 from dynamics.attraction.basins import Attractor
 from dynamics.attraction.known_attractors import KnownAttractors
 from dynamics.attraction.manifolds import is_direct_saddle
-from dynamics.flow.exact_flow import exact_flow
 from dynamics.flow.motions import period_map
-from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import exact_only
+from dynamics.model.protocol import Oscillator
 from dynamics.model.states import apart
+from dynamics.motion.sweeps import long_flow
 from dynamics.orbits.shooting import Orbit, find_orbit
 
 SECTIONS = 16  # parts of the bracket tried at once
@@ -22,9 +21,8 @@ PIECES = 40  # longest period of a saddle beside chaos, at least
 NEAR = 1e-2  # of the attractor's size: recurrence of the motion on the boundary that Newton's method is tried from
 
 
-@exact_only
 def edge_saddles(
-    oscillator: GearOscillator,
+    oscillator: Oscillator,
     attractor: Attractor,
     *,
     rays: int = 8,
@@ -38,7 +36,8 @@ def edge_saddles(
     rounding; the motion from there stays on the boundary as long as rounding allows, and comes close to the saddle
     whose stable manifold that part of the boundary is. No period need be known. Where the boundary is fractal the
     saddle is that of its part next to the attractor, on which the attractor is destroyed if it grows to reach it. Only
-    saddles with a multiplier above 1 can part basins: one below -1 swaps the sides of the stable manifold.
+    saddles with a multiplier above 1 can part basins: one below -1 swaps the sides of the stable manifold. In several
+    freedoms rays go out in the directions in which y and its rate move alone.
 
     A chaotic attractor is looked at where it has just ended, since it then is left by motions that pass the saddle with
     which it collided. The boundary may be fractal and the saddle have a multiple of the attractor's pieces. Near
@@ -47,7 +46,7 @@ def edge_saddles(
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : Oscillator
         The oscillator.
     attractor : Attractor
         A periodic one of `basins`; or a chaotic one, such as `ChaosEnd.attractor`, for the oscillator past its end.
@@ -85,11 +84,12 @@ def edge_saddles(
         longest = faults.whole("max_period", max_period, 1, 1000, "16 is usual")
     if attractor.orbit is None:
         return accessible_saddles(oscillator, attractor.states, max(longest, PIECES))
-    homes = KnownAttractors(exact_flow(oscillator), [attractor.states], radius)
+    homes = KnownAttractors(long_flow(oscillator, None), [attractor.states], radius)
+    plane = oscillator.start_plane()[0]
     met: list[tuple[Orbit, int]] = []
     angles = 2.0 * np.pi * (np.arange(number) + 0.5) / number
     for point in attractor.states:
-        for along in np.column_stack([np.cos(angles), np.sin(angles)]):
+        for along in np.column_stack([np.cos(angles), np.sin(angles)]) @ plane:
             edge = _edge(homes, wait, point, along)
             orbit = None if edge is None else _saddle(oscillator, homes, edge, longest)
             if orbit is None:
@@ -122,7 +122,7 @@ def _edge(homes: KnownAttractors, limit: int, point: Array, along: Array) -> Arr
     return np.asarray(point + 0.5 * (low + high) * along)
 
 
-def _saddle(oscillator: GearOscillator, homes: KnownAttractors, edge: Array, longest: int) -> Orbit | None:
+def _saddle(oscillator: Oscillator, homes: KnownAttractors, edge: Array, longest: int) -> Orbit | None:
     """Saddle that the motion from a state on the boundary comes closest to."""
     states = np.vstack([edge, period_map(homes.flow, edge, 40 + 2 * longest).states])
     best: list[tuple[float, int, int]] = []

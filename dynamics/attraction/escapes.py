@@ -17,10 +17,8 @@ import numpy.typing as npt
 from base import Array, Booleans, Cost, Faults, InputError, Stopwatch, part, quantity, record
 from base.results import EXACT
 from dynamics.attraction.basins import Attractor
-from dynamics.flow.protocol import Flow
 from dynamics.model.limits import PERIODS, STARTS, ordered
-from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import exact_only, settling_periods
+from dynamics.model.protocol import Oscillator, settling_periods
 from dynamics.model.states import checked_state
 from dynamics.motion.sweeps import APERIODIC, long_flow
 
@@ -98,9 +96,8 @@ class Cover:
         return np.asarray(~(inside & self.cells[place[:, 0], place[:, 1]]))
 
 
-@exact_only
 def chaos_end(
-    oscillator: GearOscillator,
+    oscillator: Oscillator,
     parameter: str,
     state: npt.ArrayLike,
     bounds: tuple[float, float],
@@ -110,13 +107,16 @@ def chaos_end(
 ) -> ChaosEnd:
     """Close in on the parameter at which a chaotic attractor becomes a transient.
 
+    A motion has left where X and V lie outside the cells that the attractor covers; in several freedoms y and its rate.
+    What leaves in another direction alone, with y and its rate where they were, is not seen to leave.
+
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : Oscillator
         The oscillator; its own value of the parameter is not used.
     parameter : str
-        As in `GearOscillator.with_parameter`.
-    state : array_like, shape (2,)
+        One of its `parameters`.
+    state : array_like, shape (dimension,)
         From which the motion reaches the attractor at the first bound.
     bounds : (float, float)
         Where chaos lasts, and where motions leave it; the second may be the lower one.
@@ -151,12 +151,12 @@ def chaos_end(
     here = oscillator.with_parameter(parameter, float(bounds[0]))
     flow = long_flow(here, None)
     wait = settling_periods(here)
-    motion = flow.follow(checked_state(state), COVERED, wait, derivatives=False)
+    motion = flow.follow(checked_state(state, size=here.dimension), COVERED, wait, derivatives=False)
     if motion.message:
         raise InputError.at(
             "state", motion.message, "must lead to a bounded motion", "take one of the attractor's"
         )
-    cover = Cover.of(motion.states)
+    cover = Cover.of(here.in_plane(motion.states))
     if len(np.unique(np.round(motion.states[-256:], 9), axis=0)) < 256:
         allowed = f"must lead to chaos at {parameter} = {bounds[0]:g}, where it repeats"
         raise InputError.at("state", state, allowed, "begin the bounds where the attractor is chaotic")
@@ -164,9 +164,7 @@ def chaos_end(
     looked: list[tuple[float, int, int]] = []
 
     def leaves(value: float) -> bool:
-        escaped, used = _escapes(
-            long_flow(oscillator.with_parameter(parameter, value), None), at, cover, budget
-        )
+        escaped, used = _escapes(oscillator.with_parameter(parameter, value), at, cover, budget)
         looked.append((value, escaped, used))
         return escaped > 0
 
@@ -197,19 +195,25 @@ def chaos_end(
     )  # fmt: skip
 
 
-def _escapes(flow: Flow, starts: Array, cover: Cover, budget: int) -> tuple[int, int]:
+def _escapes(oscillator: Oscillator, starts: Array, cover: Cover, budget: int) -> tuple[int, int]:
     """Motions that leave, and periods that all were followed; at most the budget, and no longer than a few escapes."""
+    flow = long_flow(oscillator, None)
     at, alive, used, escaped = starts.copy(), list(range(len(starts))), 0, 0
     while alive and used < budget:
         for k in tuple(alive):
             motion = flow.follow(at[k], STRETCH, derivatives=False)
             out = (
-                np.flatnonzero(cover.outside(motion.states)) if not motion.message else np.zeros(1, dtype=int)
+                np.flatnonzero(cover.outside(oscillator.in_plane(motion.states)))
+                if not motion.message
+                else np.zeros(1, dtype=int)
             )
             gone = bool(motion.message)
             if len(out) and not gone:
                 after = flow.follow(motion.states[out[0]], AFTER, derivatives=False)
-                gone = bool(after.message) or float(np.mean(cover.outside(after.states))) > AWAY
+                gone = (
+                    bool(after.message)
+                    or float(np.mean(cover.outside(oscillator.in_plane(after.states)))) > AWAY
+                )
             used += (int(out[0]) + 1) if gone else STRETCH
             if gone:
                 escaped += 1

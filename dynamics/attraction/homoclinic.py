@@ -14,8 +14,9 @@ from base import Array, Booleans
 from dynamics.attraction.manifolds import is_direct_saddle
 from dynamics.branches.branch import Branch
 from dynamics.branches.roots import bracketed
-from dynamics.flow.exact_flow import exact_flow, propagated
-from dynamics.model.oscillator import GearOscillator
+from dynamics.flow.flows import flow_of
+from dynamics.flow.protocol import propagated
+from dynamics.model.protocol import Oscillator
 from dynamics.orbits.shooting import Orbit, find_orbit
 
 FIRST, BEGUN = 1e-6, 0.05  # of the size of the saddle: where its unstable manifold starts, and is looked at
@@ -36,7 +37,7 @@ class HomoclinicSearch:
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : Oscillator
         The oscillator; its value of the parameter is not used.
     branch : Branch
         The saddle's.
@@ -50,7 +51,7 @@ class HomoclinicSearch:
         Periods that all motions have been followed.
     """
 
-    oscillator: GearOscillator
+    oscillator: Oscillator
     branch: Branch
     run: slice
     points: int
@@ -71,7 +72,7 @@ class HomoclinicSearch:
 
     def saddle(self, value: float) -> Orbit:
         """The saddle at a value, by Newton's method from between its neighbours."""
-        guess = [float(np.interp(value, self.values, self.states[:, k])) for k in range(2)]
+        guess = [float(np.interp(value, self.values, self.states[:, k])) for k in range(self.states.shape[1])]
         here = self.oscillator.with_parameter(self.parameter, value)
         return find_orbit(here, guess, periods=self.branch.periods)
 
@@ -89,7 +90,7 @@ class HomoclinicSearch:
         n, multiplier = orbit.periods, float(np.real(orbit.multipliers[0]))
         size = _size(orbit)
         along, across = _directions(orbit.jacobian, multiplier)
-        table = exact_flow(orbit.oscillator)
+        table = flow_of(orbit.oscillator)
         begin = math.ceil(math.log(BEGUN / FIRST) / math.log(multiplier))
 
         def states(share: Array, more: int) -> Array:
@@ -223,8 +224,12 @@ def _size(orbit: Orbit) -> float:
 
 
 def _directions(jacobian: Array, multiplier: float) -> tuple[Array, Array]:
-    """Right eigenvector of a multiplier, towards positive X, and the left one with product 1."""
-    along = np.linalg.svd(jacobian - multiplier * np.eye(2))[2][1]
+    """Right eigenvector of a multiplier, towards positive X, and the left one with product 1.
+
+    In several freedoms X is the first displacement.
+    """
+    shifted = jacobian - multiplier * np.eye(len(jacobian))
+    along = np.linalg.svd(shifted)[2][-1]
     along = along if along[0] >= 0.0 else -along
-    across = np.linalg.svd(jacobian.T - multiplier * np.eye(2))[2][1]
+    across = np.linalg.svd(shifted.T)[2][-1]
     return np.asarray(along), np.asarray(across / (across @ along))

@@ -11,13 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, quantity, record
-from dynamics.flow.exact_flow import ExactFlow, exact_flow, propagated, tabulated
+from dynamics.flow.exact_flow import ExactFlow, tabulated
+from dynamics.flow.flows import flow_of
 from dynamics.flow.motions import period_map
+from dynamics.flow.protocol import Flow, propagated
 from dynamics.model.limits import POSITIVE
 from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import exact_only
+from dynamics.model.protocol import Oscillator
 from dynamics.model.states import Region, within
-from dynamics.orbits.shooting import Orbit, floquet_multipliers
+from dynamics.orbits.shooting import Orbit, multipliers_of
 
 FIRST = 1e-6  # of the size of the orbit: where a manifold starts, on the eigenvector
 ROUNDS = 2000  # of a manifold at most
@@ -34,7 +36,7 @@ class Manifold:
     kind: str = quantity("", "stable or unstable")
     curves: tuple[Array, ...] = quantity(
         "1",
-        "X and V along every branch, shape (any, 2), from the orbit outwards: two for each point of the orbit",
+        "states along every branch, shape (any, dimension), from the orbit outwards: two for each point of the orbit",
     )
     rounds: tuple[int, ...] = quantity("1", "rounds of the orbit that carried each branch out", "branch")
     error: float = quantity(
@@ -47,13 +49,13 @@ class Manifold:
 
 
 def is_saddle(multipliers: npt.ArrayLike) -> bool:
-    """Whether one real multiplier is outside the unit circle and the other within."""
-    first, second = np.asarray(multipliers, dtype=np.complex128).tolist()
-    return bool(first.imag == 0.0 and abs(first) > 1.0 > abs(second))
+    """Whether one real multiplier is outside the unit circle and all others within."""
+    first, *others = np.asarray(multipliers, dtype=np.complex128).tolist()
+    return bool(first.imag == 0.0 and abs(first) > 1.0 > max(map(abs, others)))
 
 
 def is_direct_saddle(multipliers: npt.ArrayLike) -> bool:
-    """Whether one multiplier is above 1 and the other within the unit circle."""
+    """Whether one multiplier is above 1 and all others within the unit circle."""
     return is_saddle(multipliers) and bool(np.real(np.asarray(multipliers)[0]) > 1.0)
 
 
@@ -71,7 +73,6 @@ def reversed_tables(oscillator: GearOscillator) -> ExactFlow:
     return tabulated(packed, cells)
 
 
-@exact_only
 def manifold(
     orbit: Orbit,
     kind: str = "stable",
@@ -87,14 +88,18 @@ def manifold(
     (its inverse for the stable manifold). Where neighbours lie farther apart than the spacing, points are put
     between them at the start and carried along.
 
+    The stable manifold is that of a pair alone: it takes the flow backwards in time, which a `GearOscillator` has, and
+    in several freedoms it is no curve. The unstable one is a curve in any number of freedoms.
+
     Parameters
     ----------
     orbit : Orbit
-        A saddle: one multiplier outside the unit circle, one within.
+        A saddle: one multiplier outside the unit circle, all others within.
     kind : str
         "stable": the motions that reach the orbit, which bound basins; "unstable": those that leave it.
     region : ((x0, x1), (v0, v1)), optional
-        Outside it points are not put closer. Left out: three times the size of the orbit.
+        Of X and V, in several freedoms y and its rate; outside it points are not put closer. Left out: three times the
+        size of the orbit.
     length : float
         Length of each branch, over the size of the orbit.
     spacing : float
@@ -110,7 +115,7 @@ def manifold(
     Raises
     ------
     InputError
-        If the orbit is no saddle, or an argument is out of range.
+        If the orbit is no saddle, its stable manifold no curve, or an argument is out of range.
 
     Examples
     --------
@@ -131,6 +136,7 @@ def manifold(
                 "must be a saddle",
                 "take an unstable orbit of find_orbits",
             )
+        _check_backwards(faults, orbit.oscillator, kind)
         long = faults.number("length", length, replace(POSITIVE, remedy="20 is usual"))
         gap = faults.number("spacing", spacing, replace(POSITIVE, remedy="0.02 is usual"))
         most = faults.whole("max_points", max_points, 10, 10**7, "20 000 is usual")
@@ -148,6 +154,18 @@ def manifold(
     return Manifold(orbit, kind, curves, rounds, max(errors), cost, fine, message)
 
 
+def _check_backwards(faults: Faults, oscillator: Oscillator, kind: str) -> None:
+    """Note where a stable manifold is no curve, or the flow that would carry it out is missing."""
+    if kind != "stable" or oscillator.is_exact:
+        return
+    many = oscillator.directions - 1
+    lacking = (
+        "its flow backwards in time is missing" if many == 1 else f"it is no curve: it has {many} dimensions"
+    )
+    allowed = f"must be 'unstable' for a {type(oscillator).__name__}: the stable manifold cannot be followed, {lacking}"
+    faults.add("kind", kind, allowed, "basin_boundary shows where it cuts a plane")
+
+
 class _Grower:
     """Carries branches of the manifolds of one orbit."""
 
@@ -155,13 +173,13 @@ class _Grower:
         self, orbit: Orbit, backwards: bool, region: Region | None, length: float, gap: float, most: int
     ) -> None:
         self.orbit, self.backwards = orbit, backwards
-        self.forward = exact_flow(orbit.oscillator)
+        self.forward: Flow = flow_of(orbit.oscillator)
         self.table = reversed_tables(orbit.oscillator) if backwards else self.forward
-        self.scale = max(float(np.max(np.abs(orbit.points))), 1e-300)
+        self.scale = max(float(np.max(np.abs(self._in_plane(orbit.points)))), 1e-300)
         box = 3.0 * self.scale
         self.region = ((-box, box), (-box, box)) if region is None else region
         self.length, self.gap, self.most = length * self.scale, gap * self.scale, most
-        multiplier = float(orbit.multipliers[1 if backwards else 0])
+        multiplier = float(np.real(orbit.multipliers[1 if backwards else 0]))
         self.round = orbit.periods * (1 if multiplier > 0.0 else 2)  # two rounds come back to the same branch
         stretch = multiplier if multiplier > 0.0 else multiplier * multiplier
         self.stretch = 1.0 / stretch if backwards else stretch
@@ -172,9 +190,9 @@ class _Grower:
         n = self.orbit.periods
         image = period_map(self.forward, point, n)
         jacobian = image.jacobian
-        trace, determinant = float(np.trace(jacobian)), math.exp(image.log_determinant)
-        wanted = float(np.real(floquet_multipliers(trace, determinant)[1 if self.backwards else 0]))
-        return np.asarray(np.linalg.svd(jacobian - wanted * np.eye(2))[2][1])
+        multipliers = multipliers_of(jacobian, math.exp(image.log_determinant))
+        wanted = float(np.real(multipliers[1 if self.backwards else 0]))
+        return np.asarray(np.linalg.svd(jacobian - wanted * np.eye(len(jacobian)))[2][-1])
 
     def grow(self, point: Array, along: Array) -> tuple[Array, int, str, float]:
         """Curve, rounds, why it ended, and the bend of its first stretch."""
@@ -189,7 +207,7 @@ class _Grower:
         curves, total, number, count = [point[None]], 0.0, 0, 0
         while True:
             step = np.linalg.norm(np.diff(at, axis=0), axis=1)
-            inside = within(self.region, at)
+            inside = within(self.region, self._in_plane(at))
             total += float(np.sum(step[inside[:-1] & inside[1:]]))
             count += len(at)
             curves.append(at)
@@ -209,7 +227,7 @@ class _Grower:
         """Starts and their images with gaps within the spacing."""
         while True:
             step = np.linalg.norm(np.diff(at, axis=0), axis=1)
-            inside = within(self.region, at)
+            inside = within(self.region, self._in_plane(at))
             wide = (step > self.gap) & (inside[:-1] | inside[1:]) & (np.diff(share) > SPLIT)
             if not np.any(wide) or len(at) > self.most:
                 return share, at
@@ -219,6 +237,10 @@ class _Grower:
                 np.insert(share, positions + 1, middle),
                 np.insert(at, positions + 1, images(middle), axis=0),
             )
+
+    def _in_plane(self, at: Array) -> Array:
+        plane: Array = self.orbit.oscillator.in_plane(at)
+        return plane
 
     def _carry(self, at: Array, rounds: int) -> Array:
         self.periods += len(at) * rounds * self.round

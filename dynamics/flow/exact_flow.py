@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from base import Array, Cost, Faults, Integers, Stopwatch, in_blocks
 from dynamics.flow.protocol import MapResult, PartedFlow, Stretches, lost_motion
@@ -219,26 +218,3 @@ def tabulated(packed: Array, cells: int, degree: int = DEGREE) -> ExactFlow:
     coef, edge = tables_of(cells, degree)
     fill(packed, coef, edge, room_of(cells, degree), 0)
     return ExactFlow(packed, coef, edge)
-
-
-def propagated(table: ExactFlow, states: npt.ArrayLike, periods: int, backwards: bool = False) -> Array:
-    """States after whole periods, shape (any, 2); nan where a motion is lost.
-
-    Parameters
-    ----------
-    table : ExactFlow
-        Of `exact_flow`, or of `dynamics.attraction.manifolds.reversed_tables` if backwards.
-    states : array_like, shape (any, 2)
-        X and V at tau = 0.
-    periods : int
-        Excitation periods.
-    backwards : bool
-        Whether the tables are those of the reversed oscillator.
-    """
-    at = np.array(states, dtype=np.float64).reshape(-1, 2)
-    turn = np.array([1.0, -1.0 if backwards else 1.0])
-    at *= turn
-    labels = np.full(len(at), -1, dtype=np.int64)
-    table.settle(at, np.empty((0, 4)), 0.0, periods, labels)  # nowhere to settle: followed to the end
-    at[labels == -2] = np.nan
-    return np.asarray(at * turn)

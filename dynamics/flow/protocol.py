@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from typing import ClassVar, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from base import Array, Cost, Faults, InputError, Integers, quantity, record
 
@@ -217,3 +218,27 @@ def lost_motion(state: Array, reason: str) -> InputError:
     """Error of a motion that cannot be followed."""
     allowed = "must start a motion that can be followed"
     return InputError.at("state", str(np.asarray(state).tolist()), allowed, f"{reason}: check the input")
+
+
+def propagated(flow: Flow, states: npt.ArrayLike, periods: int, backwards: bool = False) -> Array:
+    """States after whole periods, shape (any, dimension); nan where a motion is lost.
+
+    Parameters
+    ----------
+    flow : Flow
+        Of `dynamics.flow.flows.flow_of`, or of `dynamics.attraction.manifolds.reversed_tables` if backwards.
+    states : array_like, shape (any, dimension)
+        States at tau = 0.
+    periods : int
+        Excitation periods.
+    backwards : bool
+        Whether the flow is that of the reversed oscillator.
+    """
+    at = np.array(states, dtype=np.float64).reshape(-1, flow.dimension)
+    turn = np.repeat([1.0, -1.0 if backwards else 1.0], flow.dimension // 2)
+    at *= turn
+    labels = np.full(len(at), -1, dtype=np.int64)
+    nowhere = np.empty((0, flow.dimension + 2))
+    flow.settle(at, nowhere, 0.0, periods, labels)  # followed to the end
+    at[labels == -2] = np.nan
+    return np.asarray(at * turn)

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
-from dynamics.flow.exact_flow import exact_flow, propagated
+from dynamics.flow.exact_flow import exact_flow
 from dynamics.flow.flows import flow_of
 from dynamics.flow.motions import period_map
-from dynamics.flow.protocol import Flow
+from dynamics.flow.protocol import Flow, propagated
 from dynamics.model.limits import SEARCHED, whole_numbers
 from dynamics.model.oscillator import GearOscillator
 from dynamics.model.protocol import PeriodicOscillator, exact_only, settling_periods

@@ -8,8 +8,9 @@ import math
 import numpy as np
 
 from base import Array
-from dynamics.flow.exact_flow import ExactFlow, exact_flow, propagated
+from dynamics.flow.exact_flow import ExactFlow, exact_flow
 from dynamics.flow.motions import period_map
+from dynamics.flow.protocol import propagated
 from dynamics.model.excitation import largest
 from dynamics.model.oscillator import GearOscillator
 

@@ -30,16 +30,16 @@ TAKEN = {
     "run_up": lambda: dynamics.run_up(DRIVE, (0.89, 0.91), 64),
     "basins": lambda: dynamics.basins(DRIVE, (-0.1, 0.1, 2), (-0.1, 0.1, 2), limit=40),
     "basin_boundary": None,  # tests.dynamics.test_drive_global
+    "edge_saddles": None,  # tests.dynamics.test_drive_global
+    "chaos_end": None,  # tests.dynamics.test_drive_global
+    "manifold": None,  # tests.dynamics.test_drive_global
+    "boundary_crisis": None,  # tests.dynamics.test_drive_global
 }  # fmt: skip
 REFUSED = {
-    "boundary_crisis": ("frequency", (0.8, 0.9)),
     "carried_point": ("frequency", None, "mean_force", 0.1),
-    "chaos_end": ("frequency", (0.1, 0.2), (0.5, 0.6)),
     "contact_grazing": (),
     "continue_locus": (None, ("frequency", "mean_force")),
-    "edge_saddles": (None,),
     "find_orbits": (),
-    "manifold": (),
     "restoring_force": (0.0, 0.1),
     "special_sensitivities": ("frequency", None),
 }
@@ -68,10 +68,14 @@ def test_results_of_what_takes_it(name):
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_needs_the_plane_says_so(name):
-    first = find_orbit(DRIVE, STATE, transient=100) if name in ("manifold", "boundary_crisis") else DRIVE
     with pytest.raises(InputError, match=f"Oscillator in {name}") as raised:
-        getattr(dynamics, name)(first, *REFUSED[name])
+        getattr(dynamics, name)(DRIVE, *REFUSED[name])
     assert "DriveOscillator" in str(raised.value)
+
+
+def test_a_stable_manifold_in_several_freedoms_is_no_curve():
+    with pytest.raises(InputError, match="it is no curve: it has 7 dimensions"):
+        dynamics.manifold(find_orbit(DRIVE, STATE, transient=100))
 
 
 def test_slow_motion_by_many_shots():

@@ -23,7 +23,8 @@ from dynamics import (
 )
 from dynamics.attraction.manifolds import reversed_tables
 from dynamics.branches.sensitivity import map_derivatives
-from dynamics.flow.exact_flow import exact_flow, propagated
+from dynamics.flow.exact_flow import exact_flow
+from dynamics.flow.protocol import propagated
 from dynamics.flow.stepwise_flow import StepwiseFlow
 
 SERIES = FourierStiffness(1.0, (0.3, 0.1), (0.4, -1.1))

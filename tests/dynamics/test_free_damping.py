@@ -13,7 +13,8 @@ from base import InputError
 from dynamics import FourierStiffness, GearOscillator, find_orbit, period_map, trajectory
 from dynamics.attraction.manifolds import reversed_tables
 from dynamics.branches.sensitivity import map_derivatives
-from dynamics.flow.exact_flow import exact_flow, propagated
+from dynamics.flow.exact_flow import exact_flow
+from dynamics.flow.protocol import propagated
 from tests.dynamics.conftest import step_by_step
 
 STATE = np.array([0.5, 0.2])

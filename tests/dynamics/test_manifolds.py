@@ -17,7 +17,8 @@ from dynamics import (
 )
 from dynamics.attraction.manifolds import reversed_tables
 from dynamics.branches.branch import stretches
-from dynamics.flow.exact_flow import exact_flow, propagated
+from dynamics.flow.exact_flow import exact_flow
+from dynamics.flow.protocol import propagated
 from tests.validation.article_motion import lubricated, starved
 
 

@@ -63,7 +63,6 @@ def test_states_at_rest_agree():
         ("diagram", (), "GearOscillator or a DriveOscillator"),
         ("multi_sweep", ("frequency", [0.5]), "GearOscillator or a DriveOscillator"),
         ("contact_grazing", (), "GearOscillator"),
-        ("edge_saddles", (None,), "GearOscillator"),
         ("continue_locus", (None, ("frequency", "mean_force")), "GearOscillator"),
     ],
 )
@@ -73,9 +72,20 @@ def test_what_needs_the_exact_flow_says_so(name, more, allowed):
     assert "SmoothOscillator" in str(raised.value)
 
 
-def test_what_starts_from_an_orbit_says_so_too():
+def test_unstable_manifolds_are_those_of_the_exact_flow():
+    ours, theirs = (
+        dynamics.manifold(dynamics.find_orbit(o, (0.5, 0.2)), "unstable", length=0.1)
+        for o in (STEPWISE, EXACT)
+    )
+    assert len(theirs.curves) == len(ours.curves) == 2
+    by_end = [sorted(curves, key=lambda curve: curve[-1, 0]) for curves in (ours.curves, theirs.curves)]
+    for mine, other in zip(*by_end, strict=True):
+        assert mine == pytest.approx(other, abs=1e-6)
+
+
+def test_a_stable_manifold_asks_for_the_flow_backwards():
     orbit = dynamics.find_orbit(STEPWISE, (0.5, 0.2))
-    with pytest.raises(InputError, match="must be a GearOscillator in manifold"):
+    with pytest.raises(InputError, match="its flow backwards in time is missing"):
         dynamics.manifold(orbit)
 
 
