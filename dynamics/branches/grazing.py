@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import warnings
 
@@ -11,22 +10,24 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, InputError, RangeWarning, Stopwatch, quantity, record
 from dynamics.branches.branch import SpecialPoint
-from dynamics.flow.exact_flow import exact_flow
+from dynamics.flow.flows import refined_flow
 from dynamics.flow.motions import period_map, turning_points
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import ordered
-from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import EPS, exact_only
-from dynamics.orbits.shooting import floquet_multipliers
+from dynamics.model.protocol import EPS, PeriodicOscillator, periodic_only
+from dynamics.orbits.shooting import multipliers_of
 
 
 @record
 class ContactOrbit:
-    """Periodic solution of the equation with f(X) = X - side D everywhere, that is, without backlash."""
+    """Periodic solution of the equation with f(X) = X - side D everywhere, that is, without backlash.
+
+    In several freedoms X is y, the displacement that the backlash limits.
+    """
 
     headline = ("clearance", "tau", "acceleration")
 
-    state: Array = quantity("1", "X and V at tau = 0", "state")
+    state: Array = quantity("1", "X and V at tau = 0, or displacements and speeds", "state")
     multipliers: npt.NDArray[np.complex128] | Array = quantity("1", "Floquet multipliers", "multiplier")
     clearance: float = quantity(
         "1",
@@ -61,12 +62,12 @@ class ResonanceError(InputError):
     """The linear equation has no bounded periodic solution: a multiplier is one."""
 
 
-def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1) -> ContactOrbit:
+def contact_orbit(oscillator: PeriodicOscillator, side: int = 1, refinement: int = 1) -> ContactOrbit:
     """Periodic solution that feels no backlash: a linear problem, solved without iteration.
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : GearOscillator or DriveOscillator
         The oscillator.
     side : int
         1 for the driving flanks (X > D), -1 for the others.
@@ -89,35 +90,35 @@ def contact_orbit(oscillator: GearOscillator, side: int = 1, refinement: int = 1
     """
     if side not in (1, -1):
         raise InputError.at("side", side, "must be 1 or -1", "1 is the driving side")
-    linear = dataclasses.replace(oscillator, half_backlash=0.0, one_sided=False)
-    table = exact_flow(linear, refinement)
-    image = period_map(table, np.zeros(2))
-    matrix = np.eye(2) - image.jacobian
+    linear, shift = oscillator.in_contact(side)
+    table = refined_flow(linear, refinement)
+    origin = np.zeros(linear.dimension)
+    image = period_map(table, origin)
+    matrix = np.eye(len(origin)) - image.jacobian
     stretch = max(1.0, float(np.max(np.abs(image.jacobian))))
     if not np.all(np.isfinite(matrix)) or np.linalg.norm(matrix, -2) < 64.0 * EPS * stretch:
         allowed = "must have a linear equation without resonance"
         raise ResonanceError.at("oscillator", "multiplier 1", allowed, "change the frequency")
-    state = np.linalg.solve(matrix, image.state)
+    state: Array = np.asarray(np.linalg.solve(matrix, image.state), dtype=np.float64)
     # one refinement, against rounding
     state += np.linalg.solve(matrix, period_map(table, state).state - state)
-    turns = turning_points(table, state)
+    turns, begin = turning_points(table, state), float(linear.in_plane(state[None])[0, 0])
     at = int(np.argmin(side * turns[:, 1])) if len(turns) else -1
-    tau, nearest, acceleration = turns[at, :3] if len(turns) else (0.0, state[0], 0.0)
-    if side * state[0] < side * nearest:  # nearest at tau = 0 itself, where the motion begins and ends
-        tau, nearest = 0.0, state[0]
-        acceleration = float(linear.force(0.0) - linear.stiffness(0.0) * state[0])
+    tau, nearest, acceleration = turns[at, :3] if len(turns) else (0.0, begin, 0.0)
+    if side * begin < side * nearest:  # nearest at tau = 0 itself, where the motion begins and ends
+        tau, nearest, acceleration = 0.0, begin, linear.turning_acceleration(state)
     return ContactOrbit(
-        state=state + np.array([side * oscillator.half_backlash, 0.0]),
-        multipliers=floquet_multipliers(float(np.trace(image.jacobian)), math.exp(image.log_determinant)),
+        state=state + shift,
+        multipliers=multipliers_of(image.jacobian, math.exp(image.log_determinant)),
         clearance=float(side * nearest),
         tau=float(tau),
         acceleration=float(acceleration),
     )
 
 
-@exact_only
+@periodic_only
 def contact_grazing(
-    oscillator: GearOscillator,
+    oscillator: PeriodicOscillator,
     parameter: str = "frequency",
     bounds: tuple[float, float] = (0.3, 2.0),
     *,
@@ -127,14 +128,15 @@ def contact_grazing(
     """Find where the orbit that never leaves contact grazes the limit of the backlash.
 
     The clearance of the linear orbit is a smooth function of the parameter on both sides of the grazing, so
-    that its roots are found to rounding. They do not depend on the backlash.
+    that its roots are found to rounding. They do not depend on the backlash; those of a train do where springs hold it
+    to the ground, since these bear what the backlash lets it move.
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : GearOscillator or DriveOscillator
         The oscillator; its value of the parameter is not used.
     parameter : str
-        As in `GearOscillator.with_parameter`.
+        One of its `parameters`.
     bounds : tuple of float
         Range of the parameter.
     points : int
@@ -191,12 +193,12 @@ def contact_grazing(
         grazings.append(
             SpecialPoint(
                 "grazing", root, orbit.state, orbit.multipliers, "1-0-0", error, 1, side, orbit.tau,
-                orbit.acceleration, float(here.stiffness(here.frequency * orbit.tau)),
+                orbit.acceleration, float(here.contact_stiffness(here.frequency * orbit.tau)),
             )
         )  # fmt: skip
     if not grazings and scale <= 64.0 * EPS:
         warnings.warn("the contact orbit lies on the limit throughout: no load", RangeWarning, stacklevel=2)
     message = f"{len(grazings)} grazings" + (f"; {poles} resonances in the range" if poles else "")
-    cost = Cost(watch.seconds, 2, evaluations, 3 * evaluations)
+    cost = Cost(watch.seconds, oscillator.dimension, evaluations, 3 * evaluations)
     error = max((p.error for p in grazings), default=math.nan)
     return ContactGrazing(tuple(grazings), grid, gap, error, cost, True, message)

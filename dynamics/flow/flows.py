@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import singledispatch
 
 from base import Faults, InputError
-from dynamics.flow.drive_flow import DriveFlow, drive_flow
+from dynamics.flow.drive_flow import DriveFlow, drive_flow, tabulated
 from dynamics.flow.exact_flow import ExactFlow, exact_flow
-from dynamics.flow.protocol import Flow
+from dynamics.flow.protocol import Flow, PartedFlow
 from dynamics.flow.stepwise_flow import StepwiseFlow
 from dynamics.flow.table_reuse import TableReuse
 from dynamics.model.drive_oscillator import DriveOscillator
 from dynamics.model.limits import POSITIVE
 from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import Oscillator
+from dynamics.model.protocol import Oscillator, PeriodicOscillator
 from dynamics.model.smooth_oscillator import SmoothOscillator
 
 
@@ -57,6 +58,35 @@ def _of_drive(oscillator: DriveOscillator, tolerance: float | None = None) -> Dr
 @flow_of.register
 def _stepwise(oscillator: SmoothOscillator, tolerance: float | None = None) -> StepwiseFlow:
     return StepwiseFlow(oscillator, tolerance)
+
+
+@singledispatch
+def refined_flow(oscillator: PeriodicOscillator, refinement: int = 1) -> PartedFlow:
+    """Make an oscillator ready to be followed in so many times the usual number of cells.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator or DriveOscillator
+        The oscillator.
+    refinement : int
+        Factor on the number of cells.
+
+    Raises
+    ------
+    InputError
+        If its flow has no cells.
+    """
+    raise unserved(oscillator)
+
+
+@refined_flow.register
+def _exact_cells(oscillator: GearOscillator, refinement: int = 1) -> ExactFlow:
+    return exact_flow(oscillator, refinement)
+
+
+@refined_flow.register
+def _cells_of_drive(oscillator: DriveOscillator, refinement: int = 1) -> DriveFlow:
+    return tabulated(oscillator, math.ceil(oscillator.cells) * refinement)
 
 
 @singledispatch

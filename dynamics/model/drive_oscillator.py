@@ -237,6 +237,28 @@ class DriveOscillator(PeriodicOscillator):
                 break
         return self.lifted(np.tile(np.concatenate([w, np.zeros(len(w))]), (len(tau), 1)), tau)
 
+    def in_contact(self, side: int) -> tuple[DriveOscillator, Array]:
+        r"""Without backlash, about a displacement a with :math:`g^T a = \pm D`, which K answers with the force -K a."""
+        g = np.asarray(self.direction)
+        shift = side * self.half_backlash / float(g @ g) * g
+        force = np.asarray(self.mean_force) - np.asarray(self.stiffness) @ shift
+        linear = replace(self, mean_force=force, half_backlash=0.0, one_sided=False)
+        return linear, np.concatenate([shift, np.zeros_like(shift)])
+
+    def turning_acceleration(self, state: Array) -> float:
+        """Y'' at tau = 0 where the rate of y is zero."""
+        at, m = self.coordinates, len(self.load)
+        moved = self.lowered(state[None], np.zeros(1))[0]
+        w, speed = moved[:m].copy(), moved[m:].copy()
+        push = at.gain * float(self.contact_force(np.zeros(1), moved[:1])[0])
+        error, rate = self.error_motion(np.zeros(1))
+        w[0] += error[0]
+        speed[0] = rate[0]
+        bend = self.load[0] - at.stiffness[0] @ w - at.damping[0] @ speed - push
+        j = self.frequency * np.arange(1, self.error_series.shape[1] + 1)
+        amplitudes, phases = self.error_series
+        return float(bend + np.sum(j**2 * amplitudes * np.cos(phases)))
+
     def start_plane(self) -> tuple[Array, Array]:
         """Directions in which y and its rate move alone, by one each, and the state at rest."""
         along, none = self.coordinates.up[:, 0], np.zeros(self.dimension // 2)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -195,6 +195,14 @@ class GearOscillator(PeriodicOscillator, PlanarOscillator):
         side = -1.0 if self.mean_force < 0.0 and not self.one_sided else 1.0
         x = side * self.half_backlash + pressed
         return np.stack([x, np.zeros_like(x)], axis=1)
+
+    def in_contact(self, side: int) -> tuple[GearOscillator, Array]:
+        """Without backlash; X is less by D."""
+        return replace(self, half_backlash=0.0, one_sided=False), np.array([side * self.half_backlash, 0.0])
+
+    def turning_acceleration(self, state: Array) -> float:
+        """X'' at tau = 0 where V is zero."""
+        return float(self.force(0.0) - self.stiffness(0.0) * self.deflection(state[0]))
 
     def force(self, tau: npt.ArrayLike) -> Array:
         """Right-hand side of the equation, shape of `tau`."""

@@ -166,6 +166,14 @@ class PeriodicOscillator(Oscillator):
         """States at rest at some times, shape (k, dimension), near which a slow motion stays."""
 
     @abstractmethod
+    def in_contact(self, side: int) -> tuple[Self, Array]:
+        """Without backlash, and the state by which its motions lie off those that never leave a flank, 1 or -1."""
+
+    @abstractmethod
+    def turning_acceleration(self, state: Array) -> float:
+        """Second derivative of the contact coordinate at tau = 0 where its rate is zero."""
+
+    @abstractmethod
     def deflection(self, x: npt.ArrayLike) -> Array:
         """Deflection f(X) past the backlash, shape of `x`."""
 

@@ -34,10 +34,10 @@ TAKEN = {
     "chaos_end": None,  # tests.dynamics.test_drive_global
     "manifold": None,  # tests.dynamics.test_drive_global
     "boundary_crisis": None,  # tests.dynamics.test_drive_global
+    "contact_grazing": None,  # tests.dynamics.test_drive_contact
 }  # fmt: skip
 REFUSED = {
     "carried_point": ("frequency", None, "mean_force", 0.1),
-    "contact_grazing": (),
     "continue_locus": (None, ("frequency", "mean_force")),
     "find_orbits": (),
     "restoring_force": (0.0, 0.1),

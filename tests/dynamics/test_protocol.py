@@ -62,7 +62,7 @@ def test_states_at_rest_agree():
         ("find_orbits", (), "GearOscillator"),
         ("diagram", (), "GearOscillator or a DriveOscillator"),
         ("multi_sweep", ("frequency", [0.5]), "GearOscillator or a DriveOscillator"),
-        ("contact_grazing", (), "GearOscillator"),
+        ("contact_grazing", (), "GearOscillator or a DriveOscillator"),
         ("continue_locus", (None, ("frequency", "mean_force")), "GearOscillator"),
     ],
 )
