@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from base import Array, Integers
+from dynamics.branches.bends import Bend
 from dynamics.branches.branch_problem import BranchProblem, MapPoint, match_extrema
 from dynamics.branches.step_rules import touches_twice
 from dynamics.flow.exact_flow import DEGREE, tabulated
@@ -130,6 +131,17 @@ class OrbitProblem(BranchProblem):
         """Change of half the backlash over the range of the one parameter, over the scale."""
         return float(self.ways[0, 6]) / self.scale
 
+    @property
+    def widenings(self) -> Array:
+        """Change of half the backlash over the range of each parameter."""
+        return np.asarray(self.ways[:, 6])
+
+    def bend(self, point: Point) -> Bend:
+        """Derivatives of the Jacobian and of what it singles out, all exact."""
+        shrinking, turning = point.determinant_slope, point.trace_slope
+        fold, flip = shrinking - turning, shrinking + turning
+        return Bend(point.derivative, point.second, fold, flip, shrinking, point.extrema_slope)
+
     def states(self, point: MapPoint) -> Array:
         """X and V over the scale after each period."""
         flow = tabulated(self._packed(point.u), self._cells(point.u, 1))
@@ -236,7 +248,7 @@ class OrbitProblem(BranchProblem):
         )  # fmt: skip
 
 
-def rounding(point: Point, periods: int) -> float:
+def rounding(point: MapPoint, periods: int) -> float:
     """Residual that rounding leaves: it grows with the state, with its derivative and with every period."""
-    size = max(1.0, float(np.max(np.abs(point.u[:2]))))
+    size = max(1.0, float(np.max(np.abs(point.u[: point.size]))))
     return 64.0 * EPS * size * periods * max(1.0, float(np.max(np.abs(point.jacobian))))

@@ -116,12 +116,12 @@ class ExactBranch(OrbitProblem):
 
     def _error(self, point: Point, condition: Condition) -> float:
         """Change of the parameter with tables of half the cell."""
-        finer = special_orbit(self, condition, point.u, refinement=2, limit=4)
+        finer: Point | None = special_orbit(self, condition, point.u, refinement=2, limit=4)
         if finer is not None:
             return abs(finer.value - point.value)
         # next to a grazing: what the change of the measure amounts to
         there = self.evaluate(point.u, 2)
-        slope = float(np.linalg.norm(condition.gradient(self, point)))
+        slope = float(np.linalg.norm(condition.rows(self, point)[-1]))
         if there is None or not slope > 0.0:
             return math.inf
         off = abs(condition.measure(self, there) - condition.measure(self, point)) / slope

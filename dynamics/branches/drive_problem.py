@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from base import Array, InputError
+from dynamics.branches.bends import Bend, bend_by_differences
 from dynamics.branches.branch_problem import MapPoint
 from dynamics.branches.stepwise_problem import PeriodMap
 from dynamics.flow.drive_flow import DriveFlow, tabulated
@@ -23,7 +24,26 @@ ASIDE = (3e-6, 3e-8, 1e-9)
 
 @dataclass(frozen=True, eq=False)
 class DrivePoint(MapPoint):
-    """A state of a drive train and its image: special points by all its multipliers."""
+    """A state of a drive train and its image: special points by all its multipliers.
+
+    Parameters
+    ----------
+    state : ndarray, shape (size,)
+        Displacements and speeds at tau = 0.
+    end : ndarray, shape (size,)
+        Its image.
+    course : tuple of int
+        Impacts on the way and the flanks at its ends, 1, 0 or -1.
+    """
+
+    state: Array = field(default_factory=lambda: np.empty(0))
+    end: Array = field(default_factory=lambda: np.empty(0))
+    course: tuple[int, ...] = ()
+
+    @property
+    def residual(self) -> float:
+        """Of the map, over the scale."""
+        return float(np.max(np.abs(self.image - self.u[: self.size])))
 
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128] | Array:
@@ -74,17 +94,50 @@ class DriveProblem(PeriodMap):
 
     maps = 3
 
-    def evaluate(self, u: Array) -> DrivePoint | None:
-        """Image of the unknowns; None if the parameter is not allowed there or the motion is lost."""
+    @cached_property
+    def widenings(self) -> Array:
+        """Change of half the backlash over the range of each parameter."""
+        return np.where(np.array(self.parameters) == "half_backlash", self.high - self.low, 0.0)
+
+    def evaluate(self, u: Array, refinement: int = 1) -> DrivePoint | None:
+        """Image of the unknowns; None if the parameters are not allowed there or the motion is lost."""
         try:
             here: DriveOscillator = self.at(u)
         except InputError:  # the continuation tries a smaller step
             return None
+        cells = math.ceil(here.cells) * self.refinement * refinement
+        point = self._image(u, here, cells)
+        if point is None:
+            return None
+        slopes = [self._slope(point, place, cells) for place in range(self.size, len(u))]
+        known = [slope / self.scale for slope in slopes if slope is not None]
+        if len(known) < len(slopes):
+            return None
+        return replace(point, derivative=np.column_stack([point.derivative, *known]))
+
+    def bend(self, point: DrivePoint) -> Bend:
+        """Derivatives of the Jacobian and of what it singles out, by differences."""
+        return bend_by_differences(self, point)
+
+    def beside(self, point: MapPoint, change: Array) -> DrivePoint | None:
+        """Image of the unknowns of a point and a change of them, in as many cells; without slopes by parameters."""
+        try:
+            here: DriveOscillator = self.at(point.u + change)
+        except InputError:  # the end of what a parameter may be
+            return None
+        return self._image(point.u + change, here, math.ceil(self.at(point.u).cells) * self.refinement)
+
+    def course(self, point: MapPoint) -> tuple[int, ...]:
+        """Impacts on the way and the flanks at its ends."""
+        course: tuple[int, ...] = getattr(point, "course", ())
+        return course
+
+    def _image(self, u: Array, here: DriveOscillator, cells: int) -> DrivePoint | None:
+        """Image of the unknowns in so many cells, without slopes by parameters; None if the motion is lost."""
         state = u[: self.size] * self.scale
-        flow = self._flow(here)
+        flow = tabulated(here, cells)
         image = flow.follow(state, self.periods)
-        slope = self._slope(u, image, flow)
-        if image.message or slope is None:
+        if image.message:
             return None
         turns = flow.sampled(state, self.periods, 0)[1]
         extrema = turns[:, :3]
@@ -92,9 +145,9 @@ class DriveProblem(PeriodMap):
         levels = np.array([1.0] if here.one_sided else [1.0, -1.0]) * here.half_backlash
         counts = (int(image.counts[:, 0].sum()), int(image.counts[:, 1].sum()))
         return DrivePoint(
-            u.copy(), self.values(u), here.period, image.state / self.scale,
-            np.column_stack([image.jacobian, slope / self.scale]), math.exp(image.log_determinant), counts, levels,
-            extrema,
+            u.copy(), self.values(u), here.period, image.state / self.scale, image.jacobian,
+            math.exp(image.log_determinant), counts, levels, extrema, state=state, end=image.state,
+            course=self._course(here, state, image),
         )  # fmt: skip
 
     def states(self, point: MapPoint) -> Array:
@@ -110,27 +163,25 @@ class DriveProblem(PeriodMap):
     def _flow(self, here: DriveOscillator) -> DriveFlow:
         return tabulated(here, math.ceil(here.cells) * self.refinement)
 
-    def _slope(self, u: Array, image: MapResult, flow: DriveFlow) -> Array | None:
-        """Derivative of the image by the parameter, over its range.
+    def _slope(self, point: DrivePoint, place: int, cells: int) -> Array | None:
+        """Derivative of the image by one unknown that is a parameter, over its range.
 
         A central difference; to one side where the other is not allowed. Where impacts on the way are others, or lie
         in another period, the map has a corner: such a side is left out, too, and tried nearer if both are.
         """
-        state = u[: self.size] * self.scale
-        course = self._course(flow.oscillator, state, image)
         central: list[tuple[float, Array]] = []
         for aside in ASIDE:
             sides, alike = [], []
             for way in (aside, -aside):
-                beside = u.copy()
-                beside[-1] += way
+                beside = point.u.copy()
+                beside[place] += way
                 try:
                     there = self.at(beside)
                 except InputError:  # the end of what the parameter may be
                     continue
-                moved = tabulated(there, flow.cells).follow(state, self.periods, derivatives=False)
+                moved = tabulated(there, cells).follow(point.state, self.periods, derivatives=False)
                 sides.append((way, moved.state))
-                if self._course(there, state, moved) == course:
+                if self._course(there, point.state, moved) == point.course:
                     alike.append(sides[-1])
             central = central or sides
             if alike or not sides:
@@ -138,12 +189,12 @@ class DriveProblem(PeriodMap):
                 break
         if not central:
             return None
-        (ahead, high), (back, low) = [*central, (0.0, image.state)][:2]
+        (ahead, high), (back, low) = [*central, (0.0, point.end)][:2]
         return np.asarray((high - low) / (ahead - back))
 
-    def _course(self, here: DriveOscillator, state: Array, image: MapResult) -> list[int]:
+    def _course(self, here: DriveOscillator, state: Array, image: MapResult) -> tuple[int, ...]:
         """Impacts of a motion and the flanks that it begins and ends on, 1, 0 or -1."""
         ends = np.array([0.0, self.periods * here.period])
         y = here.contact_motion(ends, np.stack([state, image.state]))[0]
         sides = np.sign(here.deflection(y)).astype(int)
-        return [*image.counts.sum(axis=0).tolist(), *sides.tolist()]
+        return (*image.counts.sum(axis=0).tolist(), *sides.tolist())

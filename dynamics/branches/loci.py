@@ -10,15 +10,14 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.branches.branch import UNBOUNDED, SpecialPoint, of_kind
 from dynamics.branches.branch_problem import Steps, checked_range
-from dynamics.branches.corrector import OrbitProblem
 from dynamics.branches.locus_predictor import both_ways, joined
 from dynamics.branches.locus_tracing import DoublePoint, LocusTracer
+from dynamics.branches.sensitivity import special_problem
 from dynamics.branches.sizes import size_of
 from dynamics.branches.special_orbits import Condition, special_orbit
 from dynamics.model.arrays import AsArray
-from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import exact_only
-from dynamics.orbits.shooting import floquet_multipliers, motion_label
+from dynamics.model.protocol import PeriodicOscillator, periodic_only
+from dynamics.orbits.shooting import motion_label
 
 CODIMENSION_TWO = ("cusp", "saddle-node and grazing", "period-doubling and grazing", "double grazing")
 
@@ -29,12 +28,12 @@ class Locus(AsArray):
 
     headline = ("kind", "message")
 
-    kind: str = quantity("", "saddle-node, period-doubling or grazing")
+    kind: str = quantity("", "saddle-node, period-doubling, grazing or, in several freedoms, neimark-sacker")
     boundary: int = quantity("1", "at a grazing 1 for X = D, -1 for X = -D; else 0")
     parameters: tuple[str, str] = quantity("", "the two parameters", "parameter")
     periods: int = quantity("1", "period of the orbits, in excitation periods")
     values: Array = quantity("1", "parameters along the curve", "point parameter")
-    states: Array = quantity("1", "X and V at tau = 0", "point state")
+    states: Array = quantity("1", "X and V at tau = 0, or displacements and speeds", "point state")
     multipliers: npt.NDArray[np.complex128] = quantity("1", "Floquet multipliers", "point multiplier")
     labels: tuple[str, ...] = quantity("", "n-p-q of each orbit", "point")
     points: tuple[DoublePoint, ...] = quantity("", "points of codimension two in their order along the curve")
@@ -67,9 +66,9 @@ class Locus(AsArray):
         return self.values
 
 
-@exact_only
+@periodic_only
 def continue_locus(
-    oscillator: GearOscillator,
+    oscillator: PeriodicOscillator,
     point: SpecialPoint,
     parameters: tuple[str, str],
     bounds: tuple[tuple[float, float], tuple[float, float]],
@@ -83,16 +82,17 @@ def continue_locus(
     """Follow a special point in two parameters, both ways.
 
     Unknowns are X, V and both parameters, equations that the orbit closes and that the special point's condition
-    holds; all derivatives are exact, from the second derivatives of the map and those of the extrema.
+    holds; all derivatives are exact, from the second derivatives of the map and those of the extrema. Those of a drive
+    train by parameters, and all second ones, are differences.
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : GearOscillator or DriveOscillator
         The oscillator of the point: its value of the first parameter is replaced by the point's.
     point : SpecialPoint
-        A saddle node, period doubling or grazing found in the first parameter.
+        A saddle node, period doubling, grazing or Neimark-Sacker point found in the first parameter.
     parameters : tuple of str
-        The two parameters, as in `GearOscillator.with_parameter`.
+        Two of its `parameters`.
     bounds : tuple
         Range of each parameter.
     step, max_step, min_step : float
@@ -134,12 +134,12 @@ def continue_locus(
         steps = Steps(step, max_step, min_step, max_points)
         steps.check(faults)
     low, high = np.array(ranges).T
-    problem = OrbitProblem(
+    problem = special_problem(
         start, parameters, point.periods, low, high, size_of(start, point.state, point.periods)
     )
     condition = Condition.of(start, point)
     guess = problem.unknowns(point.state, [start.get(name) for name in parameters])
-    first = special_orbit(problem, condition, guess, np.array([0.0, 0.0, 0.0, 1.0]))
+    first = special_orbit(problem, condition, guess, np.eye(len(guess))[-1])
     if first is None:
         allowed, remedy = "must be a point that can be met again", "next to a grazing, start elsewhere"
         raise InputError.at("point", point.parameter, allowed, remedy)
@@ -151,9 +151,9 @@ def continue_locus(
     return Locus(
         condition.kind, condition.boundary, (parameters[0], parameters[1]), problem.periods,
         np.array([p.values for p in points]), np.array([p.state for p in points]),
-        np.array([floquet_multipliers(p.trace, p.determinant) for p in points], dtype=np.complex128),
+        np.array([p.multipliers for p in points], dtype=np.complex128),
         tuple(motion_label(problem.periods, p.counts) for p in points), tuple(double), ended,
         max((p.error for p in double), default=0.0),
-        Cost(watch.seconds, 4, len(points), 4 * problem.periods * len(points)), good,
+        Cost(watch.seconds, len(guess), len(points), 4 * problem.periods * len(points)), good,
         f"{len(points)} points, {len(double)} of codimension two; ended: {ended[0]}, {ended[1]}",
     )  # fmt: skip

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from base import Array, quantity, record
 from dynamics.branches.branch import ENDLESS, LARGE, UNBOUNDED
-from dynamics.branches.branch_problem import Steps, match_extrema
-from dynamics.branches.corrector import OrbitProblem, Point
+from dynamics.branches.branch_problem import MapPoint, Steps, match_extrema
 from dynamics.branches.locus_predictor import Tracer
 from dynamics.branches.roots import bracketed
 from dynamics.branches.special_orbits import Condition, special_orbit
@@ -45,7 +45,7 @@ class LocusTracer(Tracer):
     flat = 1e-12
 
     def __init__(
-        self, problem: OrbitProblem, condition: Condition, start: Point, sign: float,
+        self, problem: Any, condition: Condition, start: MapPoint, sign: float,
         steps: Steps, progress: Callable[[int, Array], None] | None,
     ) -> None:  # fmt: skip
         super().__init__(problem, start, steps)
@@ -55,10 +55,10 @@ class LocusTracer(Tracer):
             max(problem.scale, problem.oscillator.floor),
         )
         self.double: list[DoublePoint] = []
-        self.tangent = self._tangent(start, np.array([0.0, 0.0, 1.0, 1e-3])) * sign
-        self.null = _cusp(start, np.ones(2))[1]
+        self.tangent = self._tangent(start, np.append(np.zeros(start.size), [1.0, 1e-3])) * sign
+        self.null = _null(start, np.ones(start.size))[1]
 
-    def attempt(self, last: Point) -> Point | None:
+    def attempt(self, last: MapPoint) -> MapPoint | None:
         """Next point; at a bound, the point on it."""
         size = self.problem.size_of(last.u)
         if size * self.problem.scale > ENDLESS * self.size:
@@ -70,7 +70,7 @@ class LocusTracer(Tracer):
         if aim is None:
             return None
         guess, row = aim
-        new = special_orbit(self.problem, self.condition, guess, row)
+        new: MapPoint | None = special_orbit(self.problem, self.condition, guess, row)
         if new is None or float(np.linalg.norm(new.u - last.u)) > 2.0 * self.step:
             return None
         if np.any(row == 1.0):
@@ -84,12 +84,14 @@ class LocusTracer(Tracer):
                 return None
         return new
 
-    def _magnified(self, last: Point, factor: float) -> Point:
+    def _magnified(self, last: Any, factor: float) -> Any:
         """The point measured by its new size, of which steps and tolerances are shares, if it is found again."""
         larger = self.problem.magnified(factor)
-        shrink = np.array([1.0 / factor, 1.0 / factor, 1.0, 1.0])
+        shrink = np.append(np.full(last.size, 1.0 / factor), [1.0, 1.0])
         along = self.tangent * shrink
-        again = special_orbit(larger, self.condition, larger.unknowns(last.state, last.values), along)
+        again: MapPoint | None = special_orbit(
+            larger, self.condition, larger.unknowns(last.state, last.values), along
+        )
         if again is None:
             return last
         self.problem, self.points[-1] = larger, again
@@ -97,12 +99,12 @@ class LocusTracer(Tracer):
         self.tangent = self._tangent(again, along)
         return again
 
-    def accept(self, last: Point, reached: Point) -> None:
+    def accept(self, last: MapPoint, reached: MapPoint) -> None:
         """Take a point, mark what changes sign before it, choose the next step."""
         for kind, before, after in self._tests(last, reached):
             if before * after < 0.0:
                 self._mark(kind, last, reached, before, after)
-        self.null = _cusp(reached, self.null)[1]
+        self.null = _null(reached, self.null)[1]
         self.points.append(reached)
         self.tangent = self._tangent(reached, reached.u - last.u)
         if self.condition.kind == "grazing":
@@ -111,7 +113,7 @@ class LocusTracer(Tracer):
         if self.progress is not None:
             self.progress(len(self.points), reached.values)
 
-    def why(self, last: Point) -> str:
+    def why(self, last: MapPoint) -> str:
         """What lies beyond."""
         if self.condition.kind == "grazing":
             flat = abs(float(last.extrema[self.condition.nearest(last), 2]))
@@ -120,21 +122,21 @@ class LocusTracer(Tracer):
         touching = min(gaps, default=1.0) / self.problem.scale < 1e-4
         return "ends at a grazing" if touching else "Newton's method did not arrive"
 
-    def _phase(self, point: Point) -> float:
+    def _phase(self, point: MapPoint) -> float:
         return float(point.extrema[self.condition.nearest(point), 0])
 
-    def _tangent(self, point: Point, along: Array) -> Array:
+    def _tangent(self, point: MapPoint, along: Array) -> Array:
         """Null vector of the three equations, turned to the side of `along`."""
-        rows = np.array([*(point.derivative - np.eye(2, 4)), self.condition.gradient(self.problem, point)])
+        rows = self.condition.rows(self.problem, point)
         null = np.linalg.svd(rows)[2][-1]
         return np.asarray(null if null @ along >= 0.0 else -null)
 
-    def _tests(self, a: Point, b: Point) -> list[tuple[str, float, float]]:
+    def _tests(self, a: MapPoint, b: MapPoint) -> list[tuple[str, float, float]]:
         """Functions of codimension two at two neighbours, with their kinds."""
         kind = self.condition.kind
         tests: list[tuple[str, float, float]] = []
         if kind == "saddle-node":
-            tests.append(("cusp", _cusp(a, self.null)[0], _cusp(b, self.null)[0]))
+            tests.append(("cusp", self._cusp(a), self._cusp(b)))
         if kind == "grazing":
             tests.append(("saddle-node and grazing", a.fold, b.fold))
             tests.append(("period-doubling and grazing", a.flip, b.flip))
@@ -147,11 +149,21 @@ class LocusTracer(Tracer):
                     tests.append((name, float(before), float(after)))
         return tests
 
-    def _mark(self, kind: str, a: Point, b: Point, before: float, after: float) -> None:
+    def _cusp(self, point: MapPoint) -> float:
+        """Second derivative of the map along its null vector, projected on the left one.
+
+        Its sign is that of the null vector, which is turned to the side of that of a neighbour.
+        """
+        w, q = _null(point, self.null)
+        second = self.problem.bend(point).second[: point.size]
+        value = float(w @ np.einsum("k,kij,j->i", q, second, q))
+        return value if w @ q >= 0.0 else -value
+
+    def _mark(self, kind: str, a: MapPoint, b: MapPoint, before: float, after: float) -> None:
         """Close in on a point of codimension two between two neighbours: Brent's method along their chord."""
         chord = b.u - a.u
         row = chord / np.linalg.norm(chord)
-        seen: list[Point] = []
+        seen: list[Any] = []
         residuals: list[float] = []
 
         def measure(share: float) -> float:
@@ -172,7 +184,7 @@ class LocusTracer(Tracer):
             error = float(np.max(rest * np.abs(b.values - a.values) / np.maximum(np.abs(last), 1e-300)))
             self.double.append(DoublePoint(kind, last.copy(), seen[-1].state.copy(), max(error, EPS)))
 
-    def _again(self, kind: str, a: Point, b: Point, before: float) -> float:
+    def _again(self, kind: str, a: MapPoint, b: MapPoint, before: float) -> float:
         """The same test function at a point between, nan if it is not found again."""
         for name, first, second in self._tests(a, b):
             if name == kind and math.isclose(first, before, rel_tol=1e-6, abs_tol=1e-300):
@@ -180,12 +192,7 @@ class LocusTracer(Tracer):
         return math.nan
 
 
-def _cusp(point: Point, reference: Array) -> tuple[float, Array]:
-    """Second derivative of the map along its null vector, projected on the left one, and the null vector.
-
-    Its sign is that of the null vector, which is turned to the side of a reference, that of a neighbour.
-    """
-    left, _, right = np.linalg.svd(point.jacobian - np.eye(2))
-    w, q = left[:, 1], right[1] if right[1] @ reference >= 0.0 else -right[1]
-    value = float(w @ np.einsum("k,kij,j->i", q, point.second[:2], q))
-    return value if w @ q >= 0.0 else -value, q
+def _null(point: MapPoint, reference: Array) -> tuple[Array, Array]:
+    """Left and right null vector of the map less the state, the right one turned to the side of a reference."""
+    left, _, right = np.linalg.svd(point.jacobian - np.eye(point.size))
+    return left[:, -1], right[-1] if right[-1] @ reference >= 0.0 else -right[-1]

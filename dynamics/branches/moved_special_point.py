@@ -8,14 +8,13 @@ import numpy as np
 
 from base import Array
 from dynamics.branches.branch import SpecialPoint
-from dynamics.branches.corrector import OrbitProblem
+from dynamics.branches.sensitivity import special_problem
 from dynamics.branches.special_orbits import special_orbit
 from dynamics.branches.special_point_derivatives import Mark, marked
-from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import EPS, exact_only
+from dynamics.model.protocol import EPS, PeriodicOscillator, periodic_only
 from dynamics.model.states import scale_of
 from dynamics.model.stiffness import FourierStiffness
-from dynamics.orbits.shooting import floquet_multipliers, motion_label
+from dynamics.orbits.shooting import motion_label
 
 FIRST, LEAST = 0.25, 1.0 / 256.0
 """First step of the way from one stiffness to the other, and the smallest."""
@@ -24,9 +23,9 @@ NEAR = 0.05
 """How far a point may lie from where its derivatives foretold it, over the size of the motion and the parameter."""
 
 
-@exact_only
+@periodic_only
 def carried_point(
-    oscillator: GearOscillator, parameter: str, point: SpecialPoint, stiffness: FourierStiffness
+    oscillator: PeriodicOscillator, parameter: str, point: SpecialPoint, stiffness: FourierStiffness
 ) -> SpecialPoint | None:
     r"""Follow a special point while the stiffness changes into another one.
 
@@ -36,7 +35,7 @@ def carried_point(
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : GearOscillator or DriveOscillator
         Of the point; its value of the parameter is not used.
     parameter : str
         In which the point was found.
@@ -61,9 +60,9 @@ def carried_point(
     >>> round(fold.parameter, 4), round(carried_point(osc, "frequency", fold, there).parameter, 4)
     (0.6556, 0.6577)
     """
-    way = _Way(oscillator.stiffness, stiffness)
+    way = _Way(oscillator.contact_stiffness, stiffness)
     mark = replace(
-        marked(oscillator, parameter, point), oscillator=replace(oscillator, stiffness=way.at(0.0))
+        marked(oscillator, parameter, point), oscillator=oscillator.with_contact_stiffness(way.at(0.0))
     )
     done, step = 0.0, FIRST
     while done < 1.0:
@@ -109,14 +108,16 @@ class _Way:
 def _stepped(mark: Mark, way: _Way, done: float, end: float) -> Mark | None:
     """The point at the end of a step; None where it is not found near where it was foretold."""
     slopes = way.slopes(done)
-    foretold = np.zeros(3)
+    foretold = np.zeros(len(mark.place))
     if slopes:
-        foretold = (end - done) * (mark.slopes(list(slopes)) @ np.array(list(slopes.values())))
-    moved = mark.moved(replace(mark.oscillator, stiffness=way.at(end)), foretold)
+        before = mark.oscillator.stiffness_name.removesuffix("stiffness")
+        names = [f"{before}{name}" for name in slopes]
+        foretold = (end - done) * (mark.slopes(names) @ np.array(list(slopes.values())))
+    moved = mark.moved(mark.oscillator.with_contact_stiffness(way.at(end)), foretold)
     if moved is None:
         return None
-    size = np.full(3, scale_of(mark.oscillator, mark.place[:2]))
-    size[2] = max(abs(mark.value), 1e-300)
+    size = np.full(len(mark.place), scale_of(mark.oscillator, mark.place[:-1]))
+    size[-1] = max(abs(mark.value), 1e-300)
     off: Array = np.abs(moved.place - mark.place - foretold) / size
     return moved if float(np.max(off)) <= NEAR else None
 
@@ -124,19 +125,19 @@ def _stepped(mark: Mark, way: _Way, done: float, end: float) -> Mark | None:
 def _special(mark: Mark, like: SpecialPoint) -> SpecialPoint | None:
     """Record of the point that a mark stands at."""
     here = mark.oscillator.with_parameter(mark.parameter, mark.value)
-    low = np.zeros(1)
-    problem = OrbitProblem(
-        here, (mark.parameter,), mark.periods, low, np.array([mark.value]), scale_of(here, mark.place[:2])
+    low, state = np.zeros(1), mark.place[:-1]
+    problem = special_problem(
+        here, (mark.parameter,), mark.periods, low, np.array([mark.value]), scale_of(here, state)
     )
-    place = problem.unknowns(mark.place[:2], mark.place[2:])
+    place = problem.unknowns(state, mark.place[-1:])
     at, finer = problem.evaluate(place), special_orbit(problem, mark.condition, place, refinement=2, limit=4)
     if at is None or finer is None:
         return None
     return replace(
         like,
         parameter=mark.value,
-        state=mark.place[:2].copy(),
-        multipliers=floquet_multipliers(at.trace, at.determinant),
+        state=state.copy(),
+        multipliers=at.multipliers,
         label=motion_label(mark.periods, at.counts),
         error=max(abs(finer.value / mark.value - 1.0), EPS),
     )

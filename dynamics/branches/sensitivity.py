@@ -1,17 +1,39 @@
-"""The period map and its exact derivatives with respect to state and parameters."""
+"""The period map and its derivatives with respect to state and parameters."""
 
 from __future__ import annotations
+
+from functools import singledispatch
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from base import Array, Faults, quantity, record
 from dynamics.branches.corrector import OrbitProblem
+from dynamics.branches.drive_problem import DriveProblem
+from dynamics.flow.flows import unserved
 from dynamics.flow.protocol import lost_motion
+from dynamics.model.drive_oscillator import DriveOscillator
 from dynamics.model.limits import PERIODS
 from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import exact_only
+from dynamics.model.protocol import PeriodicOscillator, periodic_only
 from dynamics.model.states import checked_state
+
+
+@singledispatch
+def special_problem(
+    oscillator: PeriodicOscillator, parameters: tuple[str, ...], periods: int, low: Array, high: Array, scale: float
+) -> Any:  # fmt: skip
+    """Orbits of an oscillator over several parameters, as `special_orbit` takes them; arguments of `BranchProblem`.
+
+    All derivatives are exact for a `GearOscillator`. For a `DriveOscillator` those by the state are; those by
+    parameters and all second ones are differences, good to about 1e-9.
+    """
+    raise unserved(oscillator)
+
+
+special_problem.register(GearOscillator, OrbitProblem)
+special_problem.register(DriveOscillator, DriveProblem)
 
 
 @record
@@ -19,7 +41,7 @@ class MapDerivatives:
     """Image of a state under n periods, with derivatives."""
 
     parameters: tuple[str, ...] = quantity("", "the parameters, in the order of the columns", "parameter")
-    state: Array = quantity("1", "image of X and V", "coordinate")
+    state: Array = quantity("1", "image of X and V, or of displacements and speeds", "coordinate")
     jacobian: Array = quantity("1", "its derivative with respect to the state", "row column")
     slope: Array = quantity(
         "1",
@@ -28,33 +50,36 @@ class MapDerivatives:
     )
     second: Array = quantity(
         "1",
-        "derivatives of the Jacobian by X, V and the parameters; infinite at a grazing",
+        "derivatives of the Jacobian by the state and the parameters; infinite at a grazing",
         "by row column",
     )
     counts: tuple[int, int] = quantity("1", "exits from X > D and entries into X < -D", "side")
 
 
-@exact_only
+@periodic_only
 def map_derivatives(
-    oscillator: GearOscillator,
+    oscillator: PeriodicOscillator,
     state: npt.ArrayLike,
     parameters: tuple[str, ...] | None = None,
     periods: int = 1,
 ) -> MapDerivatives:
-    r"""Follow a state over whole periods with first and second derivatives, all exact.
+    r"""Follow a state over whole periods with first and second derivatives, those of a pair all exact.
 
     Within a region the variational equations are linear with tabulated solutions. At an impact f is continuous, so
     that first derivatives pass unchanged; f' jumps, so that the derivative of the Jacobian M in a direction jumps by
     :math:`\Delta K\, (M_{1\cdot})\, \delta X / V` in its second row.
 
+    Of a drive train the derivative by the state is exact; those by parameters and all second ones are differences, good
+    to about 1e-9 of the stretch of the map. Next to a grazing they are those of the side with fewer impacts.
+
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : GearOscillator or DriveOscillator
         The oscillator.
-    state : array_like, shape (2,)
-        X and V at tau = 0.
+    state : array_like, shape (dimension,)
+        State at tau = 0.
     parameters : tuple of str, optional
-        As in `GearOscillator.with_parameter`. Left out: all of them.
+        Of its `parameters`. Left out: all of them.
     periods : int
         Excitation periods.
 
@@ -65,15 +90,20 @@ def map_derivatives(
     """
     with Faults() as faults:
         n = faults.whole("periods", periods, *PERIODS)
-    at = checked_state(state)
+    at = checked_state(state, size=oscillator.dimension)
     names = oscillator.parameters if parameters is None else tuple(parameters)
     low = np.array([oscillator.get(name) for name in names])
-    problem = OrbitProblem(
-        oscillator, names, n, low, low + 1.0, 1.0
-    )  # the unknowns are X, V and changes of these
+    # the unknowns are the state and changes of these
+    problem = special_problem(oscillator, names, n, low, low + 1.0, 1.0)
     point = problem.evaluate(problem.unknowns(at, low))
     if point is None:
         raise lost_motion(at, "the motion grows without bound")
+    bend = problem.bend(point)
     return MapDerivatives(
-        names, point.image, point.jacobian, point.derivative[:, 2:], point.second, point.counts
+        names,
+        point.image,
+        point.jacobian,
+        bend.first[:, point.size :],
+        bend.second,
+        point.counts,
     )

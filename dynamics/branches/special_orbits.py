@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from base import Array
 from dynamics.branches.branch import SpecialPoint
 from dynamics.branches.branch_problem import BranchProblem, MapPoint
-from dynamics.branches.corrector import OrbitProblem, Point, rounding
-from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import EPS
+from dynamics.branches.corrector import rounding
+from dynamics.model.protocol import EPS, PeriodicOscillator
 
 PRODUCTS = {"saddle-node": "fold", "period-doubling": "flip", "neimark-sacker": "torus"}
 """Kinds that a function of the multipliers singles out, and the attribute of a point that holds it."""
@@ -40,7 +40,7 @@ class Condition:
     phase: float = 0.0
 
     @classmethod
-    def of(cls, here: GearOscillator, point: SpecialPoint) -> Condition:
+    def of(cls, here: PeriodicOscillator, point: SpecialPoint) -> Condition:
         """Condition that a special point meets, `here` the oscillator with the point's parameter value."""
         if point.kind != "grazing":
             return cls(point.kind, point.boundary)
@@ -66,15 +66,15 @@ class Condition:
         level = point.levels[0 if self.boundary == 1 else 1]
         return float(point.extrema[at, 1] - level) / problem.scale
 
-    def gradient(self, problem: OrbitProblem, point: Point) -> Array:
-        """Its derivative with respect to the unknowns."""
-        if self.kind == "saddle-node":
-            return point.determinant_slope - point.trace_slope
-        if self.kind == "period-doubling":
-            return point.determinant_slope + point.trace_slope
-        slope: Array = point.extrema_slope[self.nearest(point)].copy()
-        slope[2:] -= self.boundary * problem.ways[:, 6] / problem.scale
-        return slope
+    def rows(self, problem: Any, point: Any) -> Array:
+        """Derivatives of map less state and of the measure by the unknowns of a `special_problem`."""
+        bend = problem.bend(point)
+        closing = bend.first - np.eye(point.size, len(point.u))
+        if self.kind in PRODUCTS:
+            return np.array([*closing, getattr(bend, PRODUCTS[self.kind])])
+        slope: Array = bend.extrema[self.nearest(point)].copy()
+        slope[point.size :] -= self.boundary * problem.widenings / problem.scale
+        return np.array([*closing, slope])
 
 
 def noise_of(u: Array, periods: int) -> float:
@@ -83,17 +83,17 @@ def noise_of(u: Array, periods: int) -> float:
 
 
 def special_orbit(
-    problem: OrbitProblem,
+    problem: Any,
     condition: Condition,
     guess: Array,
     across: Array | None = None,
     refinement: int = 1,
     limit: int = 12,
-) -> Point | None:
+) -> Any:
     """Newton's method for an orbit that meets a condition; None if it does not arrive.
 
-    With one parameter the orbit is isolated. With two, it is sought in the plane across . (u - guess) = 0. Every
-    derivative is exact, so that convergence is quadratic away from grazings.
+    With one parameter the orbit is isolated. With two, it is sought in the plane across . (u - guess) = 0. Derivatives
+    are those of a `special_problem`; where they are exact convergence is quadratic away from grazings.
     """
     u, noise = guess, noise_of(guess, problem.periods)
     best, kept = np.inf, None
@@ -101,8 +101,8 @@ def special_orbit(
         point = problem.evaluate(u, refinement)
         if point is None:
             return None
-        gap = [*(point.image - u[:2]), condition.measure(problem, point)]
-        rows = [*(point.derivative - np.eye(2, len(u))), condition.gradient(problem, point)]
+        gap = [*(point.image - u[: point.size]), condition.measure(problem, point)]
+        rows = [*condition.rows(problem, point)]
         if across is not None:
             gap.append(across @ (u - guess))
             rows.append(across)

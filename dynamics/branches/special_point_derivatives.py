@@ -10,10 +10,10 @@ import numpy as np
 
 from base import Array
 from dynamics.branches.branch import SpecialPoint
-from dynamics.branches.corrector import OrbitProblem, Point
+from dynamics.branches.branch_problem import MapPoint
+from dynamics.branches.sensitivity import special_problem
 from dynamics.branches.special_orbits import Condition, special_orbit
-from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import exact_only
+from dynamics.model.protocol import PeriodicOscillator, periodic_only
 from dynamics.model.states import scale_of
 
 
@@ -23,7 +23,7 @@ class Mark:
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : GearOscillator or DriveOscillator
         The parameters.
     parameter : str
         In which the point lies.
@@ -31,11 +31,11 @@ class Mark:
         What singles it out.
     periods : int
         Of its orbit.
-    place : ndarray, shape (3,)
-        X, V and the parameter.
+    place : ndarray, shape (dimension + 1,)
+        State and the parameter.
     """
 
-    oscillator: GearOscillator
+    oscillator: PeriodicOscillator
     parameter: str
     condition: Condition
     periods: int
@@ -44,86 +44,88 @@ class Mark:
     @property
     def value(self) -> float:
         """The parameter."""
-        return float(self.place[2])
+        return float(self.place[-1])
 
     def slopes(self, names: Sequence[str]) -> Array:
-        r"""Change of X, V and the parameter with others, shape (3, names), all entries exact.
+        r"""Change of the state and the parameter with others, shape (dimension + 1, names).
 
-        The point solves G = 0: the orbit closes (two equations) and its condition holds. With the columns for X, V and
-        the parameter in A and those for the others in b, the change is :math:`-A^{-1} b`; nan where A is singular or
-        the point cannot be evaluated.
+        The point solves G = 0: the orbit closes and its condition holds. With the columns for the state and the
+        parameter in A and those for the others in b, the change is :math:`-A^{-1} b`; nan where A is singular or
+        the point cannot be evaluated. All entries are as good as those of `special_problem`.
         """
         here = self.oscillator.with_parameter(self.parameter, self.value)
         low = np.array([self.value, *(here.get(n) for n in names)])
-        problem = OrbitProblem(
-            here, (self.parameter, *names), self.periods, low, low + 1.0, scale_of(here, self.place[:2])
+        state, size = self.place[:-1], len(self.place)
+        problem = special_problem(
+            here, (self.parameter, *names), self.periods, low, low + 1.0, scale_of(here, state)
         )
-        at = problem.evaluate(problem.unknowns(self.place[:2], low))
-        lost = np.full((3, len(names)), math.nan)
+        at = problem.evaluate(problem.unknowns(state, low))
+        lost = np.full((size, len(names)), math.nan)
         if at is None or (self.condition.kind == "grazing" and self.condition.nearest(at) < 0):
             return lost
-        rows = np.array([*(at.derivative - np.eye(2, len(low) + 2)), self.condition.gradient(problem, at)])
+        rows = self.condition.rows(problem, at)
         if not np.all(np.isfinite(rows)):
             return lost
         try:
-            change = -np.linalg.solve(rows[:, :3], rows[:, 3:])
+            change = -np.linalg.solve(rows[:, :size], rows[:, size:])
         except np.linalg.LinAlgError:
             return lost
-        change[:2] *= problem.scale
+        change[:-1] *= problem.scale
         return np.asarray(change)
 
-    def moved(self, there: GearOscillator, change: Array) -> Mark | None:
-        """The point at other parameters, `change` the expected change of X, V and the parameter; None if it is lost.
+    def moved(self, there: PeriodicOscillator, change: Array) -> Mark | None:
+        """The point at other parameters, `change` the expected change of `place`; None if it is lost.
 
         Newton's method on the orbit and its condition together, from that guess.
         """
         guess = self.place + change
-        if not (np.all(np.isfinite(guess)) and (self.parameter != "frequency" or guess[2] > 0.0)):
+        if not (np.all(np.isfinite(guess)) and (self.parameter != "frequency" or guess[-1] > 0.0)):
             return None
-        scale = scale_of(there, self.place[:2])
-        problem = OrbitProblem(
-            there, (self.parameter,), self.periods, np.zeros(1), np.array([max(abs(guess[2]), 1e-3)]), scale
+        scale = scale_of(there, self.place[:-1])
+        problem = special_problem(
+            there, (self.parameter,), self.periods, np.zeros(1), np.array([max(abs(guess[-1]), 1e-3)]), scale
         )
-        point = special_orbit(problem, self.condition, problem.unknowns(guess[:2], guess[2:]))
+        point = special_orbit(problem, self.condition, problem.unknowns(guess[:-1], guess[-1:]))
         if point is None:
             return None
         place = np.append(point.state, point.value)
         return replace(self, oscillator=there, condition=self._refreshed(point), place=place)
 
-    def _refreshed(self, point: Point) -> Condition:
+    def _refreshed(self, point: MapPoint) -> Condition:
         """Condition with the phase of the extremum as it is now."""
         if self.condition.kind != "grazing":
             return self.condition
         return replace(self.condition, phase=float(point.extrema[self.condition.nearest(point), 0]))
 
 
-def marked(here: GearOscillator, parameter: str, point: SpecialPoint) -> Mark:
+def marked(here: PeriodicOscillator, parameter: str, point: SpecialPoint) -> Mark:
     """Mark of a special point of a branch."""
     condition = Condition.of(here.with_parameter(parameter, point.parameter), point)
     return Mark(here, parameter, condition, point.periods, np.append(point.state, point.parameter))
 
 
-@exact_only
+@periodic_only
 def special_sensitivities(
-    oscillator: GearOscillator, parameter: str, point: SpecialPoint, names: Sequence[str] | None = None
+    oscillator: PeriodicOscillator, parameter: str, point: SpecialPoint, names: Sequence[str] | None = None
 ) -> dict[str, float]:
     r"""Derivatives of a special point's parameter value with respect to the other parameters.
 
-    The point solves G = 0: the orbit closes (two equations) and its condition holds. With the columns for X, V and
-    the parameter in A and that for another parameter p in b, the change with p is the last component of
-    :math:`-A^{-1} b`. All entries are exact.
+    The point solves G = 0: the orbit closes and its condition holds. With the columns for the state and the
+    parameter in A and that for another parameter p in b, the change with p is the last component of
+    :math:`-A^{-1} b`. All entries are exact; those of a drive train by parameters, and all second ones, are
+    differences, good to about 1e-9.
 
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : GearOscillator or DriveOscillator
         The oscillator; its value of the parameter is not used. A harmonic of amplitude zero may be among its series:
         the derivative is then what that harmonic would do.
     parameter : str
         The parameter in which the point was found.
     point : SpecialPoint
-        A saddle node, period doubling or grazing.
+        A saddle node, period doubling, grazing or Neimark-Sacker point.
     names : sequence of str, optional
-        As in `GearOscillator.with_parameter`. Left out: all others.
+        Of its `parameters`. Left out: all others.
 
     Returns
     -------
@@ -146,4 +148,4 @@ def special_sensitivities(
     """
     mark = marked(oscillator, parameter, point)
     wanted = [n for n in (oscillator.parameters if names is None else names) if n != parameter]
-    return dict(zip(wanted, mark.slopes(wanted)[2].tolist(), strict=True))
+    return dict(zip(wanted, mark.slopes(wanted)[-1].tolist(), strict=True))

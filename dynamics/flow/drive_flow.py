@@ -38,7 +38,6 @@ class DriveFlow(PartedFlow):
 
     tolerance = EPS
     noise = 64.0 * EPS
-    beside = "take differences"
 
     oscillator: DriveOscillator
     arrays: Arrays

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -90,8 +90,6 @@ class Flow(ABC):
     """Length of a state."""
     noise: float
     """Residual, over the size of the motion and the stretch of the map, below which nothing gets."""
-    beside: ClassVar = "take dynamics.branches.sensitivity.map_derivatives"
-    """What gives derivatives by parameters where the flow itself has none."""
 
     @abstractmethod
     def follow(self, state: Array, periods: int = 1, skip: int = 0, derivatives: bool = True) -> MapResult:
@@ -124,7 +122,7 @@ class Flow(ABC):
             If there is no such parameter; or if the flow has none of these: it names what gives them.
         """
         asked = (
-            ("parameters", parameters, self.beside),
+            ("parameters", parameters, "take dynamics.branches.sensitivity.map_derivatives"),
             ("extrema", extrema, "take dynamics.flow.motions.turning_points"),
         )
         with Faults() as faults:

@@ -35,13 +35,13 @@ TAKEN = {
     "manifold": None,  # tests.dynamics.test_drive_global
     "boundary_crisis": None,  # tests.dynamics.test_drive_global
     "contact_grazing": None,  # tests.dynamics.test_drive_contact
+    "carried_point": None,  # tests.dynamics.test_drive_special
+    "continue_locus": None,  # tests.dynamics.test_drive_special
+    "special_sensitivities": None,  # tests.dynamics.test_drive_special
 }  # fmt: skip
 REFUSED = {
-    "carried_point": ("frequency", None, "mean_force", 0.1),
-    "continue_locus": (None, ("frequency", "mean_force")),
     "find_orbits": (),
     "restoring_force": (0.0, 0.1),
-    "special_sensitivities": ("frequency", None),
 }
 
 
