@@ -120,7 +120,7 @@ def diagram(
     followed, and so on. A branch ends at a bound, where it closes, where it meets the branch of half its period, or
     where the motion grows without bound.
 
-    In several freedoms no index gives the number of orbits, and none are searched for: branches are those of the
+    In several freedoms no orbits are searched for, since no plane of starts meets them all: branches are those of the
     motions that sweeps from many starts meet, and what these lead to.
 
     Parameters

@@ -29,7 +29,7 @@ class Oscillator(ABC):
     """What moves: a frozen record of parameters, each with a name."""
 
     is_exact: ClassVar = False
-    """Whether the flow is the exact one in the plane, which many functions need."""
+    """Whether the flow is the exact one in the plane: it runs backwards, and orbits are searched for by a kernel."""
     has_steps: ClassVar = True
     """Whether the flow takes steps, of a tolerance."""
 
@@ -148,6 +148,7 @@ class PeriodicOscillator(Oscillator):
     stiffness_name: ClassVar[str]
     """Field of the stiffness."""
     half_backlash: float
+    one_sided: bool
 
     @property
     def contact_stiffness(self) -> FourierStiffness:
@@ -221,31 +222,24 @@ def settling_periods(oscillator: Oscillator, low: int = 200, high: int = 5000) -
     return high if decay <= 0.0 else int(min(max(math.log(1e6) / decay, low), high))
 
 
-def exact_only(function: Callable[P, R]) -> Callable[P, R]:
-    """Have a function refuse, by name, an oscillator that is no `GearOscillator`, or what moves by another one."""
-    return _refusing(function, lambda oscillator: oscillator.is_exact, "a GearOscillator")
-
-
 def periodic_only(function: Callable[P, R]) -> Callable[P, R]:
-    """Have a function refuse, by name, an oscillator whose force is no periodic stiffness past a backlash."""
-    allowed = "a GearOscillator or a DriveOscillator"
-    return _refusing(function, lambda oscillator: isinstance(oscillator, PeriodicOscillator), allowed)
+    """Have a function refuse, by name, an oscillator whose force is no periodic stiffness past a backlash.
 
-
-def _refusing(function: Callable[P, R], takes: Callable[[Oscillator], bool], allowed: str) -> Callable[P, R]:
-    """Have a function refuse, by name, an oscillator that it does not take, or what moves by one."""
+    So it does with what moves by one, such as an orbit.
+    """
 
     @functools.wraps(function)
     def checked(*args: P.args, **kwargs: P.kwargs) -> R:
         argument: Any = args[0] if args else next(iter(kwargs.values()), None)
         oscillator = argument if isinstance(argument, Oscillator) else getattr(argument, "oscillator", None)
-        if isinstance(oscillator, Oscillator) and not takes(oscillator):
+        if isinstance(oscillator, Oscillator) and not isinstance(oscillator, PeriodicOscillator):
             name = type(oscillator).__name__
-            raise InputError.at(
-                "oscillator", name, f"must be {allowed} in {function.__name__}",
-                "period_map, trajectory, find_orbit, continue_branch, doubled_orbit, sweep, lyapunov_exponents and "
-                f"basins take a {name} too",
-            )  # fmt: skip
+            allowed = f"must be a GearOscillator or a DriveOscillator in {function.__name__}"
+            remedy = (
+                "period_map, trajectory, find_orbit, continue_branch, doubled_orbit, sweep, lyapunov_exponents, "
+                f"basins, basin_boundary, edge_saddles, chaos_end and boundary_crisis take a {name} too"
+            )
+            raise InputError.at("oscillator", name, allowed, remedy)
         return function(*args, **kwargs)
 
     return checked

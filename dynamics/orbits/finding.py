@@ -6,19 +6,19 @@ import math
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
-from dynamics.flow.exact_flow import exact_flow
 from dynamics.flow.flows import flow_of
 from dynamics.flow.motions import period_map
 from dynamics.flow.protocol import Flow, propagated
 from dynamics.model.limits import SEARCHED, whole_numbers
-from dynamics.model.oscillator import GearOscillator
-from dynamics.model.protocol import PeriodicOscillator, exact_only, settling_periods
+from dynamics.model.protocol import PeriodicOscillator, periodic_only, settling_periods
 from dynamics.model.states import Region, checked_region
+from dynamics.orbits.hunting import hunted
 from dynamics.orbits.index import index_at_infinity
 from dynamics.orbits.shooting import Orbit, find_orbit
 
@@ -33,6 +33,7 @@ GOLDEN = (
 GROWTHS = 4  # searches of a region that grows, at most
 WHOLE = 40  # periods of long motions that are looked at all the time, by so many samples
 SAMPLES = 32
+SHARES = tuple(k / 10 for k in range(1, 10))  # of the way from one orbit to the next
 RECURRENT = 120  # points of long motions that are tried as starts: chaos passes near its unstable orbits
 
 
@@ -44,7 +45,9 @@ class IndexCount:
 
     periods: int = quantity("1", "n")
     points: int = quantity("1", "fixed points found, those of shorter periods included")
-    found: int = quantity("1", "sum of their indices, the sign of (1 - m1)(1 - m2) of each")
+    found: int = quantity(
+        "1", "sum of their indices, the sign of (1 - m1)(1 - m2)... of each, over all multipliers"
+    )
     expected: int | None = quantity("1", "index of the map on a large circle; None if it is not known")
     starts: int = quantity("1", "starts of the search without deflation", default=0)
     once: int = quantity("1", "orbits that only one of those starts led to", default=0)
@@ -82,9 +85,9 @@ class OrbitSet:
         return len(self.orbits)
 
 
-@exact_only
+@periodic_only
 def find_orbits(
-    oscillator: GearOscillator,
+    oscillator: PeriodicOscillator,
     periods: int | Sequence[int] = (1, 2, 3, 4),
     region: Region | None = None,
     *,
@@ -103,15 +106,20 @@ def find_orbits(
     none. With :math:`f_1` orbits met once and :math:`f_2` met twice, about :math:`f_1 (f_1 - 1) / (2 f_2 + 2)` have not
     been met (Chao 1984, Scandinavian Journal of Statistics 11, 265-270).
 
+    In several freedoms starts lie on the plane through the state at rest in which y and its rate move alone, on long
+    motions and between orbits; that plane need not pass near an orbit, so that more may be missing than the estimate
+    says.
+
     Parameters
     ----------
-    oscillator : GearOscillator
+    oscillator : GearOscillator or DriveOscillator
         The oscillator.
     periods : int or sequence of int
         Periods, in excitation periods.
     region : ((x0, x1), (v0, v1)), optional
-        Starts. Left out: somewhat more than what long motions cover, at all times of the period and not at tau = 0
-        alone; it grows, and the search is repeated, while orbits found reach beyond it.
+        Starts; of a drive train y and its rate, from the state at rest. Left out: somewhat more than what long motions
+        cover, at all times of the period and not at tau = 0 alone; it grows, and the search is repeated, while orbits
+        found reach beyond it.
     starts : int
         Starts along each side of the region.
     batches : int
@@ -165,7 +173,7 @@ def find_orbits(
         said.append("orbits reach beyond the region that was searched: give a larger region")
     if any(c.expected is None for c in counts):
         said.append("the sum of the indices is not known for this oscillator")
-    cost = Cost(watch.seconds, 2, 0, search.periods)
+    cost = Cost(watch.seconds, oscillator.dimension, 0, search.periods)
     error = max((o.error for o in orbits), default=0.0)
     return OrbitSet(orbits, tuple(counts), search.region, error, cost, good, "; ".join(said))
 
@@ -173,22 +181,41 @@ def find_orbits(
 class _Search:
     """Orbits found so far, and where to start."""
 
-    def __init__(self, oscillator: GearOscillator, region: Region | None) -> None:
-        self.oscillator, self.table = oscillator, exact_flow(oscillator)
+    def __init__(self, oscillator: PeriodicOscillator, region: Region | None) -> None:
+        self.oscillator, self.flow = oscillator, flow_of(oscillator)
+        self.along, self.centre = oscillator.start_plane()
         self.orbits: list[Orbit] = []
-        self.places, self.owners = np.empty((0, 2)), list[int]()  # states of all orbits, and whose they are
-        self.motion, self.periods = _long_motions(oscillator, self.table)
+        self.places, self.owners = (
+            self.centre[None][:0],
+            list[int](),
+        )  # states of all orbits, and whose they are
+        self.motion, self.periods = _long_motions(oscillator, self.flow)
         self.grown, self.seen = region is None, 0
         self.region = region if region is not None else _around(self._reach(self.motion[-3:], WHOLE))
-        self.scale = float(np.max(np.abs(self.region)))
-        met = _around(np.max(np.abs(self.motion), axis=0, initial=1e-9))
+        self.scale = self._scale()
+        met = _around(np.max(self._off_centre(np.zeros(len(self.motion)), self.motion), axis=0, initial=1e-9))
         self.inner = self.region if region is not None else met
+
+    def _off_centre(self, tau: Array, states: Array) -> Array:
+        """Distances in X and V of states at some times from the middle of the region at tau = 0, shape (k, 2)."""
+        middle = self.oscillator.in_plane(self.centre[None])
+        return np.abs(np.column_stack(self.oscillator.contact_motion(tau, states)) - middle)
+
+    def _starts(self, places: Array) -> Array:
+        """States of places in the plane of X and V, shape (k, dimension)."""
+        return np.asarray(self.centre + places @ self.along)
+
+    def _scale(self) -> float:
+        """Largest entry of a state at the corners of the region."""
+        corners = np.stack(np.meshgrid(*self.region), axis=-1).reshape(-1, 2)
+        return float(np.max(np.abs(self._starts(corners))))
 
     def all_of(self, n: int, side: int, most: int) -> IndexCount:
         """Search for orbits of so many periods, with a finer grid as long as indices are missing, twice."""
         for fineness in (1, 2, 4):
             self.run(n, side * fineness)
             self.twins(n)
+            self.between(n)
             met = self.spread(n, side * fineness, most)
             self.twins(n)
             count = replace(self.count(n), **met)
@@ -206,17 +233,17 @@ class _Search:
         if np.all(size <= np.array(self.region)[:, 1]):
             return False
         self.region = _around(size)
-        self.scale = float(np.max(np.abs(self.region)))
+        self.scale = self._scale()
         return True
 
     def _reach(self, states: Array, periods: int) -> Array:
         """Largest X and V of motions from some states at tau = 0, at all times; of those that can be followed."""
-        size = np.max(np.abs(states), axis=0, initial=1e-9)
+        size = np.max(self._off_centre(np.zeros(len(states)), states), axis=0, initial=1e-9)
+        tau = np.arange(periods * SAMPLES + 1, dtype=np.float64) * (self.oscillator.period / SAMPLES)
         for state in states:
             with suppress(InputError):
-                size = np.maximum(
-                    size, np.max(np.abs(self.table.sampled(state, periods, SAMPLES)[0]), axis=0)
-                )
+                samples = self.flow.sampled(state, periods, SAMPLES)[0]
+                size = np.maximum(size, np.max(self._off_centre(tau, samples), axis=0))
             self.periods += periods
         return np.asarray(size)
 
@@ -225,22 +252,20 @@ class _Search:
         grids = [_grid(self.inner, side)]
         if self.region != self.inner:
             grids.append(_grid(self.region, max(side // 2, 1)))
-        starts = np.concatenate([self.motion[-RECURRENT:], *grids])
+        starts = np.concatenate([self.motion[-RECURRENT:], *(self._starts(grid) for grid in grids)])
         deflated = [orbit.points for orbit in self.orbits if n % orbit.periods == 0]
-        self._hunt(starts, n, 40, np.concatenate([np.empty((0, 2)), *deflated]))
+        self._hunt(starts, n, 40, np.concatenate([self.centre[None][:0], *deflated]))
 
     def spread(self, n: int, side: int, most: int) -> dict[str, Any]:
         """Newton's method without deflation from batches of starts, until no orbit was met by one of them alone.
 
         Returns the starts and what they say of orbits that none of them met.
         """
-        from dynamics.kernels.searching import hunt
-
         boxes = [(self.inner, side**2)]
         if self.region != self.inner:
             boxes.append((self.region, max(side**2 // 2, 1)))
         met: list[int] = [0] * len(self.orbits)
-        point, none, space = np.empty((n, 2)), 0, self.table.space()
+        point, none = np.empty((n, len(self.centre))), 0
         once, unseen, used, last_new = 0, 0.0, 0, 0
         for batch in range(most):
             parts = []
@@ -249,15 +274,13 @@ class _Search:
                 low, high = np.array(region).T
                 parts.append(low + at * (high - low))
                 used += number
-            starts = np.concatenate(parts)
+            starts = self._starts(np.concatenate(parts))
             if batch % 2:  # what has gone on for a while lies nearer to orbits
-                starts = propagated(self.table, starts, batch // 2 % PASSED + 1)
+                starts = propagated(self.flow, starts, batch // 2 % PASSED + 1)
             known = len(self.orbits)
             for k in range(len(starts)):
-                last, periods = hunt(
-                    self.table.arrays, space, starts[k : k + 1], n, PLAIN, self.scale, point, none
-                )
-                self.periods += int(periods)
+                last, periods = hunted(self.flow, starts[k : k + 1], n, PLAIN, self.scale, point, none)
+                self.periods += periods
                 if last:
                     self._meet(point[0].copy(), n, met)
             seen = [hits for hits, orbit in zip(met, self.orbits, strict=True) if n % orbit.periods == 0]
@@ -294,18 +317,28 @@ class _Search:
                 along = self.scale * np.real(vectors[:, k])
                 starts += [orbit.state + sign * size * along for size in BESIDE for sign in (1, -1)]
         if starts:
-            self._hunt(np.array(starts), n, 20, np.empty((0, 2)))
+            self._hunt(np.array(starts), n, 20, self.centre[None][:0])
+
+    def between(self, n: int) -> None:
+        """Search between neighbouring orbits where the plane of the starts leaves directions of the states out.
+
+        What parts two attractors lies between them, and is seldom reached from a plane.
+        """
+        if len(self.along) == len(self.centre):
+            return
+        states = sorted(
+            (o.state for o in self.orbits if n % o.periods == 0), key=lambda state: float(state[0])
+        )
+        starts = [a + share * (b - a) for a, b in pairwise(states) for share in SHARES]
+        if starts:
+            self._hunt(np.array(starts), n, 40, np.array(states))
 
     def _hunt(self, starts: Array, n: int, limit: int, deflated: Array) -> None:
         """Keep the orbits that Newton's method, pushed away from some points, reaches from starts."""
-        from dynamics.kernels.searching import hunt
-
-        points = np.empty((4096, 2))
+        points = np.empty((4096, len(self.centre)))
         points[: len(deflated)] = deflated
-        last, used = hunt(
-            self.table.arrays, self.table.space(), starts, n, limit, self.scale, points, len(deflated)
-        )
-        self.periods += int(used)
+        last, used = hunted(self.flow, starts, n, limit, self.scale, points, len(deflated))
+        self.periods += used
         for point in points[len(deflated) : last]:
             if self._known(point) is None:
                 self._keep(find_orbit(self.oscillator, point, periods=n))
@@ -330,8 +363,7 @@ class _Search:
         """Which of the orbits a state lies on."""
         if not self.owners:
             return None
-        off = np.abs(self.places - state)
-        gaps = np.maximum(off[:, 0], off[:, 1])
+        gaps = np.max(np.abs(self.places - state), axis=1)
         nearest = int(gaps.argmin())
         return self.owners[nearest] if gaps[nearest] < 1e-7 * self.scale else None
 

@@ -38,9 +38,9 @@ TAKEN = {
     "carried_point": None,  # tests.dynamics.test_drive_special
     "continue_locus": None,  # tests.dynamics.test_drive_special
     "special_sensitivities": None,  # tests.dynamics.test_drive_special
+    "find_orbits": None,  # tests.dynamics.test_drive_finding
 }  # fmt: skip
 REFUSED = {
-    "find_orbits": (),
     "restoring_force": (0.0, 0.1),
 }
 

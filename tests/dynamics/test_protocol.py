@@ -59,7 +59,7 @@ def test_states_at_rest_agree():
 @pytest.mark.parametrize(
     ("name", "more", "allowed"),
     [
-        ("find_orbits", (), "GearOscillator"),
+        ("find_orbits", (), "GearOscillator or a DriveOscillator"),
         ("diagram", (), "GearOscillator or a DriveOscillator"),
         ("multi_sweep", ("frequency", [0.5]), "GearOscillator or a DriveOscillator"),
         ("contact_grazing", (), "GearOscillator or a DriveOscillator"),
