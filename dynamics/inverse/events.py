@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -106,9 +107,21 @@ class Ranged:
         Values that are tried first: the middles of equal intervals, in equal ratios if both ends are positive.
     """
 
+    continuous: ClassVar = True
+
     low: float
     high: float
     trials: int = 4
+
+    def check(self, faults: Faults, path: str) -> None:
+        """Note what is not allowed."""
+        ordered(faults, path, (self.low, self.high), "give Ranged(low, high)")
+        faults.whole(f"{path}.trials", self.trials, 1, 10_000, "4 is usual")
+
+    @property
+    def middle(self) -> float:
+        """Middle of the range, in equal ratios if both ends are positive."""
+        return math.sqrt(self.low * self.high) if self.low > 0.0 else 0.5 * (self.low + self.high)
 
     @property
     def values(self) -> tuple[float, ...]:
@@ -129,7 +142,21 @@ class OneOf:
         All are tried, and the result is one of them.
     """
 
+    continuous: ClassVar = False
+
     values: Sequence[float]
+
+    def check(self, faults: Faults, path: str) -> None:
+        """Note what is not allowed."""
+        if len(self.values) == 0:
+            faults.add(f"{path}.values", (), "must hold at least one value", "give the values to try")
+        for i, value in enumerate(self.values):
+            faults.number(f"{path}.values[{i}]", value, NUMBER)
+
+    @property
+    def middle(self) -> float:
+        """The middle value."""
+        return float(sorted(self.values)[len(self.values) // 2])
 
     @property
     def low(self) -> float:
@@ -220,7 +247,7 @@ def checked(
         oscillator.get(name)
         if name == parameter:
             faults.add(f"unknowns[{name!r}]", name, "must not be the parameter of the events", "leave it out")
-        _check_unknown(faults, f"unknowns[{name!r}]", unknown)
+        unknown.check(faults, f"unknowns[{name!r}]")
     if not unknowns:
         faults.add("unknowns", {}, "must hold at least one", "name a parameter and its range")
     faults.raise_if_any()
@@ -248,14 +275,3 @@ def _check_event(faults: Faults, path: str, event: Event, bounds: tuple[float, f
     value = faults.number(f"{path}.value", event.value, NUMBER)
     if not math.isnan(value) and not bounds[0] < value < bounds[1]:
         faults.add(f"{path}.value", event.value, "must be within bounds", "widen the bounds")
-
-
-def _check_unknown(faults: Faults, path: str, unknown: Unknown) -> None:
-    if isinstance(unknown, OneOf):
-        if len(unknown.values) == 0:
-            faults.add(f"{path}.values", (), "must hold at least one value", "give the values to try")
-        for i, value in enumerate(unknown.values):
-            faults.number(f"{path}.values[{i}]", value, NUMBER)
-        return
-    ordered(faults, path, (unknown.low, unknown.high), "give Ranged(low, high)")
-    faults.whole(f"{path}.trials", unknown.trials, 1, 10_000, "4 is usual")

@@ -8,10 +8,9 @@ flank the same holds of F_m, eps and D together.
 from __future__ import annotations
 
 import dataclasses
-import math
 from dataclasses import dataclass
 
-from dynamics.inverse.events import OneOf, Problem, Ranged, Unknown
+from dynamics.inverse.events import Problem, Ranged, Unknown
 from dynamics.model.oscillator import GearOscillator
 
 PLAY, FORCE, ERROR = "half_backlash", "mean_force", "error_amplitude"
@@ -53,7 +52,7 @@ class Reduction:
     def whole(self, here: GearOscillator) -> GearOscillator:
         """Oscillator of the whole problem for one of the first; without back flank where no event depends on it."""
         if PLAY in self.held:
-            return here.with_parameter(PLAY, _middle(self.problem.unknowns[PLAY]))
+            return here.with_parameter(PLAY, self.problem.unknowns[PLAY].middle)
         return dataclasses.replace(here, one_sided=self.problem.oscillator.one_sided)
 
 
@@ -88,7 +87,7 @@ def reduced(problem: Problem) -> Reduction:
             held.append(PLAY)
     if tied and (here.one_sided or PLAY in unknowns):
         range_of_error = unknowns.pop(ERROR)
-        middle = _middle(range_of_error)
+        middle = range_of_error.middle
         here = here.with_parameter(ERROR, middle)
         said.append(f"only {FORCE} / {ERROR} is seen, {ERROR} is held")
         rescaled = here.one_sided and seen and PLAY not in problem.unknowns
@@ -106,11 +105,3 @@ def scaled(here: GearOscillator, factor: float) -> GearOscillator:
     for name in (PLAY, FORCE, ERROR):
         here = here.with_parameter(name, factor * here.get(name))
     return here
-
-
-def _middle(unknown: Unknown) -> float:
-    if isinstance(unknown, OneOf):
-        return float(sorted(unknown.values)[len(unknown.values) // 2])
-    if unknown.low > 0.0:
-        return math.sqrt(unknown.low * unknown.high)
-    return 0.5 * (unknown.low + unknown.high)

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from base import quantity, record
-from dynamics.inverse.events import OneOf
+from dynamics.inverse.events import Unknown
 from dynamics.inverse.refinement import Fit, moved, refit
 
 DIGITS = 5  # significant digits up to which a value counts as round
@@ -56,7 +56,7 @@ def rounded(
     remaining = list(names)
     for name in names:
         unknown = start.problem.unknowns[name]
-        if not isinstance(unknown, OneOf):
+        if unknown.continuous:
             continue
         remaining.remove(name)
         value, worth = _nearest(unknown, now.oscillator.get(name))
@@ -97,7 +97,7 @@ def _roundest(
     return None
 
 
-def _nearest(unknown: OneOf, value: float) -> tuple[float, float]:
+def _nearest(unknown: Unknown, value: float) -> tuple[float, float]:
     """Nearest of the values given, and what that is worth."""
     values = np.array(sorted(unknown.values), dtype=np.float64)
     at = int(np.argmin(np.abs(values - value)))

@@ -27,7 +27,7 @@ class Trial(NamedTuple):
 
 def solved_name(problem: Problem) -> str | None:
     """Unknown that is solved from an event: the mean force, or the first that has a range; None if all are chosen."""
-    ranged = [name for name, unknown in problem.unknowns.items() if isinstance(unknown, Ranged)]
+    ranged = [name for name, unknown in problem.unknowns.items() if unknown.continuous]
     return FORCE if FORCE in ranged else ranged[0] if ranged else None
 
 
