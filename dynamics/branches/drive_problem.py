@@ -110,10 +110,11 @@ class DriveProblem(PeriodMap):
         if point is None:
             return None
         slopes = [self._slope(point, place, cells) for place in range(self.size, len(u))]
-        known = [slope / self.scale for slope in slopes if slope is not None]
-        if len(known) < len(slopes):
+        if slopes[0] is None:
             return None
-        return replace(point, derivative=np.column_stack([point.derivative, *known]))
+        # a further parameter may not be allowed to change, as one force of a train that nothing holds
+        columns = [np.full(self.size, np.nan) if slope is None else slope / self.scale for slope in slopes]
+        return replace(point, derivative=np.column_stack([point.derivative, *columns]))
 
     def bend(self, point: DrivePoint) -> Bend:
         """Derivatives of the Jacobian and of what it singles out, by differences."""

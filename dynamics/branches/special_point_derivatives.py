@@ -50,8 +50,8 @@ class Mark:
         r"""Change of the state and the parameter with others, shape (dimension + 1, names).
 
         The point solves G = 0: the orbit closes and its condition holds. With the columns for the state and the
-        parameter in A and those for the others in b, the change is :math:`-A^{-1} b`; nan where A is singular or
-        the point cannot be evaluated. All entries are as good as those of `special_problem`.
+        parameter in A and those for the others in b, the change is :math:`-A^{-1} b`; nan where A is singular, the
+        point cannot be evaluated, or another parameter may not change. Entries are as good as of `special_problem`.
         """
         here = self.oscillator.with_parameter(self.parameter, self.value)
         low = np.array([self.value, *(here.get(n) for n in names)])
@@ -64,7 +64,7 @@ class Mark:
         if at is None or (self.condition.kind == "grazing" and self.condition.nearest(at) < 0):
             return lost
         rows = self.condition.rows(problem, at)
-        if not np.all(np.isfinite(rows)):
+        if not np.all(np.isfinite(rows[:, :size])):
             return lost
         try:
             change = -np.linalg.solve(rows[:, :size], rows[:, size:])
@@ -130,7 +130,8 @@ def special_sensitivities(
     Returns
     -------
     dict
-        Name to derivative; nan where the system is singular (a point of codimension two).
+        Name to derivative; nan where the system is singular (a point of codimension two), or where the parameter may
+        not change, as one force alone of a train that nothing holds.
 
     Raises
     ------

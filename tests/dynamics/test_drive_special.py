@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from dynamics import (
+    DriveOscillator,
     FourierStiffness,
     GearOscillator,
     carried_point,
@@ -88,6 +89,26 @@ def test_a_point_is_carried_to_where_that_of_the_pair_is():
     of_train = carried_point(TRAIN, "frequency", ours, there)
     assert of_train.parameter == pytest.approx(of_pair.parameter, abs=1e-9)
     assert abs(of_train.parameter - ours.parameter) > 1e-3
+
+
+def test_a_force_that_nothing_holds_may_not_change_alone():
+    """Two free gears are the oscillator of their mesh, mass 1.2: all other derivatives are those of one freedom."""
+    free = DriveOscillator(
+        np.diag([2.0, 3.0]), np.zeros((2, 2)), np.zeros((2, 2)), [1.0, -1.0], PAIR.stiffness, 0.1, [0.1, -0.1],
+        0.2, 0.58, 0.2,
+    )  # fmt: skip
+    mesh = DriveOscillator([[1.2]], [[0.0]], [[0.0]], [1.0], PAIR.stiffness, 0.1, [0.1], 0.2, 0.58, 0.2)
+    slopes = []
+    for train in (free, mesh):
+        orbit = find_orbit(train, train.rest_state(), transient=300)
+        fold = continue_branch(orbit, "frequency", (0.5, 0.62)).special("saddle-node")[0]
+        slopes.append(special_sensitivities(train, "frequency", fold))
+    assert np.isnan(slopes[0].pop("mean_force[0]"))
+    assert np.isnan(slopes[0].pop("mean_force[1]"))
+    assert np.isfinite(slopes[1].pop("mean_force[0]"))
+    assert slopes[0].keys() == slopes[1].keys()
+    for name, slope in slopes[0].items():
+        assert slope == pytest.approx(slopes[1][name], rel=1e-6, abs=1e-7)
 
 
 LOUD = {"mean_force": [0.4, 0.0, 0.0, 0.5], "error_amplitude": 0.2, "error_phase": 0.0}
