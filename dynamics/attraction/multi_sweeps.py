@@ -14,7 +14,7 @@ from dynamics.model.limits import checked_grid
 from dynamics.model.protocol import PeriodicOscillator, periodic_only
 from dynamics.model.states import apart, scale_of
 from dynamics.motion.sweeps import APERIODIC, DIVERGED, SweepResult, sweep
-from dynamics.orbits.finding import reach
+from dynamics.orbits.starting import reach
 
 CHUNK = 16  # values swept before it is looked whether the motions are known
 ENDLESS = 1e4  # times D and the deflection at rest: a motion that large grows without bound

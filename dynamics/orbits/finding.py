@@ -13,14 +13,14 @@ import numpy as np
 
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.flow.flows import flow_of
-from dynamics.flow.motions import period_map
-from dynamics.flow.protocol import Flow, propagated
+from dynamics.flow.protocol import propagated
 from dynamics.model.limits import SEARCHED, whole_numbers
-from dynamics.model.protocol import PeriodicOscillator, periodic_only, settling_periods
+from dynamics.model.protocol import PeriodicOscillator, periodic_only
 from dynamics.model.states import Region, checked_region
 from dynamics.orbits.hunting import hunted
 from dynamics.orbits.index import index_at_infinity
 from dynamics.orbits.shooting import Orbit, find_orbit
+from dynamics.orbits.starting import around, grid_of, long_motions
 
 BESIDE = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2)  # of the size of the region
 PLAIN = 25  # Newton iterations from a start without deflation
@@ -189,11 +189,11 @@ class _Search:
             self.centre[None][:0],
             list[int](),
         )  # states of all orbits, and whose they are
-        self.motion, self.periods = _long_motions(oscillator, self.flow)
+        self.motion, self.periods = long_motions(oscillator, self.flow)
         self.grown, self.seen = region is None, 0
-        self.region = region if region is not None else _around(self._reach(self.motion[-3:], WHOLE))
+        self.region = region if region is not None else around(self._reach(self.motion[-3:], WHOLE))
         self.scale = self._scale()
-        met = _around(np.max(self._off_centre(np.zeros(len(self.motion)), self.motion), axis=0, initial=1e-9))
+        met = around(np.max(self._off_centre(np.zeros(len(self.motion)), self.motion), axis=0, initial=1e-9))
         self.inner = self.region if region is not None else met
 
     def _off_centre(self, tau: Array, states: Array) -> Array:
@@ -232,7 +232,7 @@ class _Search:
         size = np.max([np.array(self.region)[:, 1], *reach], axis=0)
         if np.all(size <= np.array(self.region)[:, 1]):
             return False
-        self.region = _around(size)
+        self.region = around(size)
         self.scale = self._scale()
         return True
 
@@ -249,9 +249,9 @@ class _Search:
 
     def run(self, n: int, side: int) -> None:
         """Search for fixed points of the n-period map from a grid and from long motions."""
-        grids = [_grid(self.inner, side)]
+        grids = [grid_of(self.inner, side)]
         if self.region != self.inner:
-            grids.append(_grid(self.region, max(side // 2, 1)))
+            grids.append(grid_of(self.region, max(side // 2, 1)))
         starts = np.concatenate([self.motion[-RECURRENT:], *(self._starts(grid) for grid in grids)])
         deflated = [orbit.points for orbit in self.orbits if n % orbit.periods == 0]
         self._hunt(starts, n, 40, np.concatenate([self.centre[None][:0], *deflated]))
@@ -366,41 +366,3 @@ class _Search:
         gaps = np.max(np.abs(self.places - state), axis=1)
         nearest = int(gaps.argmin())
         return self.owners[nearest] if gaps[nearest] < 1e-7 * self.scale else None
-
-
-def reach(oscillator: PeriodicOscillator) -> Region:
-    """Box of X and V, from the middle of basins, somewhat larger than what long motions from three starts cover."""
-    centre = oscillator.start_plane()[1]
-    states = np.vstack([centre, _long_motions(oscillator, flow_of(oscillator))[0]])
-    plane = oscillator.in_plane(states)
-    return _around(np.max(np.abs(plane[1:] - plane[0]), axis=0, initial=1e-9))
-
-
-def _long_motions(oscillator: PeriodicOscillator, flow: Flow) -> tuple[Array, int]:
-    """States of motions from three starts, the later ones at the end, and the periods that they took.
-
-    What diverges is left out.
-    """
-    rest, (across, along) = oscillator.rest_state(), oscillator.start_plane()[0]
-    x = float(oscillator.contact_motion(np.zeros(1), rest[None])[0][0])
-    push = (1.0 + abs(x)) * along
-    wait = min(settling_periods(oscillator, low=50), 400)
-    parts, used = [], 0
-    for start in (rest, rest + push, rest - 2.0 * x * across - push):
-        image = period_map(flow, start, 80, skip=wait)
-        used += wait + 80
-        if not image.message and float(np.max(np.abs(image.states))) < 1e6:
-            parts.append(image.states)
-    return (np.stack(parts, axis=1).reshape(-1, len(rest)) if parts else np.array([rest])), used
-
-
-def _grid(region: Region, side: int) -> Array:
-    """States at equal distances, so many along each side."""
-    x, v = (np.linspace(*ends, side) for ends in region)
-    return np.stack(np.meshgrid(x, v), axis=-1).reshape(-1, 2)
-
-
-def _around(size: Array) -> Region:
-    """Box somewhat larger than a motion."""
-    x, v = (float(1.3 * s + 0.1 * np.max(size)) for s in size)
-    return (-x, x), (-v, v)

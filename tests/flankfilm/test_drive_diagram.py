@@ -7,7 +7,7 @@ import pytest
 
 import dynamics
 from dynamics import FourierStiffness, GearOscillator
-from dynamics.orbits.finding import reach
+from dynamics.orbits.starting import reach
 from flankfilm import coupling, figures
 from flankfilm.coupling import jump_errors, jumps, mesh_cycle, pair_drive, pair_oscillator
 from flankfilm.coupling.series import mesh_series
