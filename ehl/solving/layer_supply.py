@@ -48,7 +48,6 @@ class LayerSupply:
         self.run = run
         self.level = level
         self.layer = layer  # [m]
-        self.rough = False  # whether the level is solved only as far as the next place needed it
         lead = by_distance(level)
         self.lead = lead.P, lead.H0  # by ln(distance)
         self.search = MeniscusSearch.at(-1.0 - level.plan.domain[0], self.miss(level), lead.flow / level.flow)
@@ -62,14 +61,14 @@ class LayerSupply:
         search = self.search
         for _ in range(_TRIES):
             if search.done or search.stuck:
-                if not self.rough:
+                if not search.rough:
                     break
                 self.polish()
             elif self.run.exhausted:
                 break
             else:
                 self.move()
-        if search.done and not self.rough:
+        if search.done and not search.rough:
             return self.level
         message = f"the meniscus that lets a layer of {self.layer:.3g} m pass was not found"
         failed = replace(self.level.solution, converged=False, message=message)
@@ -79,7 +78,6 @@ class LayerSupply:
         """Solve to the end at the place of the last film."""
         level = self.level
         self.level = self.run.count(warm(level, self.run.contact, level.plan, level.grid))
-        self.rough = False
         self.search.corrected(self.miss(self.level))
 
     def move(self) -> None:
@@ -96,8 +94,8 @@ class LayerSupply:
             search.failed()
             return
         self.lead = (trial.solution.P - old.P) / step, (trial.solution.H0 - old.H0) / step
-        self.level, self.rough = trial, rough
-        search.solved(self.miss(trial))
+        self.level = trial
+        search.solved(self.miss(trial), rough=rough)
 
     def expected(self, plan: Plan, step: float, done: float) -> Level | None:
         """Solve from what a step of the meniscus is expected to change; None where that does not converge."""

@@ -18,14 +18,16 @@ _ROUNDED = 4.0 * sys.float_info.epsilon  # of the place of the meniscus, which i
 class MeniscusSearch:
     """Secant of ln(flow over layer) by ln(distance), kept between places whose flow is known to miss on either side.
 
-    A place that could not be solved says nothing about the root: the next one is tried half as far from the last
-    solution, and steps grow again once one succeeds.
+    A flow that is known roughly serves the secant and bounds nothing: it may miss on the other side. A place that could
+    not be solved says nothing about the root: the next one is tried half as far from the last solution, and steps grow
+    again once one succeeds.
     """
 
     ln_distance: float  # ln of the distance of the last solution from the dry contact [half-widths]
     miss: float  # ln(flow/layer) there
     low: float = -math.inf  # nearer than the root
     high: float = math.inf  # farther
+    rough: bool = False  # whether the flow of the last solution is known roughly
     slope: float = _USUAL_SLOPE
     reach: float = _FARTHEST
     target: float = math.nan  # place to be tried
@@ -62,22 +64,22 @@ class MeniscusSearch:
         self.reach = 0.5 * abs(self.target - self.ln_distance)
         self._aim()
 
-    def solved(self, miss: float) -> None:
+    def solved(self, miss: float, *, rough: bool = False) -> None:
         """Take the solution at the target."""
         self.slope = (miss - self.miss) / (self.target - self.ln_distance)
-        self.ln_distance, self.miss = self.target, miss
+        self.ln_distance, self.miss, self.rough = self.target, miss, rough
         self.reach = min(2.0 * self.reach, _FARTHEST)
         self._aim()
 
     def corrected(self, miss: float) -> None:
         """Take a better solution at the place of the last."""
-        self.miss = miss
+        self.miss, self.rough = miss, False
         self._aim()
 
     def _aim(self) -> None:
-        if self.miss < 0.0:
+        if not self.rough and self.miss < 0.0:
             self.low = self.ln_distance
-        else:
+        elif not self.rough:
             self.high = self.ln_distance
         step = -self.miss / max(self.slope, _FLATTEST)
         if not self.low < self.ln_distance + step < self.high:

@@ -53,6 +53,20 @@ def test_a_place_that_failed_once_is_no_bound_of_the_root():
     assert min(tried[:5]) < search.ln_distance
 
 
+def test_a_flow_that_is_known_roughly_is_no_bound_of_the_root():
+    """A film solved in part seems to carry too much where the film itself carries too little: the root lies beyond."""
+    root = ROOT + 0.05
+    search = MeniscusSearch.at(math.exp(ROOT), -5e-4, slope=0.02)
+    search.solved(2e-5, rough=True)
+    assert search.ln_distance < root
+    for _ in range(MOST):
+        if search.done:
+            break
+        search.solved(0.01 * (search.target - root))
+    assert search.done
+    assert search.ln_distance == pytest.approx(root, abs=1e-8)
+
+
 def test_the_search_ends_where_no_place_can_be_solved():
     search = found(ROOT + 1.0, lambda where, target: False)
     assert search.stuck

@@ -94,6 +94,22 @@ def test_layers_whose_meniscus_starts_do_not_reach_at_once(name):
     assert film.central_thickness * density == pytest.approx(layer, rel=2e-3)
 
 
+@pytest.mark.parametrize("load", [0.5, 1.5, 2.3])
+def test_layers_close_to_what_the_inlet_takes(load):
+    """M 490, L 3.5 with 99.5 % of the flooded flow, which hardly follows the meniscus: cold, from neighbours."""
+    contact = LineContact(1.046012e7, 0.1987358, 0.04226990, 2.2e11, Lubricant(0.1231442, 1.0538e-8))
+    layer = OilLayer(1.709213e-7)
+    alone = sound(solve(contact, supply=layer))
+    assert alone.starved
+    assert alone.flow == pytest.approx(layer.thickness, rel=1e-8)
+    near = sound(
+        solve(contact, supply=layer, start=solve(replace(contact, load=load * contact.load), supply=layer))
+    )
+    assert near.starved
+    assert near.flow == pytest.approx(layer.thickness, rel=1e-8)
+    assert near.central_thickness == pytest.approx(alone.central_thickness, rel=alone.error + near.error)
+
+
 def test_layers_as_good_as_none_are_refused_as_dry_contacts_or_solved():
     """M 3899, L 1.6 with 3 and 0.1 % of the flooded flow: the thicker film is a 170 000th of the flattening b^2/2R."""
     contact = LineContact(8.7165e6, 0.0565692, 0.036157, 2.2e11, Lubricant(0.0055525, 1.40549e-08))
