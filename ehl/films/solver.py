@@ -156,9 +156,9 @@ def _starved(contact: LineContact, options: Options, supply: Supply, start: Stat
     held = start if start is not None and start.plan.fixed else None
     full = start if held is None else held.flooded
     if isinstance(supply, Meniscus):
-        return _held(contact, options, supply, _moes_flow(contact), held, full, None)
+        return _held(contact, options, supply, moes_flow(contact), held, full, None)
     if held is not None and full is not None:
-        expected = full.fine.flow * _moes_flow(contact) / _moes_flow(full.fine.contact)
+        expected = full.fine.flow * moes_flow(contact) / moes_flow(full.fine.contact)
         if supply.thickness < _SURELY * expected:
             starved = _held(contact, options, supply, expected, held, full, None)
             if starved.converged:
@@ -176,7 +176,7 @@ def _starved(contact: LineContact, options: Options, supply: Supply, start: Stat
     return _held(contact, options, supply, flooded.fine.flow, held, full, flooded.run.cost())
 
 
-def _moes_flow(contact: LineContact) -> float:
+def moes_flow(contact: LineContact) -> float:
     """Flow of a flooded contact by Moes' formula, at the density that the oil has under Hertz's pressure [m]."""
     density = contact.lubricant.density_ratio(np.array([contact.peak_pressure]))[0]
     return moes_central(contact) * float(density[0])

@@ -15,9 +15,10 @@ from ehl.discrete.supply import Meniscus, OilLayer, Supply
 from ehl.discrete.thermal_oil import ThermalOil
 from ehl.films.film import Film, FilmErrors, unsolved
 from ehl.films.result import above
-from ehl.films.thermal_search import Compared, Search
+from ehl.films.thermal_errors import Compared
+from ehl.films.thermal_search import Search
 from ehl.solving.heat_balance import losses, rises, rolling, stresses, traction
-from ehl.solving.levels import figures
+from ehl.solving.levels import WarmLevel, figures
 from ehl.solving.options import Options, warn_of_range
 
 _TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")
@@ -76,7 +77,16 @@ class ThermalFilm(Film):
         "change of the maximum temperature rises between two grids, what an unresolved spike leaves, and heat that is "
         "missing or ahead of the inlet",
     )
-    oils: tuple[ThermalOil, ThermalOil] | None = part("what a next solution starts from", default=None)
+
+    @property
+    def levels(self) -> tuple[WarmLevel, WarmLevel] | None:
+        """Film and oil on the coarser and the finer grid, None where the film was not solved."""
+        return None if self.state is None else self.state.warm
+
+    @property
+    def oils(self) -> tuple[ThermalOil, ThermalOil] | None:
+        """Oil on both grids, likewise."""
+        return None if self.levels is None else (self.levels[0].oil, self.levels[1].oil)
 
     @property
     def dissipation(self) -> float:
@@ -157,8 +167,8 @@ def solve_thermal(
     watch = Stopwatch()
     search = Search(contact, solids, bulk, tolerance, supply if isinstance(supply, Meniscus) else None)
     compared = None
-    if search.supply is None and start is not None and start.state is not None and start.oils is not None:
-        compared = search.from_neighbour(start.state, start.oils, nodes)
+    if search.supply is None and start is not None and start.levels is not None:
+        compared = search.from_neighbour(start.levels, nodes)
     if compared is None:
         compared = search.from_nothing(nodes)
     oil = contact.lubricant
@@ -189,10 +199,7 @@ def _yielding(search: Search, nodes: int | None) -> Compared | None:
     for stress in (*_CLIMB, None):
         oil = replace(contact.lubricant, eyring_stress=stress)
         thins = Search(replace(contact, lubricant=oil), search.solids, bulk, search.tolerance)
-        if near is None:
-            near = thins.from_nothing(nodes)
-        else:
-            near = thins.from_neighbour(near.state, (near.before, near.oil), nodes)
+        near = thins.from_nothing(nodes) if near is None else thins.from_neighbour(near.levels, nodes)
         search.iterations += thins.iterations
         if near is None:
             return None
@@ -287,7 +294,6 @@ def _film(search: Search, compared: Compared, watch: Stopwatch, *, prescribed: b
         shear_stress=stresses(oil, level.solution.P),
         traction_error=compared.traction_error,
         temperature_error=compared.temperature_error,
-        oils=(compared.before, oil),
     )
 
 

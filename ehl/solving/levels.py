@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from ehl.discrete.grid import clusters
 from ehl.discrete.newton import Iteration, newton
 from ehl.discrete.regressions import moes_central
 from ehl.solving.plan import Plan
+
+if TYPE_CHECKING:
+    from ehl.discrete.thermal_oil import ThermalOil
 
 _SHARP = 0.2  # a maximum narrower than this share of the outlet zone is a spike
 _DROP = 0.9  # the width is taken where the pressure has fallen to this share of the tip
@@ -28,6 +32,7 @@ class Level:
     plan: Plan
     grid: Grid
     solution: Iteration
+    oil: ThermalOil | None = None  # where its state depends on more than the pressure
 
     @cached_property
     def groups(self) -> Groups:
@@ -39,9 +44,20 @@ class Level:
         """Mass flow over rho0 u [m]."""
         return -self.solution.flux * self.groups.gap
 
-    def bare(self) -> Level:
+    def on_grid_of(self, other: Level) -> bool:
+        """Whether the other's grid is laid by the same plan with as many nodes."""
+        return self.plan == other.plan and self.grid.nodes.size == other.grid.nodes.size
+
+    def bare(self) -> Self:
         """Return the level without its Newton matrix."""
         return replace(self, solution=replace(self.solution, factors=None))
+
+
+@dataclass(frozen=True)
+class WarmLevel(Level):
+    """One contact with heat or shear thinning solved on one grid."""
+
+    oil: ThermalOil
 
 
 @dataclass(frozen=True)
@@ -60,6 +76,12 @@ class State:
     def plan(self) -> Plan:
         """Plan of the finer grid."""
         return self.fine.plan
+
+    @property
+    def warm(self) -> tuple[WarmLevel, WarmLevel] | None:
+        """Both levels with their oils; None of an isothermal film."""
+        coarse, fine = self.coarse, self.fine
+        return (coarse, fine) if isinstance(coarse, WarmLevel) and isinstance(fine, WarmLevel) else None
 
 
 @dataclass(frozen=True)

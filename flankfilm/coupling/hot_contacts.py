@@ -140,7 +140,7 @@ def hottest_film(
     contact = _contact(pair, rho1, load, losses.speed, lubricant)
     fed = supply_of(supply, contact)
     film = ehl.solve_thermal(contact, solids, (first, second), tolerance, supply=fed)
-    return replace(film, state=None, oils=None)
+    return replace(film, state=None)
 
 
 def _at(rho1: Array, load: Array, at: int) -> tuple[float, float]:
