@@ -6,6 +6,8 @@ import math
 import warnings
 from dataclasses import KW_ONLY, replace
 
+import numpy as np
+
 from base import Faults, RangeWarning, Stopwatch, described, part, quantity, record, shorten
 from base.results import EXACT
 from ehl.discrete.asperities import Roughness
@@ -121,7 +123,11 @@ def solve_mixed_thermal(
     near = None if start is None else start.film
     warm = solve_thermal(contact, solids, bulk_temperatures, tolerance, start=near, supply=supply)
     cold = solve_mixed(
-        at_bulk(contact, bulk), roughness, tolerance, supply, None if start is None else start.isothermal
+        at_bulk(contact, np.array(bulk)),
+        roughness,
+        tolerance,
+        supply,
+        None if start is None else start.isothermal,
     )
     search = _Search(contact, roughness, solids, bulk, tolerance, supply, warm)
     share, reason = math.nan, warm.message if cold.converged else cold.message

@@ -25,8 +25,12 @@ _FIRST_NODES = 65
 _MOST_FIRST_NODES = 257
 _SHARP_NODES = 257
 _MOST_NODES = 2049
-REACH = 40.0  # inlet length in sqrt(h R) that keeps the error of the separation below 1e-3
-_SURELY = 0.7  # share of the expected flooded flow below which a layer starves the contact for certain
+REACH = 40.0
+"""Inlet length in sqrt(h R) that keeps the error of the separation below 1e-3."""
+
+SURELY = 0.7
+"""Share of the expected flooded flow below which a layer starves the contact for certain."""
+
 _SETTLING = 0.7  # the spike's error has to fall by this factor from grid to grid
 
 
@@ -159,7 +163,7 @@ def _starved(contact: LineContact, options: Options, supply: Supply, start: Stat
         return _held(contact, options, supply, moes_flow(contact), held, full, None)
     if held is not None and full is not None:
         expected = full.fine.flow * moes_flow(contact) / moes_flow(full.fine.contact)
-        if supply.thickness < _SURELY * expected:
+        if supply.thickness < SURELY * expected:
             starved = _held(contact, options, supply, expected, held, full, None)
             if starved.converged:
                 return starved

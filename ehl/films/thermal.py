@@ -11,12 +11,13 @@ import numpy as np
 from base import Array, Faults, Limit, RangeWarning, Stopwatch, part, quantity, record, unclocked
 from ehl.discrete.contact import LineContact
 from ehl.discrete.solids import STEEL, Solid
-from ehl.discrete.supply import Meniscus, OilLayer, Supply
+from ehl.discrete.supply import Supply
 from ehl.discrete.thermal_oil import ThermalOil
 from ehl.films.film import Film, FilmErrors, unsolved
 from ehl.films.result import above
 from ehl.films.thermal_errors import Compared
 from ehl.films.thermal_search import Search
+from ehl.films.thermal_supply import supplied
 from ehl.solving.heat_balance import losses, rises, rolling, stresses, traction
 from ehl.solving.levels import WarmLevel, figures
 from ehl.solving.options import Options, warn_of_range
@@ -25,7 +26,6 @@ _TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")
 _HOTTEST = 1000.0  # [K]
 _DECOMPOSING = 620.0  # [K]
 _STRONGEST = 0.06  # mean shear stress over the maximum pressure
-_CLIMB = (3e7, 5e7, 1e8, 2e8, 5e8)  # Eyring stresses on the way to an oil that yields without thinning [Pa]
 _YIELDING = "give eyring_stress (5e6 to 1e7 Pa) or limiting_shear_ratio"
 _TOLERANCE = Limit.above(0.0, 0.2, remedy="0.01 is 1 %")
 
@@ -124,7 +124,7 @@ def solve_thermal(
     nodes : int, optional
         Solve on this many nodes instead and report the error that this leaves.
     start : ThermalFilm, optional
-        A flooded film of a similar contact to start from.
+        A film of a similar contact to start from, supplied in the same way.
     supply : Meniscus or OilLayer, optional
         How oil is supplied, as for :func:`ehl.solve`; flooded if not given. A layer keeps its thickness: the
         meniscus moves until the warm film carries away what it brings.
@@ -165,24 +165,8 @@ def solve_thermal(
         import ehl.kernels.shear_kernels  # noqa: F401  numba
     warn_of_range(contact)
     watch = Stopwatch()
-    search = Search(contact, solids, bulk, tolerance, supply if isinstance(supply, Meniscus) else None)
-    compared = None
-    if search.supply is None and start is not None and start.levels is not None:
-        compared = search.from_neighbour(start.levels, nodes)
-    if compared is None:
-        compared = search.from_nothing(nodes)
-    oil = contact.lubricant
-    if (
-        compared is None
-        and supply is None
-        and oil.eyring_stress is None
-        and oil.limiting_shear_ratio is not None
-    ):
-        compared = _yielding(search, nodes)
-    layer = supply.thickness if isinstance(supply, OilLayer) else math.inf
-    if compared is not None and layer < compared.fine.flow * (1.0 - compared.error):
-        search.supply = supply
-        compared = search.from_nothing(nodes)
+    search = Search(contact, solids, np.array(bulk), tolerance)
+    compared = supplied(search, supply, None if start is None else start.state, nodes)
     if compared is not None and compared.oil.temperature.max() > _HOTTEST:
         hottest = compared.oil.temperature.max()
         search.reason, compared = f"the oil would reach {hottest:.0f} K, which no liquid does", None
@@ -190,20 +174,6 @@ def solve_thermal(
         return _failed(search, watch)
     _warn_of_range(compared)
     return replace(_film(search, compared, watch, prescribed=nodes is not None), supply=supply)
-
-
-def _yielding(search: Search, nodes: int | None) -> Compared | None:
-    """Start an oil that yields at a limiting stress alone from oils that thin as well, at ever larger stresses."""
-    contact, near = search.contact, None
-    bulk = (float(search.bulk[0]), float(search.bulk[1]))
-    for stress in (*_CLIMB, None):
-        oil = replace(contact.lubricant, eyring_stress=stress)
-        thins = Search(replace(contact, lubricant=oil), search.solids, bulk, search.tolerance)
-        near = thins.from_nothing(nodes) if near is None else thins.from_neighbour(near.levels, nodes)
-        search.iterations += thins.iterations
-        if near is None:
-            return None
-    return near
 
 
 def _warn_of_range(compared: Compared) -> None:

@@ -38,7 +38,7 @@ _SHARES = (0.25, 0.5, 0.75, 1.0)  # of the sliding, where all of it at once fail
 Pair = tuple[WarmLevel, WarmLevel]
 
 
-def at_bulk(contact: LineContact, bulk: tuple[float, float]) -> LineContact:
+def at_bulk(contact: LineContact, bulk: Array) -> LineContact:
     """Return the contact with the oil as it is at the mean bulk temperature, isothermal and Newtonian."""
     oil, mean = contact.lubricant, 0.5 * (bulk[0] + bulk[1])
     if (oil.viscosity_law is not None and oil.table is None) or mean == oil.temperature:
@@ -72,13 +72,14 @@ class Search:
         self,
         contact: LineContact,
         solids: tuple[Solid, Solid] | None,
-        bulk: tuple[float, float],
+        bulk: Array,
         tolerance: float,
-        supply: Supply | None = None,
-        flooded: State | None = None,
     ) -> None:
-        self.contact, self.solids, self.bulk, self.tolerance = contact, solids, np.array(bulk), tolerance
-        self.supply, self.flooded = supply, flooded
+        self.contact, self.solids, self.bulk, self.tolerance = contact, solids, bulk, tolerance
+        self.supply: Supply | None = None
+        self.flooded: State | None = (
+            None  # of a starved film: the flooded one of this contact, or of one like it
+        )
         self.isothermal = at_bulk(contact, bulk)
         self.reach = max(REACH, (10.0 / tolerance) ** (1.0 / 3.0))
         self.iterations, self.restarts, self.nodes, self.reason = 0, 0, 0, ""
@@ -95,13 +96,16 @@ class Search:
         self.reason = f"without heat and shear: {film.film().message}"
         return None
 
-    def from_neighbour(self, old: Pair, nodes: int | None) -> Compared | None:
-        """Start from both levels of a similar contact and their oils."""
+    def from_neighbour(self, near: State | None, nodes: int | None) -> Compared | None:
+        """Start from both levels of a similar contact and their oils; None where it has none."""
+        old = None if near is None else near.warm
+        if old is None:
+            return None
         plan, (coarse, fine) = self._plan(), old
         if fine.plan.serves(plan, self.supply):
             return self._refine(coarse, old, nodes)
         grid = plan.grid(fine.grid.nodes.size)
-        P, H0 = transfer(fine, self.contact, plan, grid)
+        P, H0 = transfer(fine, self.contact, plan, grid, along=plan.fixed)
         return self._refine(Level(fine.contact, plan, grid, replace(fine.solution, P=P, H0=H0)), None, nodes)
 
     def _plan(self) -> Plan:
@@ -133,7 +137,7 @@ class Search:
         while sizes[0] >= 4 * _FIRST_NODES - 3:
             # a grid that is asked for starts from coarser ones as any does
             sizes.insert(0, (sizes[0] + 1) // 2)
-        known = None if old is None else old[0].oil
+        known = base.oil
         before = self._fed(self._on(self._level(base, (sizes[0] + 1) // 2), known))
         yield before
         for n in sizes:

@@ -176,12 +176,15 @@ def open_gap(grid: Grid, groups: Groups, P: Array, centre: float) -> float:
     return H0 - 1.2 * min(lowest, 0.0)
 
 
-def transfer(old: Level, contact: LineContact, plan: Plan, grid: Grid) -> tuple[Array, float]:
+def transfer(
+    old: Level, contact: LineContact, plan: Plan, grid: Grid, *, along: bool = False
+) -> tuple[Array, float]:
     """Carry a solution to another grid or contact: pressure over x/b as it is, gap scaled by the expected film.
 
-    A spike that moves with the inlet zone is carried along, so that it meets the nodes laid for it.
+    A spike that moves with the inlet zone is carried along, so that it meets the nodes laid for it. With ``along`` the
+    pressures go with as many nodes: an inlet that moves leaves no jump behind.
     """
-    if old.grid is grid:
+    if along or old.grid is grid:
         P = old.solution.P
     else:
         X = old.grid.nodes * old.grid.ratio

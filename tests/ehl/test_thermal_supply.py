@@ -38,6 +38,29 @@ def test_a_layer_passes_whatever_the_heat():
     )
 
 
+@pytest.mark.parametrize("supply", [NEAR, THIN, OilLayer(2e-6)])
+@pytest.mark.parametrize("growth", [0.8, 1.1])
+def test_a_neighbour_saves_steps_and_changes_nothing(supply, growth):
+    heavier = replace(SLIDING, load=growth * SLIDING.load)
+    alone = solve_thermal(heavier, supply=supply)
+    film = solve_thermal(heavier, supply=supply, start=solve_thermal(SLIDING, supply=supply))
+    assert film.starved == alone.starved == (supply != OilLayer(2e-6))
+    assert film.cost.iterations < 0.7 * alone.cost.iterations
+    for name in ("central_thickness", "minimum_thickness", "separation", "flow"):
+        assert getattr(film, name) == pytest.approx(getattr(alone, name), rel=film.error)
+    assert film.traction_coefficient == pytest.approx(alone.traction_coefficient, rel=film.traction_error)
+
+
+@pytest.mark.parametrize("near", [None, NEAR, THIN])
+@pytest.mark.parametrize("supply", [None, NEAR, THIN])
+def test_a_start_that_was_supplied_otherwise_serves_as_well(supply, near):
+    start = solve_thermal(SLIDING, supply=near)
+    alone, film = solve_thermal(SLIDING, supply=supply), solve_thermal(SLIDING, supply=supply, start=start)
+    assert film.converged
+    assert film.central_thickness == pytest.approx(alone.central_thickness, rel=film.error)
+    assert film.inlet == pytest.approx(alone.inlet, rel=0.01)
+
+
 def test_a_near_meniscus_thins_the_film_and_keeps_its_place():
     film, full = solve_thermal(SLIDING, supply=NEAR), solve_thermal(SLIDING)
     assert film.inlet == pytest.approx(NEAR.position, rel=1e-9)
