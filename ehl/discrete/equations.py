@@ -183,10 +183,11 @@ class Residual(NamedTuple):
     centre: float  # gap at x = 0 [m]
 
     @classmethod
-    def of(cls, grid: Grid, groups: Groups, P: Array, H0: float) -> Residual:
+    def of(cls, grid: Grid, groups: Groups, P: Array, H0: float, oil: Oil | None = None) -> Residual:
         """Compute all; the first node's pressure is taken from the inlet, whatever ``P`` says."""
         P = P.copy()
         P[0] = inlet_pressure(grid, groups)
-        flux, slopes = fluxes(grid, groups, P, film_gap(grid, groups, P, H0), grid.quick)
+        H = film_gap(grid, groups, P, H0)
+        flux, slopes = fluxes(grid, groups, P, H, grid.quick, None if oil is None else oil.at(P, H))
         short = load_inside(grid, groups) - float(grid.weights @ P)
         return cls(flux, slopes, short, centre_gap(grid, groups, P, H0) * groups.gap)

@@ -107,6 +107,15 @@ class ThermalOil:
         for mine, change in zip(self.into, new.into - old.into, strict=True):
             mine += np.interp(at, places, change)
 
+    def on(self, contact: LineContact, grid: Grid) -> ThermalOil:
+        """Return the oil of a contact nearby, on a grid whose nodes have moved a little: cell by cell as it is here."""
+        other = ThermalOil(contact, grid, Groups.on(contact, grid), self.solids, self.bulk)
+        other.temperature, other.into, other.sigma = (
+            values.copy() for values in (self.temperature, self.into, self.sigma)
+        )
+        other.before = self.before
+        return other
+
     def farther(self, P: Array, H: Array) -> ThermalOil:
         """Return the oil with heat followed from twice the gap, swept once under the same pressures and gaps."""
         wider = copy(self)

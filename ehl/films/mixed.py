@@ -22,6 +22,7 @@ from ehl.discrete.supply import OilLayer, Supply
 from ehl.films.film import Film
 from ehl.films.mixed_film import MixedFilm
 from ehl.films.result import Found
+from ehl.films.rough_slopes import RoughSlopes, rough_slopes
 from ehl.films.solver import solve_checked
 from ehl.solving.levels import State, figures
 from ehl.solving.load_share import (
@@ -158,20 +159,9 @@ class _Search:
         balance = self.balance()
         if balance is None:
             return self.smooth(self.film_at(-math.inf))
-        film, share, by = balance.film.film(), share_of(balance.odds), balance.by
-        contact, roughness, gap = self.contact, self.roughness, film.central_thickness
-        pressure, slope = roughness.under_film(gap, contact.reduced_modulus, contact.peak_pressure)
-        closer = roughness.planes(gap)[1]  # planes by gap
-        stiffness = -share * contact.load * slope / pressure / closer
-        # the excess stays 0 as film, share and load change: that gives the odds by the load
-        at = excess(contact, roughness, gap, balance.odds)
-        film_share = share_of(-balance.odds)
-        separation_w, central_w = film_share * film.separation_slope, film_share * film.central_slope
-        follow = -(at.by_load / contact.load + at.by_gap * central_w)
-        follow /= at.by_gap * by.central + at.by_odds
-        central = central_w + by.central * follow
-        separation = separation_w + by.separation * follow + (closer - 1.0) * central
-        return self.result(film, share, stiffness, separation, central)
+        film = balance.film.film()
+        answers = rough_slopes(self.contact, self.roughness, film, balance.odds, balance.by)
+        return self.result(film, share_of(balance.odds), answers)
 
     def first_odds(self, smooth: Found) -> float:
         """Odds that the smooth film makes likely; NOTHING where asperities do not reach through it."""
@@ -239,11 +229,11 @@ class _Search:
     def smooth(self, film_alone: Found) -> MixedFilm:
         """Return a film that carries all."""
         film = film_alone.film()
-        return self.result(film, 0.0, 0.0, film.separation_slope, film.central_slope)
+        return self.result(film, 0.0, RoughSlopes(0.0, film.separation_slope, film.central_slope))
 
-    def result(self, film: Film, *figures: float) -> MixedFilm:
-        """Return what was found: share and stiffness of the asperities, slopes of separation and central film."""
-        return MixedFilm(self.contact, self.roughness, film, self.cost, True, "converged", *figures)
+    def result(self, film: Film, share: float, answers: RoughSlopes) -> MixedFilm:
+        """Return the film with the share of the asperities and the answers to the load."""
+        return MixedFilm(self.contact, self.roughness, film, self.cost, True, "converged", share, *answers)
 
     def failed(self, reason: str) -> MixedFilm:
         """Return no figures."""

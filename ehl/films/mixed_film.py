@@ -23,6 +23,13 @@ class RoughFilm:
     converged: bool
     message: str
     asperity_share: float = unsolved("1", "share of the load that the asperities carry", shown="%")
+    asperity_stiffness: float = unsolved("N/m2", "stiffness of the asperities at the contact's width")
+    separation_slope: float = unsolved(
+        "m2/N", "derivative of the separation by the load at fixed speed, asperities included"
+    )
+    central_slope: float = unsolved(
+        "m2/N", "derivative of the central thickness by the load at fixed speed, asperities included"
+    )
 
     @described("1")
     def error(self) -> float:
@@ -48,30 +55,6 @@ class RoughFilm:
     def film_ratio(self) -> float:
         """Lambda, minimum mean gap over the standard deviation of heights."""
         return self.film.minimum_thickness / self.roughness.deviation
-
-
-@record
-class MixedFilm(RoughFilm):
-    """A film between rough surfaces. Figures are NaN when ``converged`` is False.
-
-    ``film`` is that of the load and modulus that are left to it; its half-width is that of ``contact``.
-    ``cost.counts["films"]`` counts the films solved.
-
-    The stiffnesses are those of springs in parallel between the mean planes, at fixed speed and fixed width of the
-    contact. A contact that asperities carry widens with the load, which makes it stiffer again by up to two:
-    ``separation_slope`` (of the mean planes) and ``central_slope`` (of the mean gap) are the derivatives with all of
-    that, -1/separation_slope the whole stiffness.
-    """
-
-    headline = ("central_thickness", "minimum_thickness", "film_ratio", "asperity_share")
-
-    asperity_stiffness: float = unsolved("N/m2", "stiffness of the asperities at the contact's width")
-    separation_slope: float = unsolved(
-        "m2/N", "derivative of the separation by the load at fixed speed, asperities included"
-    )
-    central_slope: float = unsolved(
-        "m2/N", "derivative of the central thickness by the load at fixed speed, asperities included"
-    )
 
     @described("m", shown="um")
     def separation(self) -> float:
@@ -101,3 +84,19 @@ class MixedFilm(RoughFilm):
             As for :meth:`ehl.Film.stiffness`, of the film's part.
         """
         return self.film_stiffness(definition) + self.asperity_stiffness
+
+
+@record
+class MixedFilm(RoughFilm):
+    """A film between rough surfaces. Figures are NaN when ``converged`` is False.
+
+    ``film`` is that of the load and modulus that are left to it; its half-width is that of ``contact``.
+    ``cost.counts["films"]`` counts the films solved.
+
+    The stiffnesses are those of springs in parallel between the mean planes, at fixed speed and fixed width of the
+    contact. A contact that asperities carry widens with the load, which makes it stiffer again by up to two:
+    ``separation_slope`` (of the mean planes) and ``central_slope`` (of the mean gap) are the derivatives with all of
+    that, -1/separation_slope the whole stiffness.
+    """
+
+    headline = ("central_thickness", "minimum_thickness", "film_ratio", "asperity_share")

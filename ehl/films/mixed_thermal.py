@@ -35,7 +35,8 @@ class MixedThermalFilm(RoughFilm):
     """A film with heat between rough surfaces. Figures are NaN when ``converged`` is False.
 
     ``film`` is that of the load and modulus that are left to it. What asperities make of heat is `asperity_loss`; it
-    goes into the bodies and does not warm the film.
+    goes into the bodies and does not warm the film. Slopes by the load and stiffnesses are NaN until
+    :func:`with_load_slopes` adds them.
     """
 
     headline = ("minimum_thickness", "film_ratio", "asperity_share", "traction_coefficient")

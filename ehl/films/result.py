@@ -15,7 +15,7 @@ from ehl.films.film import Film, FilmErrors, Spike
 from ehl.solving.grid_search import DRY, GridSearch
 from ehl.solving.levels import Level, State, figures, spike_of
 from ehl.solving.plan import Plan
-from ehl.solving.response import slopes
+from ehl.solving.response import Slopes, slopes
 
 GRID_FACTOR = 0.4  # error of N nodes over its difference from (N+1)/2: 1/3 at second order, with a margin
 _SEPARATION_LOSS = 20.0  # times the film's own error by the finite inlet
@@ -110,19 +110,15 @@ def film_of(run: GridSearch, coarse: Level, fine: Level, error: float, inlet: fl
     contact, solution, supply = run.contact, fine.solution, run.supply
     shown, before = figures(fine), figures(coarse)
     slope, slope_before = slopes(fine, supply), slopes(coarse, supply)
-    lost = _SEPARATION_LOSS * inlet
     change = before.separation / shown.separation - 1.0
-    off = GRID_FACTOR * abs(change) + lost
-    steeper = slope_before.separation / slope.separation - 1.0
+    off = GRID_FACTOR * abs(change) + _SEPARATION_LOSS * inlet
     errors = FilmErrors(
         film=error,
         separation=off,
-        approach_stiffness=abs(steeper) + slope.ripple + lost,
-        tangent_stiffness=abs(slope_before.central / slope.central - 1.0) + lost,
         inlet=inlet,
         separation_shift=math.copysign(off, change),
-        slope_shift=GRID_FACTOR * steeper,
         pressure=pressure_error(coarse, fine),
+        **slope_errors(slope_before, slope, inlet),
     )
     groups = fine.groups
     message = "converged"
@@ -145,6 +141,17 @@ def film_of(run: GridSearch, coarse: Level, fine: Level, error: float, inlet: fl
         spike=_spike(coarse, fine),
         state=State(coarse, fine, run.flooded).bare(),
     )
+
+
+def slope_errors(coarse: Slopes, fine: Slopes, inlet: float) -> dict[str, float]:
+    """Errors of the derivatives by the load, from two grids."""
+    lost = _SEPARATION_LOSS * inlet
+    steeper = coarse.separation / fine.separation - 1.0
+    return {
+        "approach_stiffness": abs(steeper) + fine.ripple + lost,
+        "tangent_stiffness": abs(coarse.central / fine.central - 1.0) + lost,
+        "slope_shift": GRID_FACTOR * steeper,
+    }
 
 
 def _spike(coarse: Level, fine: Level) -> Spike | None:

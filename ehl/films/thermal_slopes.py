@@ -1,48 +1,50 @@
-"""How a film with heat answers to its load: separation and central film at neighbouring loads."""
+"""How a film with heat answers to its load: derivatives of separation and central film, with asperities and without."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TypeVar
 
-import numpy as np
-
-from base import Array, Faults
-from ehl.discrete.equations import Groups
-from ehl.discrete.newton import newton
-from ehl.discrete.thermal_oil import ThermalOil
+from base import Faults
 from ehl.films.film import FilmErrors
+from ehl.films.mixed_thermal import MixedThermalFilm
+from ehl.films.result import slope_errors
+from ehl.films.rough_slopes import rough_slopes
 from ehl.films.thermal import ThermalFilm
-from ehl.solving.levels import Level, figures, transfer
+from ehl.solving.levels import WarmLevel
+from ehl.solving.load_share import odds_of, share_of
+from ehl.solving.response import by_share, slopes, with_matrix
 
-_STEP = 0.01  # relative change of the load
-_DONE = (
-    1e-6  # last step of the pressure: a hundredth of what the load's step does to the separation, and less
-)
-_MOST_STEPS = 40
+Hot = TypeVar("Hot", ThermalFilm, MixedThermalFilm)
 
 
-def with_load_slopes(film: ThermalFilm) -> ThermalFilm:
+def with_load_slopes(film: Hot) -> Hot:
     """Return the film with the slopes of its separation and of its central thickness by the load.
 
-    Two films at neighbouring loads, on the grid of the film and from it, at the same speeds, bulk temperatures and
-    supply. With the slopes the film has its stiffnesses ``"approach"`` and ``"tangent"``.
+    At the same speeds, bulk temperatures and supply: a meniscus stays, that of a layer moves until the flow is that of
+    the layer again, asperities share the load anew. From the Newton matrix of the film, corrected for the temperatures
+    that follow. With the slopes the film has its stiffnesses ``"approach"`` and ``"tangent"``.
 
     Parameters
     ----------
-    film : ThermalFilm
+    film : ThermalFilm or MixedThermalFilm
         A solved film.
 
     Returns
     -------
-    ThermalFilm
-        With ``separation_slope``, ``central_slope`` and the errors of both stiffnesses, from two grids; as it was
-        where a neighbouring load could not be solved.
+    ThermalFilm or MixedThermalFilm
+        With ``separation_slope``, ``central_slope`` and the errors of both stiffnesses, from two grids (those of a
+        rough film are the errors of its ``film``); as it was where temperatures do not settle as the load changes.
 
     Raises
     ------
     InputError
         For a film without solution.
+
+    Notes
+    -----
+    Method: docs/theory/ehl.md.
 
     Examples
     --------
@@ -53,41 +55,37 @@ def with_load_slopes(film: ThermalFilm) -> ThermalFilm:
     '2.2e+12'
     """
     with Faults() as faults:
-        if not isinstance(film, ThermalFilm) or film.state is None or film.oils is None:
-            faults.add("film", film, "must be a solved ThermalFilm", "solve_thermal makes one")
-        elif film.state is not None and film.state.plan.fixed:
-            faults.add(
-                "film", film, "must be flooded", "slopes of starved films with heat are not known: use solve"
-            )
-    assert film.state is not None
-    assert film.oils is not None
-    before, after = (
-        _slopes(level, oil)
-        for level, oil in zip((film.state.coarse, film.state.fine), film.oils, strict=True)
-    )
-    if not np.isfinite(after).all():
+        smooth = film.film if isinstance(film, MixedThermalFilm) else film
+        if not isinstance(smooth, ThermalFilm) or smooth.levels is None or not film.converged:
+            remedy = "solve_thermal or solve_mixed_thermal makes one"
+            faults.add("film", film, "must be a solved ThermalFilm or MixedThermalFilm", remedy)
+    assert smooth.levels is not None
+    coarse, fine = (with_matrix(level) for level in smooth.levels)
+    if coarse.solution.factors is None or fine.solution.factors is None:
         return film
-    change = np.abs(before / after - 1.0)
-    errors: FilmErrors = replace(
-        film.errors, approach_stiffness=float(change[0]), tangent_stiffness=float(change[1])
+    sloped = _with_slopes(smooth, coarse, fine)
+    if math.isnan(sloped.separation_slope):
+        return film
+    if isinstance(film, MixedThermalFilm):
+        return _rough(film, sloped, fine)
+    return sloped
+
+
+def _with_slopes(film: ThermalFilm, coarse: WarmLevel, fine: WarmLevel) -> ThermalFilm:
+    """Differentiate by the load on both grids."""
+    before, after = (slopes(level, film.supply) for level in (coarse, fine))
+    load = film.contact.load
+    errors: FilmErrors = replace(film.errors, **slope_errors(before, after, film.errors.inlet))
+    return replace(
+        film, separation_slope=after.separation / load, central_slope=after.central / load, errors=errors
     )
-    return replace(film, separation_slope=float(after[0]), central_slope=float(after[1]), errors=errors)
 
 
-def _slopes(level: Level, oil: ThermalOil) -> Array:
-    """Differences of separation and central film by the load [m2/N]; NaN where a load was not solved."""
-    gaps = []
-    for growth in (1.0 - _STEP, 1.0 + _STEP):
-        contact = replace(oil.contact, load=growth * oil.contact.load)
-        groups = Groups.on(contact, level.grid)
-        near = ThermalOil(contact, level.grid, groups, oil.solids, oil.bulk)
-        near.start_from(oil)
-        P, H0 = transfer(level, contact, level.plan, level.grid)
-        with np.errstate(all="ignore"):
-            solved = newton(level.grid, groups, P, H0, oil=near, done=_DONE, max_iterations=_MOST_STEPS)
-        if not solved.converged:
-            return np.full(2, math.nan)
-        shown = figures(replace(level, contact=contact, solution=solved))
-        gaps.append((shown.separation, shown.central_thickness))
-    rise: Array = np.diff(gaps, axis=0)[0] / (2.0 * _STEP * oil.contact.load)
-    return rise
+def _rough(film: MixedThermalFilm, sloped: ThermalFilm, fine: WarmLevel) -> MixedThermalFilm:
+    """Let the asperities follow the load."""
+    odds = odds_of(film.asperity_share)
+    by = by_share(fine, sloped.supply).scaled(-share_of(odds))  # ln(1 - s) falls by s
+    stiffness, separation, central = rough_slopes(film.contact, film.roughness, sloped, odds, by)
+    return replace(
+        film, film=sloped, asperity_stiffness=stiffness, separation_slope=separation, central_slope=central
+    )

@@ -1,7 +1,9 @@
 """Derivatives of a solved contact's figures by its load, from the factorised Newton matrix.
 
 J d(P, H0) = -d(residual): the residual is differentiated by a forward difference at fixed P and H0, on nodes
-that may move; the rest is exact.
+that may move; the rest is exact. With heat J leaves out most of what the oil's own state does, as it does in Newton's
+method: the difference of the residual is then taken along the derivative found so far, with the oil following, and J
+corrects it until it is balanced.
 """
 
 from __future__ import annotations
@@ -15,12 +17,22 @@ import numpy as np
 from base import Array
 from ehl.discrete.contact import LineContact
 from ehl.discrete.equations import Grid, Groups, Residual
+from ehl.discrete.newton import newton
 from ehl.discrete.supply import OilLayer, Supply
-from ehl.solving.levels import Level, dry_approach
+from ehl.discrete.thermal_oil import ThermalOil
+from ehl.solving.levels import Level, WarmLevel, dry_approach
 from ehl.solving.plan import Plan, expected_film
 
 STEP = 3e-7
 """Of ln w and of ln(distance of the meniscus), in differences of the residual."""
+
+_WARM_STEP = 3e-4  # likewise where the oil's own state follows, which is known to some 1e-9 of itself
+_WARM_DONE = (
+    1e-6  # last step of the pressure before a film is differentiated with its oil, and the most steps
+)
+_WARM_STEPS = 6
+_BALANCED = 5e-4  # last correction of the figures' derivatives over these
+_MOST_CORRECTIONS = 40
 
 
 @dataclass(frozen=True)
@@ -73,8 +85,8 @@ def slopes(level: Level, supply: Supply | None) -> Slopes:
     supply the inlet moves, and all nodes with it.
     """
     contact, plan = level.contact, level.plan
-    before = _residual(level)
-    heavier = replace(contact, load=contact.load * math.exp(STEP))
+    before = _Before(level)
+    heavier = replace(contact, load=contact.load * math.exp(_step(level)))
     growth = expected_film(heavier) / expected_film(contact)
     if supply is None or not plan.fixed:
         moving = _along(level, before, heavier, growth, supply)
@@ -88,28 +100,57 @@ def slopes(level: Level, supply: Supply | None) -> Slopes:
 def by_distance(level: Level) -> Response:
     """Differentiate by ln of the distance between the meniscus and the dry contact, at a fixed load."""
     plan = level.plan
-    farther = plan.with_inlet(-1.0 + (plan.domain[0] + 1.0) * math.exp(STEP))
-    return _differentiate(level, _residual(level), level.contact, moved_grid(level, farther), flow=True)
+    farther = plan.with_inlet(-1.0 + (plan.domain[0] + 1.0) * math.exp(_step(level)))
+    return _differentiate(level, _Before(level), level.contact, moved_grid(level, farther), flow=True)
 
 
 def by_share(level: Level, supply: Supply | None) -> Response:
     """Differentiate by ln of the part of load and modulus that asperities leave to the film, at a fixed width."""
     contact = level.contact
-    grown = math.exp(STEP)
+    grown = math.exp(_step(level))
     more = replace(contact, load=grown * contact.load, reduced_modulus=grown * contact.reduced_modulus)
     farther = by_distance(level) if isinstance(supply, OilLayer) and level.plan.fixed else None
-    return _along(
-        level, _residual(level), more, expected_film(more) / expected_film(contact), supply, farther
-    )
+    return _along(level, _Before(level), more, expected_film(more) / expected_film(contact), supply, farther)
 
 
-def _residual(level: Level) -> Residual:
-    return Residual.of(level.grid, level.groups, level.solution.P, level.solution.H0)
+def with_matrix(level: WarmLevel) -> WarmLevel:
+    """Solve a level with heat a few steps further, with its Newton matrix."""
+    oil, solution = level.oil.on(level.contact, level.grid), level.solution
+    with np.errstate(all="ignore"):
+        solved = newton(
+            level.grid,
+            level.groups,
+            solution.P,
+            solution.H0,
+            oil=oil,
+            done=_WARM_DONE,
+            max_iterations=_WARM_STEPS,
+        )
+    return replace(level, solution=solved, oil=oil)
+
+
+class _Before:
+    """Residual of a level; of one with an oil after every sweep of the oil, which may still change a little."""
+
+    def __init__(self, level: Level) -> None:
+        self.level = level
+        self.oil = None if level.oil is None else level.oil.on(level.contact, level.grid)
+        self.residuals: list[Residual] = []
+
+    def after(self, sweeps: int) -> Residual:
+        level, solution = self.level, self.level.solution
+        while len(self.residuals) <= sweeps:
+            self.residuals.append(Residual.of(level.grid, level.groups, solution.P, solution.H0, self.oil))
+        return self.residuals[sweeps]
+
+
+def _step(level: Level) -> float:
+    return STEP if level.oil is None else _WARM_STEP
 
 
 def _along(
     level: Level,
-    before: Residual,
+    before: _Before,
     other: LineContact,
     growth: float,
     supply: Supply | None,
@@ -144,15 +185,18 @@ def moved_grid(level: Level, plan: Plan) -> Grid:
 
 
 def _differentiate(
-    level: Level, before: Residual, contact: LineContact, moved: Grid, *, flow: bool = False
+    level: Level, before: _Before, contact: LineContact, moved: Grid, *, flow: bool = False
 ) -> Response:
     """Differentiate the figures towards another contact on another grid, a step of the parameter away."""
     solution, grid, groups = level.solution, level.grid, level.groups
     assert solution.factors is not None, "only a converged level is differentiated"
-    own = explicit(level, before, contact, moved)
+    if level.oil is not None:
+        return _with_oil(level, level.oil.on(contact, moved), before, moved)
+    still = before.after(0)
+    own = explicit(level, still, contact, moved)
     dP, dH0 = solution.factors.solve(-own.net_flux, own.short, solution.P.size)
     by_pressure = groups.compliance * float(grid.centre @ dP)
-    carried = _flow_slope(level, before, own.flow, dP, dH0) if flow else math.nan
+    carried = _flow_slope(level, still, own.flow, dP, dH0) if flow else math.nan
     return Response(
         central=own.central + (dH0 - by_pressure) * groups.gap,
         separation=own.separation + dH0 * groups.gap,
@@ -160,6 +204,43 @@ def _differentiate(
         P=dP,
         H0=dH0,
     )
+
+
+def _with_oil(level: Level, oil: ThermalOil, before: _Before, moved: Grid) -> Response:
+    """Differentiate with an oil that follows; NaN where the figures' derivatives do not settle."""
+    solution, groups, after = level.solution, level.groups, oil.groups
+    factors, n, cells = solution.factors, solution.P.size, _behind_middle(solution.P)
+    assert factors is not None, "only a level with its matrix is differentiated"
+    stretched = (solution.H0 + dry_approach(level.grid)) * (after.gap - groups.gap) / _WARM_STEP
+    answer = Response(math.nan, math.nan, math.nan, np.zeros(n), 0.0)
+    for sweep in range(_MOST_CORRECTIONS):
+        dP, dH0 = answer.P, answer.H0
+        here = before.after(sweep)
+        with np.errstate(all="ignore"):
+            there = Residual.of(
+                moved, after, solution.P + _WARM_STEP * dP, solution.H0 + _WARM_STEP * dH0, oil
+            )
+        net_flux = (np.diff(there.flux) - np.diff(here.flux)) / _WARM_STEP
+        more, more_H0 = factors.solve(-net_flux, (there.short - here.short) / _WARM_STEP, n)
+        last, answer = (
+            answer,
+            Response(
+                central=(there.centre - here.centre) / _WARM_STEP,
+                separation=stretched + dH0 * after.gap,
+                flow=-float(np.mean((there.flux * after.gap - here.flux * groups.gap)[cells])) / _WARM_STEP,
+                P=dP + more,
+                H0=dH0 + more_H0,
+            ),
+        )
+        if np.allclose(last[:3], answer[:3], rtol=_BALANCED, atol=0.0):
+            return answer
+    return Response(math.nan, math.nan, math.nan, answer.P, answer.H0)
+
+
+def _behind_middle(P: Array) -> slice:
+    """Cells of the second half of the film."""
+    free = np.flatnonzero(P[1:-1] > 0.0) + 1
+    return slice(int(free[free.size // 2]), int(free[-1]))
 
 
 class Explicit(NamedTuple):
@@ -190,8 +271,8 @@ def _flow_slope(level: Level, before: Residual, explicit: Array, dP: Array, dH0:
     """Differentiate the flow [m], taken as the mean over the second half of the film."""
     dH = dH0 - level.groups.compliance * (level.grid.potential @ dP)
     by = level.groups.gap * before.slopes
-    free = np.flatnonzero(level.solution.P[1:-1] > 0.0) + 1
-    low, high = int(free[free.size // 2]), int(free[-1])
+    cells = _behind_middle(level.solution.P)
+    low, high = cells.start, cells.stop
     changes = explicit[low:high].copy()
     for k in range(3):
         at = slice(low - 1 + k, high - 1 + k)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from base import InputError
-from ehl import Meniscus, OilLayer, solve, solve_thermal, with_load_slopes
+from ehl import Meniscus, OilLayer, solve, solve_thermal
 from tests.ehl.test_thermal import OIL, SLIDING
 
 pytestmark = pytest.mark.filterwarnings("ignore:Hertz pressure", "ignore:mean shear stress")
@@ -67,8 +67,6 @@ def test_a_near_meniscus_thins_the_film_and_keeps_its_place():
     assert film.central_thickness < 0.8 * full.central_thickness
 
 
-def test_slopes_and_bad_supplies_are_refused():
-    with pytest.raises(InputError, match="flooded"):
-        with_load_slopes(solve_thermal(SLIDING, supply=NEAR))
+def test_bad_supplies_are_refused():
     with pytest.raises(InputError, match="edge of the dry contact"):
         solve_thermal(SLIDING, supply=Meniscus(-0.5 * SLIDING.half_width))
