@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
@@ -10,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from base import Cost
-from base.results import WORST
 from ehl.discrete.contact import LineContact
 from ehl.discrete.regressions import moes_central
 from ehl.discrete.supply import Meniscus, OilLayer, Supply
 from ehl.films.film import Film
-from ehl.films.result import Found, above, film_error, remedy, spike_error
+from ehl.films.refined import refined
+from ehl.films.result import Found
 from ehl.solving.grid_search import GridSearch
 from ehl.solving.levels import Level, State
 from ehl.solving.options import Options, warn_of_range
@@ -23,15 +22,11 @@ from ehl.solving.plan import Plan
 
 _FIRST_NODES = 65
 _MOST_FIRST_NODES = 257
-_SHARP_NODES = 257
-_MOST_NODES = 2049
 REACH = 40.0
 """Inlet length in sqrt(h R) that keeps the error of the separation below 1e-3."""
 
 SURELY = 0.7
 """Share of the expected flooded flow below which a layer starves the contact for certain."""
-
-_SETTLING = 0.7  # the spike's error has to fall by this factor from grid to grid
 
 
 def solve(
@@ -230,48 +225,9 @@ def _solve(run: GridSearch, options: Options, old: State | None) -> Found:
     ):
         half, n = n, 2 * n - 1
         coarse, fine = run.pair(half, n)
-    return _refine(run, coarse, fine, options)
+    return refined(run, coarse, fine, options)
 
 
 def _same(level: Level, n: int, same: bool) -> Level | None:
     """Return the level if its grid can be used again."""
     return level if same and level.grid.nodes.size == n else None
-
-
-def _refine(run: GridSearch, coarse: Level, fine: Level, options: Options) -> Found:
-    """Double the grid until the estimates meet what is asked, then report.
-
-    A grid that fails is passed over: the next one is compared with the last that gave in.
-    """
-    prescribed = options.nodes is not None
-    inlet = run.plan.inlet_error
-    if options.sharp and coarse.solution.converged and fine.solution.converged:
-        if not prescribed and film_error(coarse, fine) + inlet <= options.tolerance and options.spike is None:
-            return Found(run, coarse, fine, film_error(coarse, fine) + inlet, inlet)
-        n = fine.grid.nodes.size if prescribed else _SHARP_NODES
-        coarse = run.sharpened(fine, (n + 1) // 2)
-        fine = run.sharpened(coarse, n)
-    off = math.inf
-    while True:
-        n = 2 * fine.grid.nodes.size - 1
-        if not (coarse.solution.converged and fine.solution.converged):
-            if coarse.solution.converged and not prescribed and n <= run.most_cold and not run.exhausted:
-                fine = run.warm(coarse, None, n)
-                continue
-            failed = fine if coarse.solution.converged else coarse
-            return Found(run, coarse, fine, math.nan, inlet, failed.solution.message)
-        worst = film_error(coarse, fine) + inlet
-        before, off = off, spike_error(coarse, fine)
-        if prescribed or (worst <= options.tolerance and (options.spike is None or off <= options.spike)):
-            return Found(run, coarse, fine, worst, inlet)
-        if options.spike is not None and max(before, off) < math.inf and off > _SETTLING * before:
-            unsettled = f"error {off:.2g} of the spike, which does not settle"
-            return Found(run, coarse, fine, worst, inlet, unsettled)
-        if n > _MOST_NODES:
-            nodes = fine.grid.nodes.size
-            if options.spike is None and worst < WORST:
-                note = f"{above(worst, options.tolerance, nodes)}: {remedy(run, fine.plan)}"
-                return Found(run, coarse, fine, worst, inlet, note=note, supply=run.supply)
-            remaining = f"error {worst:.2g}" if worst > options.tolerance else f"error {off:.2g} of the spike"
-            return Found(run, coarse, fine, worst, inlet, f"{remaining} left on {nodes} nodes")
-        coarse, fine = fine, run.sharpened(fine, n) if options.sharp else run.warm(fine, None, n)

@@ -59,6 +59,7 @@ class GridSearch:
         self.spent = spent
         self.flooded = flooded  # of this contact, or of one like it
         self.work = 0.0
+        self.failed: Level | None = None  # finest grid, where it did not give in
 
     @property
     def exhausted(self) -> bool:

@@ -15,7 +15,7 @@ class Agreement(Protocol):
 
     @property
     def enough(self) -> bool:
-        """Whether it is what was asked for."""
+        """Whether it is what was asked for, or finer grids would not come closer."""
 
 
 L = TypeVar("L")
