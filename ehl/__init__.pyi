@@ -35,8 +35,8 @@ from .films.thermal import solve_thermal as solve_thermal
 from .films.thermal_slopes import with_load_slopes as with_load_slopes
 from .films.traction import TractionCurve as TractionCurve
 from .films.traction import traction_curve as traction_curve
-from .films.transient import TransientFilm as TransientFilm
 from .films.transient import solve_transient as solve_transient
+from .films.transient_film import TransientFilm as TransientFilm
 from .oil.lubricant import Lubricant as Lubricant
 from .oil.measured import MeasuredViscosity as MeasuredViscosity
 from .oil.rheology import Barus as Barus

@@ -19,7 +19,7 @@ PICTURES: Mapping[str, str] = {
     "ehl.films.mixed_film:MixedFilm": "mixed_film",
     "ehl.films.mixed_thermal:MixedThermalFilm": "mixed_film",
     "ehl.films.frequency:FilmResponse": "film_response",
-    "ehl.films.transient:TransientFilm": "curves",
+    "ehl.films.transient_film:TransientFilm": "curves",
     "ehl.films.traction:TractionCurve": "curves",
     "dynamics.flow.motions:Trajectory": "portrait",
     "dynamics.orbits.shooting:Orbit": "orbit",

@@ -3,5 +3,5 @@
 Public, in `ehl`: `DEFINITIONS`, `Film`, `FilmErrors`, `Spike`, `hertz_approach`, `FilmResponse`, `film_response`,
 `solve_mixed`, `MixedFilm`, `MixedThermalFilm`, `solve_mixed_thermal`, `solve`, `solve_path`, `StiffnessRow`,
 `stiffness_table`, `Losses`, `ThermalFilm`, `solve_thermal`, `with_load_slopes`, `TractionCurve`, `traction_curve`,
-`TransientFilm`, `solve_transient`.
+`solve_transient`, `TransientFilm`.
 """

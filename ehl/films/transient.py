@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import (
-    Array,
-    Cost,
-    Stopwatch,
-    described,
-    part,
-    quantity,
-    record,
-    unclocked,
-)
-from base.results import ITSELF, WORST
+from base import Array, Cost, Stopwatch, unclocked
+from base.results import WORST
 from ehl.discrete.contact import LineContact
 from ehl.discrete.supply import Meniscus
-from ehl.films.film import Film, unsolved
+from ehl.films.film import Film
 from ehl.films.result import GRID_FACTOR
 from ehl.films.solver import solve
+from ehl.films.transient_film import TransientFilm
+from ehl.solving.refinement import refine
 from ehl.solving.stepping import Laying
 from ehl.solving.time_inputs import OverTime, at_time, checked, jump_fault
 from ehl.solving.time_march import JumpError, Shot, TimeMarch
@@ -35,59 +28,6 @@ _ROUNDS = 6
 _TIME_SHARE = 0.4  # of the tolerance, for the steps of time
 _STEPS = 25.0  # of time in one transit, at first
 _FIRST_ALLOWED = 2e-5  # local error of a step at first, whatever the tolerance
-
-
-@record
-class TransientFilm:
-    """A film over time, per metre of face; figures are NaN where `converged` is False."""
-
-    headline = ("lowest", "lowest_time")
-
-    contact: LineContact = part("the contact at the first time")
-    time: Array = quantity("s", "time", "time")
-    load: Array = quantity("N/m", "load", "time", shown="N/mm")
-    least: Array = quantity("m", "minimum film thickness", "time", shown="um", error="error")
-    central: Array = quantity("m", "film thickness at x = 0", "time", shown="um", error="error")
-    separation: Array = quantity(
-        "m",
-        "film separation: approach of the dry contact less that with the film",
-        "time",
-        shown="um",
-        error="error",
-    )
-    greatest_pressure: Array = quantity("Pa", "maximum pressure", "time", shown="GPa", error="pressure_error")
-    x: Array = quantity("m", "places, which follow the contact", "time node", shown="um")
-    pressure: Array = quantity("Pa", "pressure", "time node", shown="GPa")
-    thickness: Array = quantity("m", "film thickness", "time node", shown="um")
-    no_error = "not estimated in single places; the central and the minimum film have one"
-    cost: Cost
-    converged: bool
-    message: str
-    lowest: float = unsolved("m", "minimum film of all steps of time", shown="um", error="error")
-    lowest_time: float = unsolved("s", "time of it")
-    grid_error: float = unsolved(
-        "1", "largest change of central and minimum film and separation between two grids", no_error=ITSELF
-    )
-    time_error: float = unsolved(
-        "1",
-        "local errors of the steps of time, added over the time that oil takes through the contact",
-        no_error=ITSELF,
-    )
-    pressure_error: float = unsolved(
-        "1",
-        "change of the maximum pressure between two grids, for each halving that the spike's cells need",
-        no_error=ITSELF,
-    )
-    balance: float = unsolved(
-        "1",
-        "largest net flux into a node, its change of content counted, over the flux, of all steps",
-        no_error=ITSELF,
-    )
-
-    @described("1", no_error=ITSELF)
-    def error(self) -> float:
-        """Estimated relative error of the films, by grid and by steps of time together."""
-        return self.grid_error + self.time_error
 
 
 def solve_transient(
@@ -171,6 +111,24 @@ def solve_transient(
         raise jump_fault(contact_at, float(jump.args[0])) from None
 
 
+_SLOWER = "allow a larger tolerance, or let load and speed change more slowly"
+
+
+@dataclass(frozen=True)
+class _Marched:
+    """A film over time on two grids through the same instants."""
+
+    pair: tuple[TimeMarch, TimeMarch]
+    grid: float  # error by the grid
+    steps: float  # and by the steps of time
+    enough: bool
+
+    @property
+    def error(self) -> float:
+        """Of both together."""
+        return self.grid + self.steps
+
+
 class _Run:
     """Solves on two grids, finer ones and shorter steps until the tolerance is met."""
 
@@ -187,39 +145,46 @@ class _Run:
         self.step, self.supply, self.watch = step, supply, watch
         self.allowed = max(_TIME_SHARE * tolerance / _STEPS, _FIRST_ALLOWED)
         self.iterations = self.nodes = self.rejected = 0
+        self.first: Film  # steady, at the first time
+        self.reason = ""
 
     def solved(self, nodes: int | None) -> TransientFilm:
         """Return the film, or the reason why there is none."""
-        n, reason = nodes or _FIRST_NODES, ""
-        nearest: tuple[tuple[TimeMarch, TimeMarch], float, float] | None = None
+        nearest = refine(self.pairs(nodes))
+        if nearest is None or not self.first.converged or nearest.error >= WORST:
+            return self.failed()
+        film = self.film(nearest)
+        if nearest.enough:
+            return film
+        message = (
+            f"converged; the error of {nearest.error:.2g} is above the tolerance of {self.tolerance:.2g}"
+        )
+        return replace(film, message=message)
+
+    def pairs(self, nodes: int | None) -> Iterator[_Marched]:
+        """Follow the film on two grids, then with whatever of nodes and steps was too coarse made finer."""
+        n, prescribed = nodes or _FIRST_NODES, nodes is not None or self.step is not None
         for _ in range(_ROUNDS):
-            first = solve(self.contact_at(float(self.times[0])), nodes=n, supply=self.supply)
+            first = self.first = solve(self.contact_at(float(self.times[0])), nodes=n, supply=self.supply)
             if not first.converged:
-                return self.failed(first, f"the steady film of the first time: {first.message}")
+                self.reason = f"the steady film of the first time: {first.message}"
+                return
             pair = self.pair(first)
             if isinstance(pair, str):
                 self.allowed *= 0.25
-                reason = pair
+                self.reason = f"{pair}: {_SLOWER}"
                 continue
             grid, steps = _grid_error(*pair) + first.errors.inlet, pair[0].error
-            reason = f"error {grid + steps:.2g} left on {n} nodes with {len(pair[0].shots) - 1} steps of time"
-            if nodes is not None or self.step is not None or grid + steps <= self.tolerance:
-                return self.film(pair, grid, steps)
-            if nearest is None or grid + steps < nearest[1] + nearest[2]:
-                nearest = pair, grid, steps
+            march = _Marched(pair, grid, steps, prescribed or grid + steps <= self.tolerance)
+            shots = len(pair[0].shots) - 1
+            self.reason = f"error {march.error:.2g} left on {n} nodes with {shots} steps of time: {_SLOWER}"
+            yield march
             if steps > _TIME_SHARE * self.tolerance:
                 self.allowed *= 0.7 * (_TIME_SHARE * self.tolerance / steps) ** 1.5
             while grid > (1.0 - _TIME_SHARE) * self.tolerance and n <= _MOST_NODES:
                 n, grid = 2 * n - 1, 0.3 * grid  # of second order, with a margin
             if n > _MOST_NODES:
-                break
-        if nearest is not None and nearest[1] + nearest[2] < WORST:
-            off = nearest[1] + nearest[2]
-            message = f"converged; the error of {off:.2g} is above the tolerance of {self.tolerance:.2g}"
-            return replace(self.film(*nearest), message=message)
-        return self.failed(
-            first, f"{reason}: allow a larger tolerance, or let load and speed change more slowly"
-        )
+                return
 
     def pair(self, first: Film) -> tuple[TimeMarch, TimeMarch] | str:
         """Follow the film on the coarser grid, and on the finer one through the same instants."""
@@ -253,8 +218,9 @@ class _Run:
         counts = {"steps": steps, "rejected": self.rejected}
         return Cost(self.watch.seconds, unknowns=self.nodes - 1, iterations=self.iterations, counts=counts)
 
-    def film(self, pair: tuple[TimeMarch, TimeMarch], grid: float, steps: float) -> TransientFilm:
+    def film(self, march: _Marched) -> TransientFilm:
         """Return the film in SI."""
+        pair = march.pair
         fine = pair[1]
         shown = [_shot(fine, at) for at in self.times.tolist()]
         lowest = min(fine.shots, key=lambda shot: shot.figures.minimum_thickness)
@@ -277,14 +243,15 @@ class _Run:
             message="converged",
             lowest=lowest.figures.minimum_thickness,
             lowest_time=lowest.time,
-            grid_error=grid,
-            time_error=steps,
+            grid_error=march.grid,
+            time_error=march.steps,
             pressure_error=float(np.max(growth)),
             balance=max(instant.balance for instant in fine.shots),
         )
 
-    def failed(self, first: Film, reason: str) -> TransientFilm:
+    def failed(self) -> TransientFilm:
         """Return no figures."""
+        first = self.first
         blank = np.full(self.times.size, math.nan)
         curves = np.full((self.times.size, first.x.size), math.nan)
         load = np.array([self.contact_at(at).load for at in self.times.tolist()])
@@ -301,7 +268,7 @@ class _Run:
             thickness=curves,
             cost=self.cost(0),
             converged=False,
-            message=reason,
+            message=self.reason,
         )
 
 
