@@ -52,6 +52,7 @@ def solve_mixed(
     tolerance: float = 0.005,
     supply: Supply | None = None,
     start: Film | MixedFilm | None = None,
+    nodes: int | None = None,
 ) -> MixedFilm:
     """Share the load between film and asperities.
 
@@ -67,6 +68,8 @@ def solve_mixed(
         As for :func:`ehl.solve`.
     start : Film or MixedFilm, optional
         A film to start from; one with asperities gives their share to start with as well.
+    nodes : int, optional
+        Solve on this many nodes instead and report the error that this leaves.
 
     Returns
     -------
@@ -102,7 +105,7 @@ def solve_mixed(
         raise InputError.at(
             "roughness", shorten(roughness), "must be a Roughness", "build one with ehl.Roughness"
         )
-    options = Options(tolerance, supply=supply).checked(contact)
+    options = Options(tolerance, nodes, supply=supply).checked(contact)
     search = _Search(contact, roughness, options, start)
     try:
         mixed = search.solved()

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Callable
 from dataclasses import KW_ONLY, replace
+from functools import partial
 
 import numpy as np
 
@@ -68,6 +70,7 @@ def solve_mixed_thermal(
     supply: Supply | None = None,
     boundary_friction: float = BOUNDARY_FRICTION,
     start: MixedThermalFilm | None = None,
+    nodes: int | None = None,
 ) -> MixedThermalFilm:
     """Share the load between asperities and a film with heat and shear thinning.
 
@@ -87,6 +90,8 @@ def solve_mixed_thermal(
         Coefficient of friction of what asperities carry.
     start : MixedThermalFilm, optional
         Of a similar contact.
+    nodes : int, optional
+        Solve all films on this many nodes instead and report the error that this leaves.
 
     Returns
     -------
@@ -121,16 +126,18 @@ def solve_mixed_thermal(
     oil = contact.lubricant
     bulk = bulk_temperatures or (oil.temperature, oil.temperature)
     # the warm film of the whole load checks what remains of the arguments
-    near = None if start is None else start.film
-    warm = solve_thermal(contact, solids, bulk_temperatures, tolerance, start=near, supply=supply)
-    cold = solve_mixed(
-        at_bulk(contact, np.array(bulk)),
-        roughness,
-        tolerance,
-        supply,
-        None if start is None else start.isothermal,
+    near, near_cold = (None, None) if start is None else (start.film, start.isothermal)
+    solved_at = partial(
+        solve_thermal,
+        solids=solids,
+        bulk_temperatures=bulk_temperatures,
+        tolerance=tolerance,
+        nodes=nodes,
+        supply=supply,
     )
-    search = _Search(contact, roughness, solids, bulk, tolerance, supply, warm)
+    warm = solved_at(contact, start=near)
+    cold = solve_mixed(at_bulk(contact, np.array(bulk)), roughness, tolerance, supply, near_cold, nodes)
+    search = _Search(contact, roughness, solved_at, tolerance, supply, warm)
     share, reason = math.nan, warm.message if cold.converged else cold.message
     if cold.converged and warm.converged:
         share, reason = search.share(cold)
@@ -160,13 +167,12 @@ class _Search:
         self,
         contact: LineContact,
         roughness: Roughness,
-        solids: tuple[Solid, Solid] | None,
-        bulk: tuple[float, float],
+        solved_at: Callable[..., ThermalFilm],
         tolerance: float,
         supply: Supply | None,
         film: ThermalFilm,
     ) -> None:
-        self.contact, self.roughness, self.solids, self.bulk = contact, roughness, solids, bulk
+        self.contact, self.roughness, self.solved_at = contact, roughness, solved_at
         self.tolerance, self.supply, self.film, self.cost = tolerance, supply, film, film.cost
 
     def share(self, cold: MixedFilm) -> tuple[float, str]:
@@ -217,9 +223,7 @@ class _Search:
     def excess(self, odds: float) -> float:
         """By how much the asperities carry more than their share asks for."""
         contact = eased(self.contact, share_of(-odds))
-        self.film = solve_thermal(
-            contact, self.solids, self.bulk, self.tolerance, start=self.film, supply=self.supply
-        )
+        self.film = self.solved_at(contact, start=self.film)
         self.cost += replace(self.film.cost, counts={**self.film.cost.counts, "films": 1})
         if not self.film.converged:
             return math.nan

@@ -380,3 +380,16 @@ def test_derivatives_by_the_share_against_differences(supply):
         difference = (getattr(high, name) - getattr(low, name)) / (2 * step)
         # of a held layer only its compressibility moves: hundredths of the others, and of the grid's error as much
         assert getattr(by, figure) == pytest.approx(difference, rel=0.01 if supply is None else 0.03)
+
+
+@pytest.mark.parametrize("supply", [None, OilLayer(1e-7), Meniscus(-1.2 * PITCH.half_width)])
+def test_rough_films_are_solved_on_the_nodes_asked_for(supply):
+    ground = Roughness(0.2e-6, 1e10, 1e-5)
+    films = {n: solve_mixed(PITCH, ground, supply=supply, nodes=n) for n in (97, 193, 385)}
+    finest = films[385]
+    for n, mixed in films.items():
+        assert mixed.film.x.size == n
+        assert mixed.central_thickness == pytest.approx(finest.central_thickness, rel=mixed.error + 1e-9)
+    assert films[193].error < films[97].error
+    with pytest.raises(InputError, match="nodes"):
+        solve_mixed(PITCH, ground, nodes=3)

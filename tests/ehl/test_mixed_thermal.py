@@ -124,3 +124,14 @@ def test_lost_friction_is_not_warned_of_where_nothing_slides_or_asperities_carry
         warnings.filterwarnings("error", "roughness: elastic asperities")
         assert solve_mixed_thermal(still, drawn, tolerance=0.02).asperity_share > 0.01
         assert solve_mixed_thermal(fast, fine, tolerance=0.02).asperity_share < 1e-4
+
+
+@pytest.mark.parametrize("supply", [None, OilLayer(0.1e-6)])
+def test_nodes_are_those_asked_for(supply):
+    film = solve_mixed_thermal(SLIDING, ground(0.3e-6), supply=supply, nodes=97)
+    assert film.converged
+    assert film.film.x.size == film.isothermal.film.x.size == 97
+    alone = solve_mixed_thermal(SLIDING, ground(0.3e-6), supply=supply)
+    assert film.central_thickness == pytest.approx(alone.central_thickness, rel=film.error + alone.error)
+    with pytest.raises(InputError, match="nodes"):
+        solve_mixed_thermal(SLIDING, ground(0.3e-6), nodes=3)
