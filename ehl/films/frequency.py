@@ -12,12 +12,14 @@ from base.results import ITSELF
 from ehl.discrete.contact import LineContact
 from ehl.discrete.equations import Grid, Residual, film_gap
 from ehl.discrete.squeeze import Content, Storage, by_parameter
-from ehl.discrete.supply import OilLayer, Supply
+from ehl.discrete.supply import OilLayer
 from ehl.films.film import Film
 from ehl.films.mixed_film import MixedFilm
+from ehl.films.mixed_thermal import MixedThermalFilm
 from ehl.films.thermal import ThermalFilm
 from ehl.solving.levels import Level, figures
-from ehl.solving.response import STEP, explicit, heavier_by_step
+from ehl.solving.load_share import excess, odds_of
+from ehl.solving.response import STEP, eased_by_step, explicit, heavier_by_step
 
 Complex = NDArray[np.complex128]
 
@@ -32,7 +34,7 @@ class FilmResponse:
 
     headline = ("static_stiffness",)
 
-    film: Film = part("the steady film")
+    film: Film | MixedFilm = part("the steady film")
     frequency: Array = quantity("rad/s", "angular frequency of the load", "frequency")
     compliance: Complex = quantity(
         "m2/N", "complex -d(film separation)/dw", "frequency", error="relative_error"
@@ -76,10 +78,10 @@ class FilmResponse:
     @described("N/m2", no_error="not estimated here; the film's errors.approach_stiffness")
     def static_stiffness(self) -> float:
         """Stiffness at frequency 0, by the film's own derivative."""
-        return self.film.stiffness("approach")
+        return -1.0 / self.film.separation_slope
 
 
-def film_response(film: Film, frequency: ArrayLike) -> FilmResponse:
+def film_response(film: Film | MixedFilm, frequency: ArrayLike) -> FilmResponse:
     """Linear response of a solved film to an oscillating load.
 
     Reynolds' equation with its squeeze term, ``d/dx[rho h^3/(12 eta) dp/dx] = u d(rho h)/dx + d(rho h)/dt``, linearised
@@ -88,8 +90,9 @@ def film_response(film: Film, frequency: ArrayLike) -> FilmResponse:
 
     Parameters
     ----------
-    film : Film
-        Flooded, in a given domain, or with its meniscus held, isothermal.
+    film : Film or MixedFilm
+        Flooded, in a given domain, or with its meniscus held, isothermal. Between rough surfaces the asperities share
+        the load with the film at every moment: their share follows the gap.
     frequency : float or array_like
         omega [rad/s]; at 0 stiffness and damping are the limits for slow oscillations.
 
@@ -104,7 +107,7 @@ def film_response(film: Film, frequency: ArrayLike) -> FilmResponse:
     ------
     InputError
         For frequencies that are no numbers; for a film that did not converge; for films with heat, whose oil answers
-        too; with asperities; behind a layer, whose meniscus moves and stores oil.
+        too; behind a layer, whose meniscus moves and stores oil.
 
     Notes
     -----
@@ -120,19 +123,20 @@ def film_response(film: Film, frequency: ArrayLike) -> FilmResponse:
     ['5.78e+12 N/m, 4.13e+09 N s/m', '1.66e+12 N/m, 2.47e+09 N s/m']
     """
     at = _checked(film, frequency)
-    assert film.state is not None
+    smooth = film.film if isinstance(film, MixedFilm) else film
+    assert smooth.state is not None
     with unclocked():
         import ehl.kernels.film_kernels  # noqa: F401  numba
     watch = Stopwatch()
-    levels = [_Linear.of(level, film.supply) for level in (film.state.coarse, film.state.fine)]
     coarse, fine = (
-        np.array([linear.answer(w) for w in at.ravel()]).reshape(*at.shape, 3) for linear in levels
+        _answers(level, film, at.ravel()).reshape(*at.shape, 3) / film.contact.load
+        for level in (smooth.state.coarse, smooth.state.fine)
     )
     # waves of the film may leave the separation as it is by accident: the central film's change counts as well
     changes = np.abs(coarse - fine)[..., :2].sum(axis=-1)
-    still = film.errors.approach_stiffness * abs(film.separation_slope)
+    still = smooth.errors.approach_stiffness * abs(film.separation_slope)
     error = (changes + still) / np.abs(fine[..., 0])
-    unknowns = film.x.size - 1
+    unknowns = smooth.x.size - 1
     return FilmResponse(
         film=film,
         frequency=at,
@@ -146,7 +150,7 @@ def film_response(film: Film, frequency: ArrayLike) -> FilmResponse:
     )
 
 
-def _checked(film: Film, frequency: ArrayLike) -> Array:
+def _checked(film: Film | MixedFilm, frequency: ArrayLike) -> Array:
     """Raise every fault of the arguments; return the frequencies."""
     at = np.zeros(0)
     with Faults() as faults:
@@ -167,26 +171,47 @@ def _checked(film: Film, frequency: ArrayLike) -> Array:
 
 def _why_not(film: object) -> tuple[str, str] | None:
     """What a film must be and is not, and the remedy."""
-    if isinstance(film, ThermalFilm):
+    if isinstance(film, ThermalFilm | MixedThermalFilm):
         return (
             "must be isothermal: with heat the oil's temperature answers too, which is not computed",
-            "solve(contact) with the oil at the film's mean temperature",
+            "solve(contact) or solve_mixed with the oil at the film's mean temperature",
         )
-    if isinstance(film, MixedFilm):
-        return (
-            "must be a film that carries all of the load",
-            "asperities add a spring beside the film: give .film",
-        )
-    if not isinstance(film, Film):
-        return "must be a solved Film", "ehl.solve(contact) gives one"
-    if not film.converged or film.state is None:
+    smooth = film.film if isinstance(film, MixedFilm) else film
+    if not isinstance(film, Film | MixedFilm) or not isinstance(smooth, Film):
+        return "must be a solved Film or MixedFilm", "ehl.solve(contact) gives one"
+    if not film.converged or smooth.state is None:
         return "must have converged", film.message
-    if isinstance(film.supply, OilLayer) and film.starved:
+    if isinstance(smooth.supply, OilLayer) and smooth.starved:
         return (
             "must be flooded or hold its meniscus: behind a layer that moves and stores oil, which is not computed",
-            "give supply=Meniscus(film.inlet)",
+            f"give supply=Meniscus({smooth.inlet:.4g})",
         )
     return None
+
+
+def _answers(level: Level, film: Film | MixedFilm, frequencies: Array) -> Complex:
+    """Derivatives of separation, central and minimum film by ln of the whole load (k, 3) [m]."""
+    supply = film.film.supply if isinstance(film, MixedFilm) else film.supply
+    by_load = _Linear.of(level, *heavier_by_step(level, supply))
+    alone = np.array([by_load.answer(frequency) for frequency in frequencies])
+    if not isinstance(film, MixedFilm) or film.asperity_share == 0.0:
+        return alone
+    by_part = _Linear.of(level, *eased_by_step(level, supply))
+    eased = np.array([by_part.answer(frequency) for frequency in frequencies])
+    return _shared(film, figures(level).central_thickness, alone, eased)
+
+
+def _shared(film: MixedFilm, gap: float, alone: Complex, eased: Complex) -> Complex:
+    """Let the asperities share the load at every moment: their excess at the gap x = 0 stays 0.
+
+    From the answers to ln of the film's load and to ln of the part of load and modulus that asperities leave to it.
+    """
+    by_odds = -film.asperity_share * eased  # ln(1 - s) falls by s
+    at = excess(film.contact, film.roughness, gap, odds_of(film.asperity_share))
+    follow = -(at.by_load + at.by_gap * alone[:, 1]) / (at.by_gap * by_odds[:, 1] + at.by_odds)
+    answer: Complex = alone + by_odds * follow[:, None]
+    answer[:, 0] += (film.roughness.planes(gap)[1] - 1.0) * answer[:, 1]
+    return answer
 
 
 def _not_slower(frequency: Array, contact: LineContact) -> Array:
@@ -198,7 +223,7 @@ def _not_slower(frequency: Array, contact: LineContact) -> Array:
 
 @dataclass(frozen=True)
 class _Linear:
-    """One grid's linear problem (matrix - i omega stored) change = forced + i omega swept, by ln w."""
+    """One grid's linear problem (matrix - i omega stored) change = forced + i omega swept, by ln of a parameter."""
 
     level: Level
     matrix: Array
@@ -211,14 +236,13 @@ class _Linear:
     free: Integers
 
     @classmethod
-    def of(cls, level: Level, supply: Supply | None) -> _Linear:
-        """Linearise about the steady film, on nodes that follow the load."""
+    def of(cls, level: Level, other: LineContact, moved: Grid) -> _Linear:
+        """Linearise about the steady film, towards a contact a step away on nodes that follow it."""
         from ehl.kernels.film_kernels import newton_matrix
 
         grid, groups, solution = level.grid, level.groups, level.solution
         before = Residual.of(grid, groups, solution.P, solution.H0)
-        heavier, moved = heavier_by_step(level, supply)
-        own = explicit(level, before, heavier, moved)
+        own = explicit(level, before, other, moved)
         influence = -groups.compliance * grid.potential
         free = np.flatnonzero(solution.P[1:-1] > 0.0) + 1
         system = newton_matrix(before.slopes, influence, grid.weights, free)
@@ -227,7 +251,7 @@ class _Linear:
         seconds = groups.length / level.contact.entrainment
         stored = np.zeros((free.size + 1, free.size + 1))
         stored[:-1] = seconds * scale[:, None] * storage.rows(influence, free)
-        after = level.groups.on(heavier, moved)
+        after = level.groups.on(other, moved)
         content = Content.of(grid, groups, solution.P, solution.H0)
         swept = by_parameter(content, Content.of(moved, after, solution.P, solution.H0), STEP)
         swept /= groups.gap * level.contact.entrainment
@@ -239,12 +263,12 @@ class _Linear:
             swept=np.append(scale * swept[free - 1], 0.0),
             central=own.central,
             separation=own.separation,
-            thinned=_thinned(level, heavier, moved),
+            thinned=_thinned(level, other, moved),
             free=free,
         )
 
     def answer(self, frequency: float) -> Complex:
-        """Derivatives of separation, central and minimum film by w [m2/N]."""
+        """Derivatives of separation, central and minimum film by ln of the parameter [m]."""
         level, grid, groups = self.level, self.level.grid, self.level.groups
         at = 1j * float(_not_slower(np.array(frequency), level.contact))
         change = np.linalg.solve(self.matrix - at * self.stored, self.forced + at * self.swept)
@@ -256,7 +280,7 @@ class _Linear:
         derivatives: Complex = np.array(
             [self.separation + groups.gap * dH0, self.central + groups.gap * centre, least]
         )
-        return derivatives / level.contact.load
+        return derivatives
 
 
 def _thinned(level: Level, heavier: LineContact, moved: Grid) -> Array:

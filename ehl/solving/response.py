@@ -106,11 +106,17 @@ def by_distance(level: Level) -> Response:
 
 def by_share(level: Level, supply: Supply | None) -> Response:
     """Differentiate by ln of the part of load and modulus that asperities leave to the film, at a fixed width."""
-    contact = level.contact
-    grown = math.exp(_step(level))
-    more = replace(contact, load=grown * contact.load, reduced_modulus=grown * contact.reduced_modulus)
+    more = _eased(level)
     farther = by_distance(level) if isinstance(supply, OilLayer) and level.plan.fixed else None
-    return _along(level, _Before(level), more, expected_film(more) / expected_film(contact), supply, farther)
+    return _along(
+        level, _Before(level), more, expected_film(more) / expected_film(level.contact), supply, farther
+    )
+
+
+def _eased(level: Level) -> LineContact:
+    """Return the contact with a step more of load and modulus left to the film."""
+    contact, grown = level.contact, math.exp(_step(level))
+    return replace(contact, load=grown * contact.load, reduced_modulus=grown * contact.reduced_modulus)
 
 
 def with_matrix(level: WarmLevel) -> WarmLevel:
@@ -170,10 +176,18 @@ def _along(
 def heavier_by_step(level: Level, supply: Supply | None) -> tuple[LineContact, Grid]:
     """Return the contact under a load a step larger, and the grid whose nodes follow its film."""
     contact = level.contact
-    heavier = replace(contact, load=contact.load * math.exp(STEP))
-    growth = expected_film(heavier) / expected_film(contact)
-    wider = heavier.half_width / contact.half_width
-    return heavier, moved_grid(level, level.plan.moved_to(growth, wider, supply))
+    return _followed(level, replace(contact, load=contact.load * math.exp(STEP)), supply)
+
+
+def eased_by_step(level: Level, supply: Supply | None) -> tuple[LineContact, Grid]:
+    """Return the contact of a part of load and modulus a step larger, and its grid likewise."""
+    return _followed(level, _eased(level), supply)
+
+
+def _followed(level: Level, other: LineContact, supply: Supply | None) -> tuple[LineContact, Grid]:
+    contact = level.contact
+    growth, wider = expected_film(other) / expected_film(contact), other.half_width / contact.half_width
+    return other, moved_grid(level, level.plan.moved_to(growth, wider, supply))
 
 
 def moved_grid(level: Level, plan: Plan) -> Grid:

@@ -15,11 +15,13 @@ from ehl import (
     Roughness,
     film_response,
     solve_mixed,
+    solve_mixed_thermal,
     solve_thermal,
 )
 from tests.ehl.films import quiet
 from tests.validation.article import PITCH
 
+ROUGH = Roughness(1e-7, 4e10, 1e-5)
 LIGHT = replace(PITCH, load=0.03 * PITCH.load)
 
 
@@ -93,6 +95,28 @@ def test_a_meniscus_that_stays_is_held_in_the_answer_too():
     assert film_response(film, 0.0).stiffness == pytest.approx(film.stiffness("approach"), rel=1e-5)
 
 
+@pytest.mark.parametrize("supply", [None, Meniscus(-1.1 * PITCH.half_width)])
+@pytest.mark.parametrize("law", ["greenwood-tripp", "zhou-hoeprich"])
+def test_asperities_share_slow_loads_as_steady_ones(law, supply):
+    mixed = solve_mixed(PITCH, Roughness.of_deviation(8e-7, law=law), 1e-3, supply)
+    assert mixed.asperity_share > 0.02
+    answer = film_response(mixed, 0.0)
+    assert answer.compliance.real == pytest.approx(-mixed.separation_slope, rel=1e-4)
+    assert answer.central_compliance.real == pytest.approx(-mixed.central_slope, rel=1e-4)
+    assert answer.static_stiffness == -1.0 / mixed.separation_slope
+
+
+def test_asperities_carry_what_a_film_that_is_squeezed_fast_gives_back():
+    mixed, film = solve_mixed(PITCH, Roughness.of_deviation(8e-7, law="greenwood-tripp")), quiet(PITCH)
+    at = rate(PITCH) * np.array([0.1, 1.0, 3.0])
+    rough, smooth = film_response(mixed, at), film_response(film, at)
+    assert (np.abs(rough.central_compliance) < np.abs(film_response(mixed.film, at).central_compliance)).all()
+    assert np.array_equal(film_response(mixed, -at).compliance, np.conj(rough.compliance))
+    fine = Roughness(1e-9, 0.04 / (1e-9 * 1e-6), 1e-6)
+    bare = film_response(solve_mixed(PITCH, fine), at)
+    assert bare.compliance == pytest.approx(smooth.compliance, rel=1e-6)
+
+
 def test_shapes_are_those_of_the_frequencies():
     film = quiet(PITCH, nodes=65)
     assert film_response(film, 1e4).compliance.shape == ()
@@ -105,7 +129,8 @@ def test_what_cannot_be_answered_is_refused_with_the_reason():
     for refused, word in (
         (layer, "behind a layer"),
         (solve_thermal(PITCH, nodes=129), "isothermal"),
-        (solve_mixed(LIGHT, Roughness(1e-7, 4e10, 1e-5)), "sperities"),
+        (solve_mixed_thermal(PITCH, ROUGH, nodes=65), "isothermal"),
+        (solve_mixed(PITCH, ROUGH, supply=OilLayer(0.5 * film.flow)), "behind a layer"),
         (replace(film, converged=False, message="more nodes"), "converged"),
         (PITCH, "Film"),
     ):
