@@ -4,8 +4,14 @@ import pytest
 
 from gears import GearPair
 from tests.processes import pytest_configure, pytest_sessionfinish
-from tests.seeds import pytest_report_header
-from tests.time_limit import pytest_collection_modifyitems, pytest_runtest_setup, pytest_sessionstart
+from tests.seeds import seed_header
+from tests.time_limit import (
+    order_header,
+    pytest_collection_modifyitems,
+    pytest_runtest_setup,
+    pytest_sessionstart,
+    pytest_terminal_summary,
+)
 from tests.validation.article import PAIR
 
 __all__ = [
@@ -16,7 +22,13 @@ __all__ = [
     "pytest_runtest_setup",
     "pytest_sessionfinish",
     "pytest_sessionstart",
+    "pytest_terminal_summary",
 ]
+
+
+def pytest_report_header() -> list[str]:
+    """Lines of the session's head: what repeats the choices and the order of this session."""
+    return [seed_header(), order_header()]
 
 
 @pytest.fixture(scope="session")

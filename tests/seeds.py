@@ -9,6 +9,6 @@ import random
 SEED = int(os.environ.setdefault("FLANKFILM_SEED", str(random.SystemRandom().randrange(1, 10**9))))
 
 
-def pytest_report_header() -> str:
+def seed_header() -> str:
     """Line of the session's head."""
     return f"FLANKFILM_SEED={SEED}"
