@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,11 +21,17 @@ if TYPE_CHECKING:
 def write_netcdf(path: Path, dataset: xr.Dataset) -> None:
     """Replace the file `path` by the dataset.
 
-    It is made in memory first: HDF5 does not survive a disk that fills while it writes.
+    It is made in memory first: HDF5 does not survive a disk that fills while it writes. `Dataset.to_netcdf` would do
+    the same, but asks dask for its scheduler, which loads `distributed` where that is installed.
     """
-    content = dataset.to_netcdf(engine="h5netcdf")
+    import h5netcdf
+    from xarray.backends import H5NetCDFStore
+
+    content = io.BytesIO()
+    with h5netcdf.File(content, "w") as file:
+        dataset.dump_to_store(H5NetCDFStore(file))
     with replacing(path) as beside:
-        beside.write_bytes(content)
+        beside.write_bytes(content.getbuffer())
 
 
 def write_csv(path: Path, columns: Mapping[str, ArrayLike]) -> None:
