@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 
+from flankfilm.cache import keep_compiled_code
 from gears import GearPair
 from tests.processes import pytest_configure, pytest_sessionfinish
 from tests.seeds import seed_header
@@ -24,6 +25,10 @@ __all__ = [
     "pytest_sessionstart",
     "pytest_terminal_summary",
 ]
+
+# Before a test imports numba. Kernels are kept where the program keeps them, and those of `warm-up` are found: without
+# this each worker, and each program with a cache of its own, would compile them anew.
+keep_compiled_code()
 
 
 def pytest_report_header() -> list[str]:

@@ -297,7 +297,8 @@ class TestManifest:
 @pytest.mark.parametrize(
     "text", [SMALL, pytest.param(MOTION, marks=pytest.mark.slow)], ids=["closed form", "compiled"]
 )
-def test_an_install_that_cannot_be_written_works(tmp_path, text):
+def test_an_install_that_cannot_be_written_works(tmp_path, monkeypatch, text):
+    monkeypatch.delenv("NUMBA_CACHE_DIR")  # the program itself has to find a place
     # root may write everywhere, so that besides the permissions what was written is looked at
     place = tmp_path / "packages"
     for package in PACKAGES:
