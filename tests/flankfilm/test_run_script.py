@@ -484,9 +484,13 @@ def test_exit_status_passes_through(sandbox: Sandbox, status: int) -> None:
 
 def test_whole_suite_runs_on_all_cores(sandbox: Sandbox) -> None:
     sandbox.run("test")
-    (call,) = sandbox.calls("-m pytest")
-    workers = int(call.removeprefix("-m pytest -n "))
-    assert 1 <= workers <= 8
+    sandbox.run("test", "--slow")
+    calls = [re.fullmatch(r"-m pytest (.*)-n (\d+)(.*)", call) for call in sandbox.calls("-m pytest")]
+    assert [call and (call[1], call[3]) for call in calls] == [
+        ("", " --dist worksteal"),
+        ("-m slow --timeout 1800 ", ""),
+    ]
+    assert all(call and 1 <= int(call[2]) <= 8 for call in calls)
 
 
 def test_slow_studies(sandbox: Sandbox) -> None:
