@@ -48,7 +48,7 @@ def open_results(path: Path | str) -> xr.Dataset:
     file = _file(Path(path))
     with readable(file, REMEDY):
         held = xr.load_dataset(file, engine="h5netcdf")
-    silent = [str(name) for name in held.variables if "units" not in held[name].attrs]
+    silent = [str(name) for name in held.variables if "units" not in held.variables[name].attrs]
     if "scene_json" not in held.attrs or silent:
         raise InputError.at(file, "", "holds no results that flankfilm wrote", REMEDY)
     return held

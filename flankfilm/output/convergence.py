@@ -42,7 +42,7 @@ def with_convergence(data: xr.Dataset, values: Mapping[str, Any]) -> xr.Dataset:
         Stage name to result.
     """
     for name in map(str, data.variables):
-        data[name].attrs |= _converged(name, values)
+        data.variables[name].attrs |= _converged(name, values)
     return data
 
 

@@ -39,20 +39,21 @@ def columns(
     dict of str to ndarray, shape (rows,)
         Called ``<figure>_<unit>``, and by the entry where several stand beside each other.
     """
-    wanted = [joined(prefix, name) for name in names if joined(prefix, name) in data.variables]
+    held = data.variables  # data[name] would look through all variables for the coordinates of one
+    wanted = [joined(prefix, name) for name in names if joined(prefix, name) in held]
     if axis:
-        wanted = [n for n in map(str, data.variables) if data[n].dims[:1] == (joined(prefix, axis),)]
-    older = [n for n in map(str, data.variables) if data[n].attrs.get("alias_of") in wanted]
+        wanted = [n for n in map(str, held) if held[n].dims[:1] == (joined(prefix, axis),)]
+    older = [n for n in map(str, held) if held[n].attrs.get("alias_of") in wanted]
     wanted = [*(n for n in wanted if n not in older), *older]
     rows = {
         dim: data.sizes[dim]
         for name in wanted
-        for dim in map(str, data[name].dims)
+        for dim in map(str, held[name].dims)
         if not _aside(dim, prefix)
     }
     cells = {}
     for name in wanted:
-        variable = data[name].variable
+        variable = held[name]
         aside = [str(dim) for dim in variable.dims if _aside(str(dim), prefix)]
         head = spelt(name.removeprefix(f"{prefix}_"), read_in(data, name))
         for places in product(*(range(data.sizes[dim]) for dim in aside)):
@@ -64,12 +65,13 @@ def columns(
 
 def uncertainties(data: xr.Dataset) -> dict[str, NDArray[np.object_]]:
     """Columns of ``csv/uncertainties.csv``: single figures that have an error, with what `results.nc` says of it."""
-    names = [name for name in map(str, data.variables) if not data[name].dims and "error" in data[name].attrs]
-    about = [data[name].attrs for name in names]
+    held = data.variables
+    names = [name for name in map(str, held) if not held[name].dims and "error" in held[name].attrs]
+    about = [held[name].attrs for name in names]
     columns = {
         "variable": names,
         "figure": [attributes["long_name"] for attributes in about],
-        "value": [float(_shown(data, name, data[name].values)) for name in names],
+        "value": [float(_shown(data, name, held[name].values)) for name in names],
         "unit": [read_in(data, name) for name in names],
         "numerical_error": [attributes["error"] for attributes in about],
         "model_error": [attributes.get("model_error", "") for attributes in about],
@@ -97,14 +99,16 @@ def spelt(name: str, unit: str) -> str:
 
 def read_in(data: xr.Dataset, name: str) -> str:
     """Unit that people read a variable in."""
-    about = data[name].attrs
+    about = data.variables[name].attrs
     return str(about.get("display_units", about["units"]))
 
 
 def _shown(data: xr.Dataset, name: str, values: NDArray[np.generic]) -> NDArray[np.generic]:
     unit = read_in(data, name)
     return (
-        values if unit == data[name].attrs["units"] else np.asarray(values, dtype=np.float64) / factor(unit)
+        values
+        if unit == data.variables[name].attrs["units"]
+        else np.asarray(values, dtype=np.float64) / factor(unit)
     )
 
 
@@ -118,5 +122,5 @@ def _entry(data: xr.Dataset, dim: str, place: int, prefix: str) -> str:
         return COMMON[dim][place]
     names = f"{dim}s"
     if names in data.variables:
-        return str(data[names].values[place]).replace(" ", "_")
+        return str(data.variables[names].values[place]).replace(" ", "_")
     return f"{dim.removeprefix(f'{prefix}_')}_{place + 1}"

@@ -236,8 +236,8 @@ def merged(parts: Iterable[xr.Dataset], attributes: Mapping[str, str | float]) -
 def with_tolerance(data: xr.Dataset, tolerance: float) -> xr.Dataset:
     """Say of every variable that has an error whether this meets the tolerance, and of the dataset which one."""
     for name in map(str, data.variables):
-        if (error := data[name].attrs.get("error")) is not None:
-            data[name].attrs["tolerance_met"] = int(met(error, tolerance))
+        if (error := data.variables[name].attrs.get("error")) is not None:
+            data.variables[name].attrs["tolerance_met"] = int(met(error, tolerance))
     return data.assign_attrs(tolerance=tolerance)
 
 
