@@ -94,7 +94,7 @@ def test_drive_trains_have_it_too(engine):
     )
     drive = pair_drive(
         engine[PAIR], engine[MESH], 20.0, 209.44, shafts=(shaft, shaft), end_inertias=(0.02, 0.05),
-        damping_ratio=0.05, free_damping_ratio=0.01,
+        damping_ratio=0.05, free_damping_ratio=0.01, fourier_order=1,
     )  # fmt: skip
     assert drive.oscillator.dampings == (0.1, 0.02)
     assert drive.rigid.oscillator.damping_ratios == (0.05, 0.01)
