@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from base import Cost
 from flankfilm.cache import Cache, results_cache
 from flankfilm.output.run import results_dataset
-from flankfilm.scene import parse_scene, read_scene
+from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.goals import goals
 from tests.flankfilm.explained import unexplained
@@ -55,6 +57,8 @@ def test_a_result_that_did_not_converge_says_so_beside_its_figures():
 @pytest.mark.slow
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
 def test_every_figure_of_every_example_is_explained(path):
-    scene = read_scene(path)
+    """With 20 speeds: figures say as much of their errors as with 400."""
+    text = re.sub(r"\bpoints = \d+", "points = 20", path.read_text(encoding="utf-8"))
+    scene = parse_scene(text, folder=path.parent)
     _, data = computed(scene, results_cache(True))
     assert not unexplained(data)
