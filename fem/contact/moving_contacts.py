@@ -198,9 +198,7 @@ class MovingContacts:
             for more in self._pushed(loads, approach):
                 residual, slope = residual + more.approach, slope + more.slope
                 reach = reach - more.less
-                bears = loads > 0.0
-                carried = carried - more.push.sum(axis=-1, where=bears)
-                stiff = stiff + more.stiff.sum(axis=-1, where=bears)
+                carried, stiff = carried - more.push.sum(axis=-1), stiff + more.stiff.sum(axis=-1)
         jacobian = self.coupling.changed(self.roll, turn, -blocks)
         return Linearised(residual, reach, levers - (1 - reach), carried, slope, jacobian, stiff)
 
