@@ -17,8 +17,10 @@ import numpy as np
 import fem
 from base import Array
 from fem.contact import moved_side
+from fem.contact.contact_state import ContactState
 from fem.contact.face_errors import face_load_factors
-from fem.contact.solver import ContactState, solve_contact
+from fem.contact.moving_contacts import MovingContacts
+from fem.contact.solver import solve_contact
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import face_setting
