@@ -150,7 +150,8 @@ def share_forces(
         slopes = np.where(wanted[..., None], unit, slopes)
         tangent = np.sum(at.further_lever_ratios * slopes, axis=-1) - at.stiff
         wanting = whole - at.carried + np.sum(at.further_lever_ratios * response, axis=-1)
-        lift = np.where(wanted, wanting / tangent, 0.0)
+        nowhere = np.full_like(tangent, np.nan)  # forces that no turn changes
+        lift = np.where(wanted, np.divide(wanting, tangent, out=nowhere, where=tangent != 0.0), 0.0)
         deflection = np.abs(at.residual + at.reach * approach[..., None])
         approach = approach + lift
         if not np.all(np.isfinite(approach)):

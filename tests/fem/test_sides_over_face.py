@@ -62,10 +62,18 @@ def test_pressed_gears_are_the_same_seen_from_either_side(tight):
     assert not np.allclose(first[0].sum(axis=-2)[..., 0], first[0].sum(axis=-2)[..., -1], rtol=0.1)
 
 
-@pytest.mark.parametrize("torque", [0.0, 50.0, -50.0])
-def test_forces_balance_the_torque_and_nothing_overlaps(tight, torque):
+@pytest.mark.parametrize(
+    ("torque", "model"),
+    [
+        (0.0, "walls"),
+        (50.0, "walls"),
+        (-50.0, "walls"),
+        pytest.param(50.0, "free-ends", marks=pytest.mark.slow),
+    ],
+)
+def test_forces_balance_the_torque_and_nothing_overlaps(tight, torque, model):
     pair = tight[0]
-    over = cycle(tight, torque, "free-ends", alignment=Alignment(20e-6))
+    over = cycle(tight, torque, model, alignment=Alignment(20e-6))
     assert over.converged, over.message
     moments = over._moments()[0] * np.array(pair.base_radii)[:, None]
     np.testing.assert_allclose(moments[0], abs(torque), atol=1e-9 * over.forces.max() * pair.base_radii[0])
