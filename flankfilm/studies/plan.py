@@ -103,10 +103,15 @@ def plan_of(study: StudyFile, folder: Path) -> Plan:
     scene = base_scene(study.scene, study.set, study.outputs, folder)
     keys = (*study.vary, *study.follow)
     varied = tuple(study.vary)
-    rows = []
-    for values in rows_of(study):
-        by_key = dict(zip(varied, values, strict=True))
-        rows.append((*values, *(following(by_key, rule) for rule in study.follow.values())))
+    rows = rows_of(study)
+    if study.follow:
+        rows = [
+            (
+                *values,
+                *(following(dict(zip(varied, values, strict=True)), rule) for rule in study.follow.values()),
+            )
+            for values in rows
+        ]
     plan = Plan(
         study.title,
         scene,

@@ -259,7 +259,7 @@ def test_any_scene_is_in_order_or_explained(text):
     judged(text)
 
 
-@FEW
+@settings(FEW, deadline=60_000)  # a million rows, the most there may be, take 11 s
 @given(studies())
 def test_any_study_is_in_order_or_explained(folder, text):
     read_study(folder, text)
