@@ -65,7 +65,8 @@ def cycle_of(
     edge = np.tile(candidates.edge, (setup.pitches, 1))
     on_path = candidates.touchable & ~candidates.edge
     rho = contact.flank_rho(number).reshape(2, -1, pairs)
-    lost = [loss.reshape(2, -1, pairs) for loss in contact.lever_loss(number)]
+    # of the normal forces themselves, where the solution has kappa F
+    lost = [(contact.lever_ratios * loss).reshape(2, -1, pairs) for loss in contact.lever_loss(number)]
     large = [] if refusal else _large(setup, contact, number, forces, bodies.plane)
     if large:
         warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
@@ -135,7 +136,9 @@ def _opposite(setup: MeshSetup, contact: ContactState, number: int) -> OppositeF
     if back is None:
         return flanks
     rho = back.flank_rho(number).reshape(flanks.flank_rho.shape)
-    lost, further = (loss.reshape(2, *flanks.forces.shape) for loss in back.lever_loss(number))
+    lost, further = (
+        (back.lever_ratios * loss).reshape(2, *flanks.forces.shape) for loss in back.lever_loss(number)
+    )
     places = np.where(np.isfinite(flanks.flank_rho), rho, np.nan)
     return replace(flanks, flank_rho=places, lever_loss=lost, further_lever_loss=further)
 
