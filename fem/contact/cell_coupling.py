@@ -37,24 +37,6 @@ class CellCoupling(Coupling):
         self.cells, self.blocks, self.unknowns = cells, blocks, unknowns
         self.start = START / unknowns
 
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """(positions, n, n)."""
-        return len(self.blocks), self.unknowns, self.unknowns
-
-    @cached_property
-    def finite(self) -> bool:
-        """Whether all numbers are finite."""
-        return all(bool(np.all(np.isfinite(block))) for block in self.blocks)
-
-    @property
-    def diagonal(self) -> Array:
-        """Deflection of each cell by its own unit force (positions, n) [m/N]; 1 where it cannot touch."""
-        deflections = np.ones((len(self.blocks), self.unknowns))
-        for row, cells, block in zip(deflections, self.cells, self.blocks, strict=True):
-            row[cells] = np.diagonal(block)
-        return deflections
-
     @cached_property
     def shortest(self) -> Array:
         """What each cell yields by its own unit force more than its neighbour does (positions, n) [m/N]."""

@@ -97,7 +97,7 @@ def share_between(
     _check(whole, stiff, clear, side)
     clear = clear + np.zeros_like(whole[..., None] + arms)
     contacts = StayingContacts(DenseCoupling(stiff), local, film, clear, arms, side)
-    path = _CentralPath.of(contacts, whole)
+    path = _CentralPath.of(contacts, whole, stiff)
     if np.any((whole == 0.0) & (path.play >= 0.0)):
         allowed = "must not be 0 where the gaps leave backlash: no flank bears there"
         raise LoadSharingError.at("force", "0", allowed, "give a force, or gaps that overlap")
@@ -133,10 +133,11 @@ class _CentralPath:
     length: Array
 
     @classmethod
-    def of(cls, contacts: StayingContacts, whole: Array) -> _CentralPath:
-        """Path of contacts under a torque."""
+    def of(cls, contacts: StayingContacts, whole: Array, bulk: Array) -> _CentralPath:
+        """Path of contacts with a linear compliance under a torque."""
         touchable, gaps, side = contacts.touchable, contacts.at_zero, contacts.side
-        bent = np.where(touchable, contacts.coupling.diagonal + np.zeros_like(gaps), np.nan)
+        diagonal = np.diagonal(bulk, axis1=-2, axis2=-1)
+        bent = np.where(touchable, diagonal + np.zeros_like(gaps), np.nan)
         first = (np.min(np.where(touchable & (side == sign), gaps, np.inf), axis=-1) for sign in (1.0, -1.0))
         play = np.asarray(sum(first))
         force = np.abs(whole) + np.maximum(-play, 0.0) / np.nanmin(bent, axis=-1)

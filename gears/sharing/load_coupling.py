@@ -49,21 +49,6 @@ class Coupling(ABC):
     apart: bool
     start: float
 
-    @property
-    @abstractmethod
-    def shape(self) -> tuple[int, ...]:
-        """(..., n, n)."""
-
-    @property
-    @abstractmethod
-    def finite(self) -> bool:
-        """Whether all numbers are finite."""
-
-    @property
-    @abstractmethod
-    def diagonal(self) -> Array:
-        """Deflection of each by its own unit force (..., n) [m/N]."""
-
     @abstractmethod
     def applied(self, forces: Array, wanted: Booleans, known: Array) -> Array:
         """Deflections (..., n) [m] by forces (..., n) [N], known where they are not wanted (...)."""
@@ -96,21 +81,6 @@ class DenseCoupling(Coupling):
 
     def __init__(self, matrix: Array) -> None:
         self.matrix = matrix
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """(..., n, n)."""
-        return self.matrix.shape
-
-    @property
-    def finite(self) -> bool:
-        """Whether all numbers are finite."""
-        return bool(np.all(np.isfinite(self.matrix)))
-
-    @property
-    def diagonal(self) -> Array:
-        """Deflection of each by its own unit force (..., n) [m/N]."""
-        return np.diagonal(self.matrix, axis1=-2, axis2=-1)
 
     def applied(self, forces: Array, wanted: Booleans, known: Array) -> Array:
         """As of ``Coupling``, of all positions unless none is wanted."""

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from base import Array, Faults
 from gears.sharing.active_set import LoadShare, share_forces
-from gears.sharing.load_coupling import Coupling, DenseCoupling
+from gears.sharing.load_coupling import DenseCoupling
 from gears.sharing.staying_contacts import DeflectionLaw, StayingContacts
 from gears.tooth.errors import LoadSharingError
 
@@ -16,12 +16,11 @@ __all__ = ["share_load"]
 
 def share_load(
     force: float | Array,
-    bulk: ArrayLike | Coupling,
+    bulk: ArrayLike,
     hertz: DeflectionLaw,
     gaps: ArrayLike,
     film: DeflectionLaw | None = None,
     levers: ArrayLike | None = None,
-    near: Array | None = None,
 ) -> LoadShare:
     """Share a force among coupled tooth pairs.
 
@@ -38,7 +37,7 @@ def share_load(
     ----------
     force : float or (...) array
         F, sum of the normal forces, all above 0 or all 0 [N].
-    bulk : (..., pairs, pairs) array, or Coupling
+    bulk : (..., pairs, pairs) array
         Linear compliance of teeth and bodies, symmetric and positive semidefinite [m/N].
     hertz : DeflectionLaw
         Local deflection of each pair, zero at zero force, with slope > 0.
@@ -49,8 +48,6 @@ def share_load(
         dry.
     levers : (..., pairs) array or None
         l_i > 0, lever arms of the forces over that for which F is given; 1 unless friction tilts them.
-    near : (..., pairs) array or None
-        Forces to begin with, such as those of a similar load; one at least is above 0 everywhere.
 
     Returns
     -------
@@ -80,21 +77,20 @@ def share_load(
     >>> share_load(1e4, [[2e-9, 0.0], [0.0, 2e-9]], NoHertz(), gaps=[0.0, 2e-6]).forces
     array([5500., 4500.])
     """
-    stiff = bulk if isinstance(bulk, Coupling) else DenseCoupling(np.asarray(bulk, dtype=float))
+    stiff = np.asarray(bulk, dtype=float)
     clear = np.asarray(gaps, dtype=float)
     whole = np.asarray(force, dtype=float)
     arms = np.ones(clear.shape[-1:]) if levers is None else np.asarray(levers, dtype=float)
     _check(whole, stiff, clear, arms)
     each = whole[..., None]
     clear = clear + np.zeros_like(each + arms)
-    problem = StayingContacts(stiff, hertz, film, clear, arms)
+    problem = StayingContacts(DenseCoupling(stiff), hertz, film, clear, arms)
     at_zero = _finite(problem.at_zero)
     if not whole.any():
-        return _first_touch(problem)
+        return _first_touch(problem, stiff)
     first = np.arange(clear.shape[-1]) == at_zero.argmin(axis=-1)[..., None]
     loads, approach = np.where(first, each / arms, 0.0), at_zero.min(axis=-1)
-    begin = (loads, approach) if near is None else (near + np.zeros_like(clear), None)
-    share = share_forces(problem, whole + np.zeros_like(approach), *begin)
+    share = share_forces(problem, whole + np.zeros_like(approach), loads, approach)
     if share is None:
         remedy = "check that bulk is positive semidefinite, hertz has a positive and film a negative slope"
         allowed = "must have deflections that grow with the force"
@@ -102,11 +98,11 @@ def share_load(
     return share
 
 
-def _first_touch(problem: StayingContacts) -> LoadShare:
+def _first_touch(problem: StayingContacts, bulk: Array) -> LoadShare:
     """Share at zero force: the approach at which the first pair touches, and the stiffness there."""
     at_zero, levers = problem.at_zero, problem.lever_ratios
     nothing = np.zeros_like(at_zero)
-    compliance = problem.coupling.diagonal + problem.laws(nothing)[1]
+    compliance = np.diagonal(bulk, axis1=-2, axis2=-1) + problem.laws(nothing)[1]
     first = np.arange(at_zero.shape[-1]) == at_zero.argmin(axis=-1)[..., None]
     slopes = np.where(first, 1.0 / (compliance + nothing), 0.0)
     return LoadShare(nothing, at_zero.min(axis=-1), (levers * slopes).sum(axis=-1), slopes, 0)
@@ -129,7 +125,7 @@ def _fit(*shapes: tuple[int, ...]) -> bool:
     return True
 
 
-def _check(force: Array, bulk: Coupling, gaps: Array, levers: Array) -> None:
+def _check(force: Array, bulk: Array, gaps: Array, levers: Array) -> None:
     """Refuse malformed input, all faults at once."""
     pairs = gaps.shape[-1:]
     with Faults(LoadSharingError) as faults:
@@ -150,5 +146,5 @@ def _check(force: Array, bulk: Coupling, gaps: Array, levers: Array) -> None:
         if not np.all((levers > 0.0) & np.isfinite(levers)):
             remedy = "reduce the friction, which tilts a force past the axis"
             faults.add("levers", "not above 0", "must be finite and more than 0", remedy)
-        if not bulk.finite:
+        if not np.all(np.isfinite(bulk)):
             faults.add("bulk", "not finite", "must be finite", "check the compliance matrix")
