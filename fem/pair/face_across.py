@@ -15,14 +15,13 @@ import numpy as np
 from base import Array, Integers, record
 from fem.influence.back_face import (
     BackEndCorrection,
-    BackEndCorrectionOfCells,
     BackHarmonics,
     back_end_correction,
     back_harmonics,
 )
 from fem.influence.gear_shape import MeshedShape
 from fem.influence.gear_store import GearStore
-from fem.pair.face_compliance import DIGITS
+from fem.pair.face_compliance import DIGITS, ends_over_cells
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
@@ -180,21 +179,9 @@ def pair_ends_across(
     compliance: Array = np.zeros((*leading, n, cells, m, cells))
     for gear in gears:
         flexible = (bodies.pinion, bodies.wheel)[gear]
-        ends = _ends(bodies.meshed[gear], widths[gear] / module, edges[gear] / module)
+        at_cells = widths[gear] / module, edges[gear] / module
+        ends = ends_over_cells("ends across", back_ends_of, bodies.meshed[gear], *at_cells)
         load, point = places.on_gear(gear)
         moved = ends.across(places.steps[gear], load / module, point / module)
         compliance += np.swapaxes(moved, -3, -2) / (flexible.law.plane_modulus * module)
     return compliance
-
-
-def _ends(meshed: MeshedShape, width: float, edges: Array) -> BackEndCorrectionOfCells:
-    """Free ends of a gear over cells, width and edges in modules."""
-    gears = GearStore()
-    long = float(f"{width:.{DIGITS}g}")
-
-    def over() -> BackEndCorrectionOfCells:
-        whole = back_ends_of(meshed, width, gears)
-        # the face that was solved ends where the cells do, to the last bit
-        return whole.over(np.clip(edges, -whole.half.ends[-1], whole.half.ends[-1]))
-
-    return gears.over_face("ends across", (meshed, long, edges.tobytes()), over)

@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 
 from base import Array
-from fem.influence.gear_face import (
-    AxialHarmonics,
-    EndCorrection,
-    EndCorrectionOfCells,
-    axial_harmonics,
-    end_correction,
-)
+from fem.influence.gear_face import AxialHarmonics, EndCorrection, axial_harmonics, end_correction
 from fem.influence.gear_shape import MeshedShape
 from fem.influence.gear_store import GearStore
 from fem.pair.wide_contact import beyond_logarithm
 
 if TYPE_CHECKING:
+    from fem.elasticity.free_ends import HalfFace
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["ends_of", "even_loads", "gear_waves", "pair_ends", "pair_waves", "waves_of"]
+__all__ = ["ends_of", "ends_over_cells", "even_loads", "gear_waves", "pair_ends", "pair_waves", "waves_of"]
+
+Cells = TypeVar("Cells", covariant=True)
 
 SPREAD = 0.15
 """Arc from the tip corner [modules] within which loads on cells count as there: the pressure of a contact beside a
@@ -153,7 +150,8 @@ def pair_ends(
     module = bodies.pair.module
     for gear in gears:
         flexible = (bodies.pinion, bodies.wheel)[gear]
-        ends = _ends(bodies.meshed[gear], widths[gear] / module, edges[gear] / module)
+        at_cells = widths[gear] / module, edges[gear] / module
+        ends = ends_over_cells("ends", ends_of, bodies.meshed[gear], *at_cells)
         unit, at = 1.0 / (flexible.law.plane_modulus * module), rho[gear] / module
         for contact in range(n):
             compliance[..., contact, :, contact, :] += unit * ends.own_at(at[..., contact])
@@ -167,14 +165,43 @@ def pair_ends(
     return compliance
 
 
-def _ends(meshed: MeshedShape, width: float, edges: Array) -> EndCorrectionOfCells:
-    """Free ends of a gear over cells, width and edges in modules."""
+class Ends(Protocol[Cells]):
+    """What free ends add over a face, of which cells are asked for."""
+
+    @property
+    def half(self) -> HalfFace:
+        """Half the face."""
+
+    def over(self, edges: Array) -> Cells:
+        """Over cells with edges in modules."""
+
+
+def ends_over_cells(
+    name: str,
+    solve: Callable[[MeshedShape, float, GearStore], Ends[Cells]],
+    meshed: MeshedShape,
+    width: float,
+    edges: Array,
+) -> Cells:
+    """Free ends of a gear over cells, solved where they are kept nowhere; width and edges in modules.
+
+    Parameters
+    ----------
+    name : str
+        Under which they are kept.
+    solve : callable
+        ``ends_of``, or its like for loads and deflections on two sides of the teeth.
+    meshed : MeshedShape
+    width : float
+    edges : (cells + 1,) array
+        Growing, from the middle of the face.
+    """
     gears = GearStore()
     long = float(f"{width:.{DIGITS}g}")
 
-    def over() -> EndCorrectionOfCells:
-        whole = ends_of(meshed, width, gears)
+    def over() -> Cells:
+        whole = solve(meshed, width, gears)
         # the face that was solved ends where the cells do, to the last bit
         return whole.over(np.clip(edges, -whole.half.ends[-1], whole.half.ends[-1]))
 
-    return gears.over_face("ends", (meshed, long, edges.tobytes()), over)
+    return gears.over_face(name, (meshed, long, edges.tobytes()), over)
