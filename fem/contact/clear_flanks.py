@@ -8,20 +8,21 @@ loads close is left open by it, no flank bears.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, Booleans
 from fem.contact.contact_sides import between
+from fem.contact.contact_state import ContactState
 from fem.contact.loaded_flanks import FlanksInPlace, flanks_in_place
-from fem.contact.opposite_flanks import OppositeShare
+from fem.contact.shared_contacts import SharedContacts
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
-    from gears import LoadShare
 
 __all__ = ["stays_clear"]
 
@@ -38,19 +39,16 @@ def stays_clear(
     force: Array,
     film: Film | None,
     flanks: FlanksInPlace,
-    alone: LoadShare,
-    cells: Array | None,
+    alone: ContactState,
     apart: Booleans,
     reach: float,
-) -> OppositeShare | None:
+) -> ContactState | None:
     """Gaps that are left on the other side at least, where nothing bears there under any torque; else None.
 
     Parameters
     ----------
-    setup, bodies, force, film, flanks, apart, reach
+    setup, bodies, force, film, flanks, alone, apart, reach
         As for ``share_with_opposite``.
-    alone, cells : LoadShare, (torques, pitches, positions, pairs, cells) array or None
-        Solution without the other side, and forces on its cells [N].
     """
     other = flanks_in_place(setup.opposite, film, reach)
     touch = flanks.candidates.gap.min(axis=-1, keepdims=True)
@@ -58,31 +56,23 @@ def stays_clear(
     if np.any(_less_film(flanks.candidates.gap - touch, flanks).min(axis=-1) + behind.min(axis=-1) < 0.0):
         return None  # both sides are pressed without a torque
     matrix = np.swapaxes(between(setup, bodies, flanks, other, before=True), 1, 2)
-    moved, sizes = ((part @ alone.forces[..., None])[..., 0] for part in (matrix, np.abs(matrix)))
+    cells, deflection = alone.contacts.forces, alone.share.transmission_error
+    # under the heaviest cell no more than under its line load on the whole face
+    loads = cells.shape[-1] * cells.max(axis=-1) if cells.shape[-1] > 1 else alone.share.forces
+    sizes = (np.abs(matrix) @ loads[..., None])[..., 0]
+    moved = -sizes if cells.shape[-1] > 1 else (matrix @ loads[..., None])[..., 0]
     doubt = np.full(sizes.shape, DOUBT)
     if setup.moving_contact:  # both sides roll on, by D and by D + j
-        turn = alone.transmission_error + max(setup.pair.backlash, 0.0)
+        turn = deflection + max(setup.pair.backlash, 0.0)
         doubt += (ROLLED / setup.pair.module * turn)[..., None]
-    if cells is not None:  # under the heaviest cell no more than under its line load on the whole face
-        heaviest = cells.shape[-1] * cells.max(axis=-1)
-        sizes = (np.abs(matrix) @ heaviest[..., None])[..., 0]
-        moved = -sizes
-    clearance = behind + alone.transmission_error[..., None] + moved - doubt * sizes
+    clearance = behind + deflection[..., None] + moved - doubt * sizes
     if not np.all((clearance > 0.0) | apart[:, None, None, None]):
         return None
-    nothing, edges = np.zeros_like(clearance), np.zeros(int(other.candidates.edge.sum()))
-    closing = bodies.turning * force[:, None, None] - alone.transmission_error - touch[..., 0]
-    return OppositeShare(
-        other.candidates,
-        other.lever_ratios,
-        other.tilted_lever_ratios,
-        edges,
-        nothing,
-        nothing,
-        clearance,
-        np.zeros(touch.shape[:-1]),
-        (closing - setup.pair.backlash).max(axis=(1, 2)),
-    )
+    touched = deflection + setup.pair.backlash + touch[..., 0] + other.candidates.gap.min(axis=-1)
+    nothing = np.zeros_like(clearance)
+    share = replace(alone.share, forces=nothing, pair_stiffness=nothing, transmission_error=-touched)
+    closing = bodies.turning * force[:, None, None] - touched
+    return ContactState(setup.opposite, other, None, SharedContacts.even(share, clearance), closing)
 
 
 def _less_film(gap: Array, flanks: FlanksInPlace) -> Array:

@@ -127,6 +127,12 @@ class ContactSides:
         able = [side.candidates.touchable & ~side.candidates.edge for side in self.flanks]
         return np.concatenate(able, axis=-1)
 
+    @property
+    def play(self) -> Array:
+        """Turn between the first touches of both sides (pitches, positions) [m]."""
+        touches = (side.candidates.gap.min(axis=-1) for side in self.flanks)
+        return np.asarray(self.setups[0].pair.backlash + sum(touches))
+
     def share(self, force: Array) -> LoadShare:
         """Share forces (torques, 1 or pitches, 1 or positions) [N]."""
         arguments = self.oil, self.tilted_lever_ratios

@@ -2,71 +2,111 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, record
-from fem.contact.face_share import FaceShare
+from fem.contact.loaded_flanks import FlanksInPlace, LoadedFlanks
 from fem.contact.moved_side import MovedSide
 from fem.contact.moving_corners import DEEPEST
-from fem.contact.opposite_flanks import OppositeShare
-from fem.laws.contact_candidates import ContactCandidates
-from gears.sharing.active_set import LoadShare
+from fem.contact.shared_contacts import SharedContacts
+from fem.laws.mesh_setup import MeshSetup
 
-__all__ = ["ContactState"]
+if TYPE_CHECKING:
+    from fem.contact.contact_sides import ContactSides
+    from fem.laws.contact_candidates import ContactCandidates
+    from fem.pair.pair_compliance import PairCompliance
+    from gears import LoadShare
+
+__all__ = ["ContactState", "contact_state"]
 
 FAR_APART = 0.5
 """Deflection of shafts in modules above which teeth mesh on another path."""
 
+NOTHING = 1e-14
+"""Overlap that is rounding [m]."""
+
+LIMITS = (
+    "a tip edge presses over more than the strips cover; reduce the torque",
+    "the deflection closes gaps more than a base pitch outside the path, where no contact was looked for; reduce the "
+    "torque or the deviations",
+    "a chamfer's face touches before its corner does, for which there is no law; reduce the torque",
+)
+"""What the flanks that a torque loads must not do."""
+
+LIMITS_BEHIND = (
+    "a tip edge of a back flank presses over more than the strips cover; give more backlash",
+    "back flanks overlap by more than was looked for outside the path; give more backlash",
+    "the face of a chamfer touches on a back flank, for which there is no law; give more backlash",
+)
+"""The same of those on the other side."""
+
 
 @record
 class ContactState:
-    """Solution of the contact for all torques.
+    """Contacts on one side of the teeth, solved for all torques; those on the other side are seen in the mirror.
 
     Leading dimensions of shares are (torques, pitches, positions).
 
     Attributes
     ----------
-    candidates : ContactCandidates
-        Contacts that may bear.
-    share : LoadShare
-        Forces, times ``lever_ratios``; of contacts that stay where moving ones did not settle.
-    lever_ratios, tilted_lever_ratios : (positions, pairs) arrays
-        kappa of the normal force, and levers of the force that friction tilts, over kappa r_b1.
-    largest : (edges,) array
-        Force up to which the laws of the tip edges hold [N].
+    setup : MeshSetup
+        With these flanks loaded.
+    flanks : FlanksInPlace
+    side : MovedSide or None
+        What moving contacts are solved with; None where contacts stay.
+    contacts : SharedContacts
+        Forces, times ``lever_ratios``, and the turn that closes gaps on this side; of contacts that stay where moving
+        ones did not settle.
     closing : (torques, pitches, positions) array
-        Deflection without the wind-up of the hubs [m].
-    open : (torques, pitches, positions, pairs) array
-        Gap that remains where a pair does not bear [m].
+        That turn without the wind-up of the hubs [m].
     settled : bool
         Whether moving contacts converged.
-    side : MovedSide or None
-        What moving contacts of the loaded side are solved with; None where contacts stay.
-    lost : two (2, torques, pitches, positions, pairs) arrays or None
-        Parts of both base radii by which levers of forces, and of further ones, are shorter where contacts move.
-    face : FaceShare or None
-        Forces on the cells of the face.
-    opposite : OppositeShare or None
+    rest : (pitches, positions) array or 0.0
+        Turn without torque, from where the loaded flanks touch: not 0 where teeth overlap that are pressed together
+        [m].
+    unshared : tuple of int
+        Numbers of the torques for which no load sharing of both sides was found.
+    opposite : ContactState or None
         Flanks on the other side, where they were looked at.
-    back : ContactState or None
-        Moving flanks on the other side, seen in the mirror, with the turn D' and its slopes.
     """
 
-    candidates: ContactCandidates
-    share: LoadShare
-    lever_ratios: Array
-    tilted_lever_ratios: Array
-    largest: Array
+    setup: MeshSetup
+    flanks: FlanksInPlace
+    side: MovedSide | None
+    contacts: SharedContacts
     closing: Array
-    open: Array
     settled: bool = True
-    side: MovedSide | None = None
-    lost: tuple[Array, Array] | None = None
-    face: FaceShare | None = None
-    opposite: OppositeShare | None = None
-    back: ContactState | None = None
+    rest: Array | float = 0.0
+    unshared: tuple[int, ...] = ()
+    opposite: ContactState | None = None
+
+    @property
+    def candidates(self) -> ContactCandidates:
+        """Contacts that may bear."""
+        return self.flanks.candidates
+
+    @property
+    def share(self) -> LoadShare:
+        """Share of the pairs."""
+        return self.contacts.share
+
+    @property
+    def lever_ratios(self) -> Array:
+        """Kappa of the normal forces (positions, pairs)."""
+        return self.flanks.lever_ratios if self.side is None else self.side.lever_ratios
+
+    @property
+    def tilted_lever_ratios(self) -> Array:
+        """Levers of the forces that friction tilts, over kappa r_b1 (positions, pairs)."""
+        return self.flanks.tilted_lever_ratios if self.side is None else self.side.tilted_lever_ratios
+
+    @property
+    def bears(self) -> bool:
+        """Whether a flank on this side bears anywhere."""
+        return bool(np.any(self.share.forces > 0.0))
 
     @property
     def touch(self) -> Array:
@@ -75,60 +115,59 @@ class ContactState:
 
     def deflection(self, number: int) -> Array:
         """Turn under a torque less that without any, on shafts that are held (pitches, positions) [m]."""
-        moved = self.share.transmission_error[number]
-        return np.asarray(moved if self.opposite is None else moved - self.opposite.rest)
+        return np.asarray(self.share.transmission_error[number] - self.rest)
+
+    def bent(self, number: int) -> Array | float:
+        """By how much more the pinion turns before flanks touch (pitches, positions) [m], because of the shafts."""
+        shafts = self.contacts.shafts
+        return 0.0 if shafts is None else shafts.touch[number]
 
     def turn(self, number: int) -> Array:
         """Turn of the pinion under a torque, from where gears without deviations touch (pitches, positions) [m]."""
-        bent = 0.0 if self.face is None else self.face.bent(number)
-        return np.asarray(self.share.transmission_error[number] + bent + self.touch)
+        return np.asarray(self.share.transmission_error[number] + self.bent(number) + self.touch)
 
-    def moments(self, loaded: Array, other: Array | None, lost: Array, behind: Array | float) -> Array:
-        """Sums of forces kappa F, or of their slopes, by their levers about pinion and wheel (2, positions).
+    def cell_forces(self, number: int) -> Array:
+        """Normal forces on cells under a torque (pitches, positions, pairs, cells) [N]."""
+        return np.asarray(self.contacts.forces[number] / self.lever_ratios[..., None])
 
-        Parameters
-        ----------
-        loaded : (positions, pairs) array
-            Of the loaded flanks.
-        other : (positions, pairs) array or None
-            Of those on the other side, which turn the gears the other way.
-        lost, behind : (2, positions, pairs) arrays
-            Parts of the levers of either side that contacts which move lose.
+    def moments(self, number: int) -> tuple[Array, Array]:
+        """Sums of forces kappa F, and of their slopes by D, by their levers about both gears (2, positions).
+
+        In the first pitch; flanks on the other side turn the gears the other way.
         """
-        sums = _levered(self.candidates, self.lever_ratios, loaded, lost)
-        if other is not None and self.opposite is not None:
-            sums = sums - _levered(self.opposite.candidates, self.opposite.lever_ratios, other, behind)
-        return sums
+        forces, slopes = self._levered(number)
+        if self.opposite is not None:
+            back_forces, back_slopes = self.opposite._levered(number)
+            forces, slopes = forces - back_forces, slopes + back_slopes
+        return forces, slopes
 
-    @cached_property
-    def _lever_losses(self) -> tuple[Array, Array]:
-        nothing = np.zeros((2, *self.share.forces.shape))
-        if self.side is None or self.lost is None:
-            return nothing, nothing
-        turned = np.stack([self.side.turned_levers(), np.zeros_like(self.lever_ratios)])[:, None, None]
-        half, whole = (loss + turned for loss in self.lost)
-        return half, whole
+    def _levered(self, number: int) -> tuple[Array, Array]:
+        """The same of this side, slopes by the turn that closes its gaps."""
+        parts = zip(
+            (self.share.forces[number, 0], self.share.pair_stiffness[number, 0]),
+            self.lever_loss(number)[:, :, 0],
+            strict=True,
+        )
+        first, second = (
+            np.sum(
+                (np.where(each != 0.0, self.candidates.lever, 0.0) / self.lever_ratios - lost) * each, axis=-1
+            )
+            for each, lost in parts
+        )
+        return first, second
 
-    def lever_loss(self, number: int) -> tuple[Array, Array]:
+    def lever_loss(self, number: int) -> Array:
         """Parts of both base radii by which levers of forces, and of further ones, are shorter.
 
-        (2, pitches, positions, pairs) each, nothing for contacts that stay: half of what tilted flanks take from
-        further forces, and what the pinion's corner gains by the turn D.
+        (2, 2, pitches, positions, pairs), nothing for contacts that stay: half of what tilted flanks take from further
+        forces, and what the pinion's corner gains by the turn D.
         """
-        first, second = self._lever_losses
-        return first[:, number], second[:, number]
-
-    def lever_loss_behind(self, number: int) -> tuple[Array, Array]:
-        """The same of the flanks on the other side."""
-        if self.back is not None:
-            return self.back.lever_loss(number)
-        nothing = np.zeros((2, 1, 1, 1))
-        return nothing, nothing
+        return self.contacts.lost[:, :, number]
 
     def torques(self, number: int) -> Array:
         """Torque of each pair over the pinion's base radius (pitches, positions, pairs) [N]."""
         return np.asarray(
-            self.share.forces[number] * (self.tilted_lever_ratios - self.lever_loss(number)[0][0])
+            self.share.forces[number] * (self.tilted_lever_ratios - self.lever_loss(number)[0, 0])
         )
 
     def flank_rho(self, number: int) -> Array:
@@ -136,16 +175,17 @@ class ContactState:
         force, approach = self.share.forces[number], self.share.transmission_error[number]
         if self.side is None:
             return np.repeat(self.candidates.rho[:, None], len(force), axis=1)
-        return self.side.rho(force, approach if self.face is None else approach + self.face.turned(number))
+        return self.side.rho(
+            force, approach + (self.setup.face.least_gap(self.setup.pair) + self.bent(number))
+        )
 
     def shafts_give_way(self, number: int) -> float:
         """Maximum deflection of both shafts on the face over the module; 0 of rigid ones."""
-        held = None if self.face is None else self.face.shafts
-        return 0.0 if held is None else float(np.max(held.most[number]))
+        shafts = self.contacts.shafts
+        return 0.0 if shafts is None else float(np.max(shafts.most[number]))
 
     def refusal(self, number: int) -> str:
         """Why the solution for a torque is not to be believed, empty if it is."""
-        candidates, turned = self.candidates, self.share.forces[number]
         if not self.settled:
             most = 1e3 * np.max(self.share.transmission_error)
             return (
@@ -159,26 +199,80 @@ class ContactState:
             )
         deepest = float(np.max(self.share.transmission_error[number]))
         corners = self.side is not None and self.side.own is not None
-        if self.side is not None and corners and deepest > DEEPEST * self.side.setup.pair.module:
+        if corners and deepest > DEEPEST * self.setup.pair.module:
             return (
                 f"a deflection of {1e3 * deepest:.2g} mm is more than a quarter of the module, up to which corners "
                 "that move have laws; reduce the torque, or let contacts stay"
             )
-        if candidates.edge.any() and np.any(turned[..., candidates.edge] > self.largest):
-            return "a tip edge presses over more than the strips cover; reduce the torque"
-        if np.max(self.closing[number] + self.touch) > candidates.reach_gap:
+        return self._beyond(number, LIMITS) or self._refused_with_opposite(number)
+
+    def _refused_with_opposite(self, number: int) -> str:
+        """Why flanks on both sides are not to be believed together."""
+        other = self.opposite
+        if other is None:
+            return ""
+        if number in self.unshared:
+            return "no load sharing with back flanks was found; give more backlash, or reduce the torque"
+        touched = np.any(other.share.forces[number] > 0.0) or np.any(other.contacts.open[number] < -NOTHING)
+        if self.setup.face.on_shafts and touched:
             return (
-                "the deflection closes gaps more than a base pitch outside the path, where no contact was looked "
-                "for; reduce the torque or the deviations"
+                "flanks on both sides bear, which is not known on shafts that give way; give more backlash, or leave "
+                "the shafts out"
             )
-        if np.any(turned[..., candidates.chamfered] > 0):
-            return "a chamfer's face touches before its corner does, for which there is no law; reduce the torque"
-        return "" if self.opposite is None else self.opposite.refusal(number)
+        return other._beyond(number, LIMITS_BEHIND)
+
+    def _beyond(self, number: int, limits: tuple[str, str, str]) -> str:
+        """Which limit of the laws or of the candidates is passed, empty if none is."""
+        candidates, turned = self.candidates, self.share.forces[number]
+        largest = self.flanks.largest if isinstance(self.flanks, LoadedFlanks) else 0.0
+        if candidates.edge.any() and np.any(turned[..., candidates.edge] > largest):
+            return limits[0]
+        if np.max(self.closing[number] + self.touch) > candidates.reach_gap:
+            return limits[1]
+        return limits[2] if np.any(turned[..., candidates.chamfered] > 0.0) else ""
 
 
-def _levered(
-    candidates: ContactCandidates, lever_ratios: Array, forces: Array, lost: Array | float = 0.0
-) -> Array:
-    """Sum by the levers of the normals (2, positions)."""
-    lever = np.where(forces != 0.0, candidates.lever, 0.0) / lever_ratios
-    return np.asarray(np.sum((lever - lost) * forces, axis=-1))
+def contact_state(
+    bodies: PairCompliance,
+    force: Array,
+    sides: ContactSides,
+    contacts: SharedContacts,
+    moved: tuple[MovedSide, ...] = (),
+    *,
+    settled: bool = True,
+    rest: Array | float = 0.0,
+    unshared: tuple[int, ...] = (),
+) -> ContactState:
+    """Solution of one side of the teeth, or of both.
+
+    Parameters
+    ----------
+    bodies : PairCompliance
+    force : (torques,) array
+        [N]
+    sides : ContactSides
+    contacts : SharedContacts
+        Of the pairs on all sides, one after the other.
+    moved : tuple of MovedSide
+        Of each side; none where contacts stay.
+    settled, rest, unshared
+        As of ``ContactState``.
+    """
+    turn, count = contacts.share.transmission_error, sides.count
+    ways = ((slice(count), turn, 1.0), (slice(count, None), -(turn + sides.play), -1.0))
+    states = [
+        ContactState(
+            setup,
+            flanks,
+            side,
+            contacts.of_side(pairs, approach, sign),
+            approach - sign * (bodies.turning * force[:, None, None]),
+            settled,
+            rest,
+            unshared,
+        )
+        for setup, flanks, side, (pairs, approach, sign) in zip(
+            sides.setups, sides.flanks, moved or (None, None), ways, strict=False
+        )
+    ]
+    return replace(states[0], opposite=states[1] if len(states) > 1 else None)

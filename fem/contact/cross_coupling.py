@@ -10,7 +10,7 @@ from base import Array, Booleans, Integers, record
 from fem.contact.cell_coupling import ChangedCells, solved_one_by_one
 from gears.sharing.load_coupling import DenseCoupling, Jacobian
 
-__all__ = ["CellCross", "CrossCoupling", "PlaneCross"]
+__all__ = ["CellCross", "CrossCoupling", "DenseCross"]
 
 
 class CrossCoupling(Protocol):
@@ -24,8 +24,8 @@ class CrossCoupling(Protocol):
 
 
 @record
-class PlaneCross:
-    """Between pairs whose loads are even: matrices (3, positions, n, m), all positions together."""
+class DenseCross:
+    """Matrices (3, positions, n, m), all positions together."""
 
     matrices: Array
 

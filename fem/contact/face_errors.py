@@ -18,7 +18,15 @@ if TYPE_CHECKING:
     from fem.pair.face_setting import FaceSetting
     from gears import LoadShare
 
-__all__ = ["FEW_CELLS", "CellErrors", "cell_errors", "face_load_factors", "greatest_error", "half_as_many"]
+__all__ = [
+    "FEW_CELLS",
+    "CellErrors",
+    "cell_errors",
+    "face_load_factors",
+    "greatest_error",
+    "half_as_many",
+    "no_errors",
+]
 
 LEFT = 1.0 / sqrt(3.0)
 """Part of what twice as many cells changed that is left of stiffness and deflection.
@@ -72,6 +80,12 @@ class CellErrors:
         return {
             name: Scatter(*(float(size) for size in each[:, torque])) for name, each in self.scatter.items()
         }
+
+
+def no_errors(torques: int) -> CellErrors:
+    """Errors of loads that are even along the face, of a single cell: none."""
+    none = np.zeros(torques)
+    return CellErrors(none, none, none, none, {}, none, none, none)
 
 
 def half_as_many(face: FaceSetting) -> tuple[FaceSetting, float]:

@@ -9,17 +9,16 @@ import numpy as np
 
 from base import Array, Integers, record
 from fem.contact.cell_coupling import CellCoupling
-from fem.contact.face_share import FaceShare, of_pairs, settled_gaps
 from fem.contact.moved_side import MovedSide
 from fem.contact.moving_contacts import MovingContacts
+from fem.contact.shared_contacts import SharedContacts, of_pairs, settled_gaps
 from fem.pair.face_shafts import HeldShafts, joined, shafts_under_face
 from gears.sharing.active_set import ContactForces, LoadShare, share_forces
 
 if TYPE_CHECKING:
-    from fem.laws.mesh_setup import MeshSetup
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["MovedShare", "moved_share"]
+__all__ = ["moved_share"]
 
 
 class Rolling(ContactForces, Protocol):
@@ -35,40 +34,17 @@ class Rolling(ContactForces, Protocol):
 class Moving(Protocol):
     """Flanks whose contacts move, on one side of the teeth or on both."""
 
-    @property
-    def setup(self) -> MeshSetup:
-        """Of the loaded side."""
+    def contacts(self, bodies: PairCompliance, rise: Array, strip: float = 0.0) -> Rolling:
+        """Put contacts together."""
 
-    def contacts(self, bodies: PairCompliance, rise: Array | None = None, strip: float = 0.0) -> Rolling:
-        """Put contacts together: pairs in the plane, or their cells."""
-
-
-@record
-class MovedShare:
-    """Contacts that move, solved.
-
-    Attributes
-    ----------
-    share : LoadShare
-        Of the pairs.
-    open : (torques, pitches, positions, pairs) array
-        Gap that is left where a pair does not bear [m].
-    lost : two (2, torques, pitches, positions, pairs) arrays
-        Parts of both base radii by which levers of forces, and of further ones, are shorter.
-    face : FaceShare or None
-        Forces on cells, where there are any.
-    """
-
-    share: LoadShare
-    open: Array
-    lost: tuple[Array, Array]
-    face: FaceShare | None = None
+    def turned_levers(self) -> Array:
+        """Part of the pinion's base radius by which levers about the wheel's axis are longer (positions, pairs)."""
 
 
 def moved_share(
-    flanks: Moving, bodies: PairCompliance, whole: Array, stays: LoadShare, over: FaceShare | None
-) -> MovedShare | None:
-    """Solve with contacts that move.
+    flanks: Moving, bodies: PairCompliance, whole: Array, stays: SharedContacts
+) -> SharedContacts | None:
+    """Solve with contacts that move, for all torques with strips of one width together.
 
     Parameters
     ----------
@@ -76,61 +52,52 @@ def moved_share(
     bodies : PairCompliance
     whole : (torques, ...) array
         Torques over the base radius [N].
-    stays, over : LoadShare, FaceShare or None
-        Of contacts that stay, and of their cells: what is begun with, and whose errors are taken over.
+    stays : SharedContacts
+        Of contacts that stay: what is begun with, and whose errors are taken over.
 
     Returns
     -------
-    MovedShare or None
+    SharedContacts or None
         None where Newton's method does not settle: the deflection is far beyond the first order.
     """
-    whole = whole + np.zeros_like(stays.stiffness)
-    if over is not None:
-        return _over_face(flanks, bodies, whole, stays, over)
-    contacts = flanks.contacts(bodies)
-    share = share_forces(contacts, whole, stays.forces, stays.transmission_error)
-    if share is None:
-        return None
-    open_ = contacts.unloaded(share.forces, share.transmission_error, contacts.all_bent(share.forces))
-    iterations = share.iterations + stays.iterations
-    return MovedShare(replace(share, iterations=iterations), open_, contacts.lever_losses(share))
-
-
-def _over_face(
-    flanks: Moving, bodies: PairCompliance, whole: Array, stays: LoadShare, over: FaceShare
-) -> MovedShare | None:
-    """Solve on cells, for all torques with strips of one width together."""
-    forces, remaining_gaps = np.zeros_like(over.forces), np.zeros_like(over.forces)
-    lost = tuple(np.zeros((2, *over.forces.shape[:-1])) for _ in range(2))
+    whole = whole + np.zeros_like(stays.share.stiffness)
+    forces, remaining_gaps, lost = (
+        np.zeros_like(array) for array in (stays.forces, stays.remaining_gaps, stays.lost)
+    )
     order, shares, held = [], [], []
-    for strip in np.unique(over.strips):
-        torques = np.flatnonzero(over.strips == strip)
-        rise, near, asked = over.rise[torques], over.forces[torques], whole[torques]
+    for strip in np.unique(stays.strips):
+        torques = np.flatnonzero(stays.strips == strip)
+        rise, near, asked = stays.rise[torques], stays.forces[torques], whole[torques]
         contacts = flanks.contacts(bodies, rise, float(strip))
         solved: _Solved | None
-        if isinstance(flanks, MovedSide) and over.shafts is not None:
+        if isinstance(flanks, MovedSide) and stays.shafts is not None:
             assert isinstance(contacts, MovingContacts)
             solved = _on_shafts(flanks, contacts, asked, near)
         else:
-            share = _solved(contacts, asked, near, stays.transmission_error[torques])
+            share = _solved(contacts, asked, near, stays.share.transmission_error[torques])
             solved = (
                 None
                 if share is None
-                else _Solved(share, _open(contacts, share), contacts.lever_losses(share))
+                else _Solved(share, _open(contacts, share, near.shape[-1] == 1), contacts.lever_losses(share))
             )
         if solved is None:
             return None
         forces[torques] = solved.share.forces.reshape(near.shape)
         remaining_gaps[torques] = settled_gaps(solved.open.reshape(near.shape) + rise, forces[torques])
-        for lost_part, loss in zip(lost, solved.lost, strict=True):
-            lost_part[:, torques] = loss
+        lost[:, :, torques] = solved.lost
         held += [] if solved.shafts is None else [solved.shafts]
         shares.append(of_pairs(solved.share, near.shape[-1]))
         order.append(torques)
     back = np.argsort(np.concatenate(order))
-    reached = joined(held, back) if held else None
-    face = replace(over, forces=forces, remaining_gaps=remaining_gaps, shafts=reached)
-    return MovedShare(_in_order(shares, back), face.open, (lost[0], lost[1]), face)
+    lost[:, 0] += flanks.turned_levers()
+    return replace(
+        stays,
+        share=_in_order(shares, back, stays.share.iterations),
+        forces=forces,
+        remaining_gaps=remaining_gaps,
+        lost=lost,
+        shafts=joined(held, back) if held else None,
+    )
 
 
 @record
@@ -146,7 +113,6 @@ class _Solved:
 def _on_shafts(side: MovedSide, contacts: MovingContacts, whole: Array, near: Array) -> _Solved | None:
     """Solve on shafts that give way, held where the load brings them."""
     setup, lever_ratios = side.setup, side.lever_ratios
-    assert setup.face is not None
     shafts = shafts_under_face(setup.face, setup.pair)
     assert shafts is not None
     # corners touch at the approach of the flanks, to which shafts do not contribute
@@ -171,25 +137,25 @@ def _on_shafts(side: MovedSide, contacts: MovingContacts, whole: Array, near: Ar
     return _Solved(share, open_, lost, brought)
 
 
-def _open(contacts: Rolling, share: LoadShare) -> Array:
+def _open(contacts: Rolling, share: LoadShare, even: bool = False) -> Array:
     """Gaps that a share leaves to cells that do not bear (..., n) [m]."""
     bent = contacts.all_bent(share.forces)
     gaps = contacts.unloaded(share.forces, share.transmission_error, bent)
-    return np.where(contacts.touchable, gaps, np.inf)
+    return np.where(contacts.touchable | even, gaps, np.inf)
 
 
 def _solved(contacts: Rolling, whole: Array, near: Array, approach: Array | None) -> LoadShare | None:
     """Forces on cells, from those of contacts that stay (torques, ..., pairs, cells), or from as much spread evenly."""
     even = np.repeat(near.mean(axis=-1, keepdims=True), near.shape[-1], axis=-1)
-    for start in (near, even):
+    for start in (near,) if np.array_equal(near, even) else (near, even):
         share = share_forces(contacts, whole, start.reshape(*near.shape[:-2], -1), approach)
         if share is not None:
             return share
     return None
 
 
-def _in_order(shares: list[LoadShare], order: Integers) -> LoadShare:
-    """Shares of some torques each, as one of all."""
+def _in_order(shares: list[LoadShare], order: Integers, before: int) -> LoadShare:
+    """Shares of some torques each, as one of all, with iterations before them."""
     names = ("forces", "transmission_error", "stiffness", "pair_stiffness")
     columns = {name: np.concatenate([getattr(share, name) for share in shares])[order] for name in names}
-    return replace(shares[0], **columns, iterations=max(share.iterations for share in shares))
+    return replace(shares[0], **columns, iterations=before + max(share.iterations for share in shares))

@@ -1,4 +1,4 @@
-"""Flanks of one side of the teeth whose contacts move: what they are solved with, in the plane and on cells."""
+"""Flanks of one side of the teeth whose contacts move: what they are solved with."""
 
 from __future__ import annotations
 
@@ -19,11 +19,12 @@ from fem.contact.moving_coupling import cell_roll, other_pairs, tooth_smoothing
 from fem.contact.partial_cells import PartialCells, partial_cells
 from fem.laws.local_law import PairLaws
 from fem.laws.mesh_setup import MeshSetup
-from gears.sharing.load_coupling import DenseCoupling
+from gears.sharing.load_coupling import Coupling, DenseCoupling
 
 if TYPE_CHECKING:
     from fem.laws.edge_tables import EdgeTables
     from fem.pair.pair_compliance import PairCompliance
+    from gears.sharing.staying_contacts import JointLaw
 
 __all__ = ["MovedSide", "moved_side"]
 
@@ -79,34 +80,8 @@ class MovedSide:
         """Levers over kappa r_b1 (positions, pairs) at D = 0, where what corners add by D is not counted yet."""
         return self.flanks.tilted_lever_ratios if self.own is None else self.own.tilted_lever_ratios
 
-    def contacts(
-        self, bodies: PairCompliance, rise: Array | None = None, strip: float = 0.0
-    ) -> MovingContacts:
-        """Put the contacts together, in the plane or on cells of the face; arguments as of ``on_cells``."""
-        return self.in_plane() if rise is None else self.on_cells(bodies, rise, strip)
-
-    def in_plane(self) -> MovingContacts:
-        """Put the contacts together that bear alike over the face: a single cell."""
-        gaps, smoothing = self.gaps, np.ones((*self.lever_ratios.shape, 1, 1))
-        touchable = np.isfinite(gaps)
-        return MovingContacts(
-            1,
-            DenseCoupling(self.matrix),
-            DenseCoupling(self.moves.roll),
-            self.laws,
-            self.flanks.oil,
-            np.where(touchable, gaps, 0.0),
-            np.zeros(self.lever_ratios.shape),
-            0.0,
-            touchable,
-            self.held_levers,
-            self.moves,
-            smoothing,
-            self.own,
-        )
-
-    def on_cells(self, bodies: PairCompliance, rise: Array, strip: float = 0.0) -> MovingContacts:
-        """Put contacts on cells together; cells that touch over a part of their length do as those that stay.
+    def contacts(self, bodies: PairCompliance, rise: Array, strip: float = 0.0) -> MovingContacts:
+        """Put the contacts together; cells that touch over a part of their length do as those that stay.
 
         Parameters
         ----------
@@ -116,20 +91,27 @@ class MovedSide:
         strip : float
             Half-width of strips of pressure over a cell's length.
         """
-        assert self.setup.face is not None
         face, flanks, candidates = replace(self.setup.face, strip=strip), self.flanks, self.flanks.candidates
         gaps, along = self.gaps, along_cells(face, self.setup.pair, candidates)
         touchable = np.repeat(candidates.touchable & np.isfinite(candidates.gap), face.cells, axis=-1)
         short = rise.reshape(*rise.shape[:-2], -1)
         clear = np.where(np.isfinite(gaps), gaps, 0.0)[..., None] + along
-        stiff = cell_coupling(face, bodies, candidates, flanks.lever_ratios, flanks.matrix)
-        stays = partial_cells(CellLaws(flanks.laws, face.cells), stiff, short)
-        turned = flanks.lever_ratios / self.lever_ratios
+        laws: JointLaw = CellLaws(self.laws, face.cells)
+        # those of all positions are solved together where they are few
+        coupling: Coupling = DenseCoupling(self.matrix)
+        roll: Coupling = DenseCoupling(self.moves.roll)
+        if not face.even_load:
+            stiff = cell_coupling(face, bodies, candidates, flanks.lever_ratios, flanks.matrix)
+            turned = flanks.lever_ratios / self.lever_ratios
+            coupling = other_pairs(stiff, candidates.touchable, turned, flanks.matrix, self.matrix)
+            roll = cell_roll(face, bodies, candidates, self.moves)
+            stays = partial_cells(CellLaws(flanks.laws, face.cells), stiff, short)
+            laws = PartialCells(CellLaws(self.laws, face.cells), short, stays.whole)
         return MovingContacts(
             face.cells,
-            other_pairs(stiff, candidates.touchable, turned, flanks.matrix, self.matrix),
-            cell_roll(face, bodies, candidates, self.moves),
-            PartialCells(CellLaws(self.laws, face.cells), short, stays.whole),
+            coupling,
+            roll,
+            laws,
             None if flanks.oil is None else CellLaws(flanks.oil, face.cells),
             np.where(touchable, clear.reshape(*gaps.shape[:-1], -1) - short, 0.0),
             along.reshape(*along.shape[:-2], -1),

@@ -24,22 +24,23 @@ from base import Array, Booleans, record
 from fem.contact.cell_coupling import CellCoupling
 from fem.contact.cell_matrix import cross_coupling
 from fem.contact.contact_sides import between, both_sides
-from fem.contact.cross_coupling import CellCross, CrossCoupling, PlaneCross
+from fem.contact.contact_state import ContactState, contact_state
+from fem.contact.cross_coupling import CellCross, CrossCoupling, DenseCross
 from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
-from fem.contact.moved_share import MovedShare, moved_share
+from fem.contact.moved_share import moved_share
 from fem.contact.moved_side import MovedSide, moved_side
 from fem.contact.moving_contacts import MovingContacts
-from fem.contact.opposite_flanks import SharedContacts
+from fem.contact.opposite_flanks import at_rest, beside_nothing, nothing_overlaps
+from fem.contact.shared_contacts import SharedContacts, share_staying
 from gears.sharing.active_set import Linearised, LoadShare
 
 if TYPE_CHECKING:
-    from fem.contact.face_share import FaceShare
     from fem.laws.edge_tables import EdgeTables
     from fem.laws.local_law import Film
     from fem.laws.mesh_setup import MeshSetup
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["BothMoved", "MovedSides", "MovingSides", "both_moved"]
+__all__ = ["MovedSides", "MovingSides", "both_moved"]
 
 STEP = 1e-3
 """Part of the module over which X is differentiated by the place."""
@@ -52,7 +53,6 @@ class MovingSides:
     Attributes
     ----------
     front, back : MovingContacts
-        On cells of the face, or in the plane.
     play : (pitches, positions) array
         Turn between the first touches of both sides [m].
     cross : CrossCoupling
@@ -166,17 +166,13 @@ class MovedSides:
     front: MovedSide
     back: MovedSide
 
-    @property
-    def setup(self) -> MeshSetup:
-        """Of the loaded side."""
-        return self.front.setup
-
-    def contacts(self, bodies: PairCompliance, rise: Array | None = None, strip: float = 0.0) -> MovingSides:
+    def contacts(self, bodies: PairCompliance, rise: Array, strip: float = 0.0) -> MovingSides:
         """As of ``MovedSide``, with the pairs on the other side after those of the loaded one."""
-        sides, setup = (self.front, self.back), self.setup
+        sides, setup = (self.front, self.back), self.front.setup
         count = len(self.front.flanks.candidates.offset)
         step, turn = STEP * setup.pair.module, np.array([1.0, 0.0])[:, None, None]
-        face = None if setup.face is None or rise is None else replace(setup.face, strip=strip)
+        parts = rise[..., :count, :], rise[..., count:, :]
+        here, there = (side.contacts(bodies, part, strip) for side, part in zip(sides, parts, strict=True))
 
         def rolled(by: tuple[float, float]) -> tuple[LoadedFlanks, LoadedFlanks]:
             first, second = (
@@ -190,55 +186,29 @@ class MovedSides:
             return first, second
 
         ways = ((0.0, 0.0), (step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step))
-        cross: CrossCoupling
-        if face is None or rise is None:
-            still, *others = (between(setup, bodies, *rolled(by)) for by in ways)
-            contacts = [side.in_plane() for side in sides]
-            cross = PlaneCross(np.stack([still, *_derivatives(others, step)]))
-        else:
+        places = [rolled(by) for by in ways]
+        still, *others = (between(setup, bodies, *flanks) for flanks in places)
+        cross: CrossCoupling = DenseCross(np.stack([still, *_derivatives(others, step)]))
+        if isinstance(here.coupling, CellCoupling) and isinstance(there.coupling, CellCoupling):
+            face = replace(setup.face, strip=strip)
             still_cells, *other_cells = (
-                cross_coupling(face, bodies, setup.back, flanks, between(setup, bodies, *flanks))
-                for flanks in map(rolled, ways)
+                cross_coupling(face, bodies, setup.back, flanks, matrix)
+                for flanks, matrix in zip(places, (still, *others), strict=True)
             )
-            parts = rise[..., :count, :], rise[..., count:, :]
-            contacts = [side.on_cells(bodies, part, strip) for side, part in zip(sides, parts, strict=True)]
-            by_position = (_derivatives(others, step) for others in zip(*other_cells, strict=True))
+            by_position = (_derivatives(blocks, step) for blocks in zip(*other_cells, strict=True))
             slopes = zip(*by_position, strict=True)
-            here, there = (each.coupling for each in contacts)
-            assert isinstance(here, CellCoupling)
-            assert isinstance(there, CellCoupling)
-            cross = CellCross((here.cells, there.cells), (still_cells, *slopes))
+            cross = CellCross((here.coupling.cells, there.coupling.cells), (still_cells, *slopes))
         touches = (side.flanks.candidates.gap.min(axis=-1) for side in sides)
-        play = np.asarray(setup.pair.backlash + sum(touches))
-        return MovingSides(contacts[0], contacts[1], play, cross)
+        return MovingSides(here, there, np.asarray(setup.pair.backlash + sum(touches)), cross)
+
+    def turned_levers(self) -> Array:
+        """As of ``MovedSide``."""
+        return np.concatenate([side.turned_levers() for side in (self.front, self.back)], axis=-1)
 
 
 def _derivatives(values: Sequence[Array], step: float) -> tuple[Array, Array]:
     """By both places, from values ahead of and behind either."""
     return (values[0] - values[1]) / (2 * step), (values[2] - values[3]) / (2 * step)
-
-
-@record
-class BothMoved:
-    """Flanks on both sides that move, solved.
-
-    Attributes
-    ----------
-    sides : MovedSides
-    moved : MovedShare
-        Of the pairs on both sides, one after the other; of contacts that stay where ``settled`` is False.
-    behind : (torques, pitches, positions) array
-        D' by which the other flanks have rolled on [m].
-    rest : (pitches, positions) array
-        D without torque, as of ``fem.contact.opposite_flanks.OppositeShare`` [m].
-    settled : bool
-    """
-
-    sides: MovedSides
-    moved: MovedShare
-    behind: Array
-    rest: Array
-    settled: bool
 
 
 def both_moved(
@@ -247,72 +217,64 @@ def both_moved(
     force: Array,
     film: Film | None,
     flanks: LoadedFlanks,
-    alone: tuple[MovedSide, LoadShare, FaceShare | None] | None,
+    alone: ContactState | None,
     apart: Booleans,
     reach: float,
     tables: EdgeTables,
-) -> BothMoved:
-    """Share forces (torques,) [N] among flanks on both sides that move.
+) -> ContactState:
+    """Share forces (torques,) [N] among flanks on both sides that move; of contacts that stay where it fails.
 
     Parameters
     ----------
     setup, bodies, force, film, flanks, apart, reach, tables
         As for ``fem.contact.opposite_flanks.share_with_opposite``.
-    alone : (MovedSide, LoadShare, FaceShare or None) or None
-        The loaded side by itself, solved, and its cells; None without a torque.
+    alone : ContactState or None
+        The loaded side by itself, solved; None without a torque.
     """
     most = float(np.max(force))
     other = loaded_flanks(setup.opposite, bodies, film, reach, most, tables)
     staying = both_sides(setup, bodies, flanks, other)
-    front = moved_side(setup, bodies, flanks, most, tables) if alone is None else alone[0]
+    known = None if alone is None else alone.side
+    front = known or moved_side(setup, bodies, flanks, most, tables)
     sides = MovedSides(front, moved_side(setup.opposite, bodies, other, most, tables))
     asked = np.where(apart, np.min(force, where=~apart, initial=np.inf), force)[:, None, None]
-    asked = asked + np.zeros(staying.gaps.shape[:-1])
-    clear, kept, begin = np.zeros(asked.shape, dtype=bool), None, None
+    clear, kept, rolled = np.zeros((len(force), 1, 1), dtype=bool), None, None
     if alone is not None:
-        kept = SharedContacts.alone(staying, bodies, alone[1], alone[2], even=False)
-        clear = _clear(sides, bodies, kept) | apart[:, None, None]
+        kept = beside_nothing(staying, bodies, alone.contacts, even=False)
+        rolled = _rolled(sides, bodies, kept)
+        clear = nothing_overlaps(staying, rolled)
+        if not setup.face.even_load:  # cells are solved anew at all positions
+            clear[...] = clear.all()
+        clear = clear | apart[:, None, None]
+
+    def solve(whole: Array) -> SharedContacts | None:
+        return moved_share(sides, bodies, whole, share_staying(bodies, whole, staying))
+
+    moved: SharedContacts | None
     if kept is not None and clear.all():
-        moved, settled = _unmoved(kept), True
+        moved, begin = kept, kept
     else:
-        begin = SharedContacts.jointly(staying, bodies, asked)
-        solved = moved_share(sides, bodies, asked, begin.share, begin.face)
-        if solved is None and kept is not None and kept.face is None:
-            solved = moved_share(sides, bodies, asked, begin.with_kept(kept, ~clear).share, None)
-        settled = solved is not None
-        moved = _unmoved(begin) if solved is None else solved
-        if kept is not None and solved is not None:
-            moved = _with_kept(moved, kept, clear if kept.face is None else clear & apart[:, None, None])
-    rest = np.zeros(staying.gaps.shape[:-1])
-    pressed = staying.pressed()
-    if settled and pressed.any():
-        small = np.where(pressed, 0.0, max(float(np.min(force)), 1.0))[None]
-        light = SharedContacts.jointly(staying, bodies, small)
-        free = moved_share(sides, bodies, small, light.share, light.face)
-        settled = free is not None
-        rest = rest if free is None else np.where(pressed, free.share.transmission_error[0], 0.0)
-    touches = (side.flanks.candidates.gap.min(axis=-1) for side in (sides.front, sides.back))
-    play = setup.pair.backlash + sum(touches)
-    return BothMoved(sides, moved, -(moved.share.transmission_error + play), rest, settled)
+        begin = share_staying(bodies, asked, staying)
+        moved = moved_share(sides, bodies, asked, begin)
+        if moved is None and kept is not None:
+            moved = moved_share(sides, bodies, asked, begin.with_kept(kept, ~clear))
+        if moved is not None and rolled is not None:
+            moved = moved.with_kept(rolled, clear)
+    rest = None if moved is None else at_rest(staying, force, solve)
+    return contact_state(
+        bodies,
+        force,
+        staying,
+        begin if moved is None else moved,
+        (sides.front, sides.back),
+        settled=rest is not None,
+        rest=0.0 if rest is None else rest,
+    )
 
 
-def _clear(sides: MovedSides, bodies: PairCompliance, kept: SharedContacts) -> Booleans:
-    """Where nothing overlaps on the other side (torques, pitches, positions).
-
-    On cells nowhere unless nothing does at all, by the compliance where nothing has rolled on.
-    """
-    if kept.face is not None:
-        return np.full(kept.clear.shape, bool(kept.clear.all()))
-    return replace(kept, open=sides.contacts(bodies).open(kept.share)).clear
-
-
-def _unmoved(shared: SharedContacts) -> MovedShare:
-    """A share whose levers lose nothing."""
-    nothing = np.zeros((2, *shared.share.forces.shape))
-    return MovedShare(shared.share, shared.open, (nothing, nothing), shared.face)
-
-
-def _with_kept(moved: MovedShare, kept: SharedContacts, clear: Booleans) -> MovedShare:
-    """The same with the loaded side alone where that holds."""
-    mixed = replace(kept, share=moved.share, face=moved.face, open=moved.open).with_kept(kept, clear)
-    return replace(moved, share=mixed.share, face=mixed.face)
+def _rolled(sides: MovedSides, bodies: PairCompliance, kept: SharedContacts) -> SharedContacts:
+    """A loaded side with the gaps of the other where both have rolled on; those of cells unchanged."""
+    if not sides.front.setup.face.even_load:
+        return kept
+    gaps = sides.contacts(bodies, kept.rise).open(kept.share)
+    return replace(kept, remaining_gaps=gaps[..., None])

@@ -10,18 +10,17 @@ import numpy as np
 from base import Array
 from fem.contact.clear_flanks import stays_clear
 from fem.contact.contact_sides import one_side
-from fem.contact.contact_state import ContactState
-from fem.contact.face_share import FaceShare, share_over_face
+from fem.contact.contact_state import ContactState, contact_state
 from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
 from fem.contact.moved_share import moved_share
-from fem.contact.moved_side import MovedSide, moved_side
-from fem.contact.moving_sides import BothMoved, both_moved
-from fem.contact.opposite_flanks import OppositeShare, on_shafts, share_with_opposite
+from fem.contact.moved_side import moved_side
+from fem.contact.moving_sides import both_moved
+from fem.contact.opposite_flanks import share_with_opposite
+from fem.contact.shared_contacts import share_staying
 from fem.laws.contact_candidates import REACHES
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
-from gears.sharing.active_set import LoadShare
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
@@ -83,48 +82,13 @@ def solve_one_side(
     setup: MeshSetup, bodies: PairCompliance, force: Array, flanks: LoadedFlanks, tables: EdgeTables
 ) -> ContactState:
     """Solution with the loaded flanks alone."""
-    whole = force[:, None, None]
-    share, over, open_ = _staying(setup, bodies, whole, flanks)
-    closing = share.transmission_error - bodies.turning * whole
-    state = ContactState(
-        flanks.candidates,
-        share,
-        flanks.lever_ratios,
-        flanks.tilted_lever_ratios,
-        flanks.largest,
-        closing,
-        open_,
-        face=over,
-    )
+    sides, whole = one_side(setup, flanks), force[:, None, None]
+    stays = share_staying(bodies, whole, sides)
     if not setup.moving_contact:
-        return state
+        return contact_state(bodies, force, sides, stays)
     side = moved_side(setup, bodies, flanks, float(np.max(force)), tables)
-    state = replace(
-        state, side=side, lever_ratios=side.lever_ratios, tilted_lever_ratios=side.tilted_lever_ratios
-    )
-    moved = moved_share(side, bodies, whole, share, over)
-    if moved is None:
-        return replace(state, settled=False)
-    return replace(
-        state,
-        share=moved.share,
-        closing=moved.share.transmission_error - bodies.turning * whole,
-        open=moved.open,
-        lost=moved.lost,
-        face=moved.face,
-    )
-
-
-def _staying(
-    setup: MeshSetup, bodies: PairCompliance, whole: Array, flanks: LoadedFlanks
-) -> tuple[LoadShare, FaceShare | None, Array]:
-    """Share of contacts that stay, of their cells where the face has any, and gaps that are left."""
-    sides = one_side(setup, flanks)
-    if setup.face is None:
-        share = sides.share(whole)
-        return share, None, sides.open(share)
-    share, over = share_over_face(bodies, whole, sides)
-    return share, over, over.open
+    moved = moved_share(side, bodies, whole, stays)
+    return contact_state(bodies, force, sides, moved or stays, (side,), settled=moved is not None)
 
 
 def _two_sided(
@@ -143,93 +107,15 @@ def _two_sided(
         apart = np.array([bool(alone.refusal(n)) for n in range(len(force))])
         if apart.all():
             return alone
-        over = None if alone.face is None else alone.face.forces
-        clear = (
-            None
-            if setup.two_sided
-            else stays_clear(setup, bodies, force, film, flanks, alone.share, over, apart, reach)
-        )
-        if clear is not None:
-            return replace(alone, opposite=clear)
-    if setup.moving_contact and not on_shafts(setup):
-        by_itself = None
-        if alone is not None and alone.side is not None:
-            by_itself = alone.side, alone.share, alone.face
-        solved = both_moved(setup, bodies, force, film, flanks, by_itself, apart, reach, tables)
-        return _moved_solution(setup, bodies, force, solved, alone)
-    kept = None if alone is None else (alone.share, alone.face)
-    solved_sides = share_with_opposite(setup, bodies, force, film, flanks, kept, apart, reach, tables)
-    share, opposite = solved_sides.share, solved_sides.opposite
-    if alone is not None and not opposite.bears:
-        return replace(alone, opposite=opposite)
-    return ContactState(
-        flanks.candidates,
-        share,
-        flanks.lever_ratios,
-        flanks.tilted_lever_ratios,
-        flanks.largest,
-        share.transmission_error - bodies.turning * force[:, None, None],
-        solved_sides.open,
-        alone is None or alone.settled,
-        face=solved_sides.face,
-        opposite=opposite,
+        if not setup.two_sided:
+            clear = stays_clear(setup, bodies, force, film, flanks, alone, apart, reach)
+            if clear is not None:
+                return replace(alone, opposite=clear)
+    # on shafts that give way it is looked at whether the other side would bear, which is refused
+    solve = both_moved if setup.moving_contact and not setup.face.on_shafts else share_with_opposite
+    state = solve(setup, bodies, force, film, flanks, alone, apart, reach, tables)
+    if alone is None or (state.opposite is not None and state.opposite.bears):
+        return state
+    return replace(
+        alone, opposite=state.opposite, settled=state.settled, rest=state.rest, unshared=state.unshared
     )
-
-
-def _moved_solution(
-    setup: MeshSetup, bodies: PairCompliance, force: Array, solved: BothMoved, alone: ContactState | None
-) -> ContactState:
-    """Solution with flanks on both sides that move, for forces (torques,) [N]."""
-    share, whole, face = solved.moved.share, force[:, None, None], solved.moved.face
-    front, back = solved.sides.front, solved.sides.back
-    loaded, behind = slice(0, front.lever_ratios.shape[-1]), slice(front.lever_ratios.shape[-1], None)
-    turn, touch = share.transmission_error, front.flanks.candidates.gap.min(axis=-1)
-    closing = bodies.turning * whole - turn - touch - setup.pair.backlash
-    opposite = OppositeShare(
-        back.flanks.candidates,
-        back.lever_ratios,
-        back.tilted_lever_ratios,
-        back.flanks.largest,
-        share.forces[..., behind],
-        share.pair_stiffness[..., behind],
-        solved.moved.open[..., behind],
-        solved.rest,
-        closing.max(axis=(1, 2)),
-        face=None if face is None else face.of_pairs(behind),
-    )
-    if alone is not None and not opposite.bears:
-        return replace(alone, opposite=opposite, settled=solved.settled)
-    states = []
-    for side, pairs, approach, sign in (
-        (front, loaded, turn, 1.0),
-        (back, behind, solved.behind, -1.0),
-    ):
-        part = replace(
-            share,
-            forces=share.forces[..., pairs],
-            transmission_error=approach,
-            pair_stiffness=sign * share.pair_stiffness[..., pairs],
-        )
-        half, further = (loss[..., pairs] for loss in solved.moved.lost)
-        states.append(
-            ContactState(
-                side.flanks.candidates,
-                part,
-                side.lever_ratios,
-                side.tilted_lever_ratios,
-                side.flanks.largest,
-                approach - bodies.turning * whole,
-                solved.moved.open[..., pairs],
-                solved.settled,
-                side,
-                (half, further),
-                None if face is None else replace(face.of_pairs(pairs), least=_least(side)),
-            )
-        )
-    return replace(states[0], opposite=opposite, back=states[1])
-
-
-def _least(side: MovedSide) -> float:
-    """Turn at which the first place of the face touches [m]."""
-    face = side.setup.face
-    return 0.0 if face is None else face.least_gap(side.setup.pair)

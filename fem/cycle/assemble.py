@@ -56,24 +56,21 @@ def cycle_of(
     stiffness = contact.share.stiffness[number].ravel()
     refusal = contact.refusal(number)
     bad = np.nan if refusal else 0.0
-    by_cells = (
-        0.0
-        if contact.face is None
-        else float(contact.face.errors.relative[number] + contact.face.errors.ends[number])
-    )
+    errors = contact.contacts.errors
+    by_cells = float(errors.relative[number] + errors.ends[number])
     forces = (turned / contact.lever_ratios).reshape(-1, pairs) + bad
     edge = np.tile(candidates.edge, (setup.pitches, 1))
     on_path = candidates.touchable & ~candidates.edge
     rho = contact.flank_rho(number).reshape(2, -1, pairs)
     # of the normal forces themselves, where the solution has kappa F
-    lost = [(contact.lever_ratios * loss).reshape(2, -1, pairs) for loss in contact.lever_loss(number)]
+    lost = (contact.lever_ratios * contact.lever_loss(number)).reshape(2, 2, -1, pairs)
     large = [] if refusal else _large(setup, contact, number, forces, bodies.plane)
     if large:
         warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
     held, supports = held_turns(bodies)
     approach = contact.share.transmission_error[number]
-    both_sides = opposite is not None and bool(np.any(opposite.forces[number] > 0.0))
-    behind = (opposite.candidates, opposite.forces[number]) if opposite is not None and both_sides else None
+    bearing = opposite if opposite is not None and np.any(opposite.share.forces[number] > 0.0) else None
+    behind = None if bearing is None else (bearing.candidates, bearing.share.forces[number])
     return MeshCycle(
         torque=torque,
         force=force,
@@ -115,39 +112,43 @@ def cycle_of(
         problem=None
         if refusal
         else ContactProblem(
-            replace(setup, two_sided=both_sides),
+            replace(setup, two_sided=bearing is not None),
             bodies,
             force,
             film,
             tolerance,
             tables=tables,
-            scatter=None if contact.face is None else contact.face.errors.of(number),
-            ends_error=0.0 if contact.face is None else float(contact.face.errors.ends[number]),
+            scatter=errors.of(number),
+            ends_error=float(errors.ends[number]),
         ),
         flank="back" if setup.back else "front",
-        opposite=_opposite(setup, contact, number) if both_sides else None,
+        opposite=None if bearing is None else _opposite(bearing, number),
     )
 
 
-def _opposite(setup: MeshSetup, contact: ContactState, number: int) -> OppositeFlanks:
-    """Flanks on the other side under one torque, where they bear."""
-    assert contact.opposite is not None
-    flanks, back = contact.opposite.flanks(number), contact.back
-    if back is None:
-        return flanks
-    rho = back.flank_rho(number).reshape(flanks.flank_rho.shape)
-    lost, further = (
-        (back.lever_ratios * loss).reshape(2, *flanks.forces.shape) for loss in back.lever_loss(number)
+def _opposite(contact: ContactState, number: int) -> OppositeFlanks:
+    """Flanks on the other side under one torque, where they bear; slopes by D, which opens their gaps."""
+    candidates, forces = contact.candidates, contact.share.forces[number]
+    (pitches, positions, pairs), ratios = forces.shape, contact.lever_ratios
+    rows = pitches * positions
+    lost = (ratios * contact.lever_loss(number)).reshape(2, 2, rows, pairs)
+    places = np.where(candidates.touchable, contact.flank_rho(number), np.nan)
+    return OppositeFlanks(
+        (forces / ratios).reshape(rows, pairs),
+        (-contact.share.pair_stiffness[number] / ratios).reshape(rows, pairs),
+        places.reshape(2, rows, pairs),
+        np.tile(candidates.edge, (pitches, 1)),
+        candidates.teeth,
+        candidates.lever,
+        np.where(forces > 0.0, 0.0, contact.contacts.open[number]).reshape(rows, pairs),
+        lost[0],
+        lost[1],
     )
-    places = np.where(np.isfinite(flanks.flank_rho), rho, np.nan)
-    return replace(flanks, flank_rho=places, lever_loss=lost, further_lever_loss=further)
 
 
 def _on_faces(contact: ContactState, number: int) -> Array:
-    """Forces kappa F of pairs (..., pairs), or of whole faces at the cells' line loads (cells, ..., pairs) [N]."""
-    if contact.face is None:
-        return np.asarray(contact.share.forces[number])
-    forces = contact.face.forces[number]
+    """Forces kappa F of whole faces at the cells' line loads (cells, ..., pairs) [N]."""
+    forces = contact.contacts.forces[number]
     return np.asarray(forces.shape[-1] * np.moveaxis(forces, -1, 0))
 
 
@@ -173,7 +174,7 @@ def _large(setup: MeshSetup, contact: ContactState, number: int, forces: Array, 
         remarks.append(
             f"the half-width of a contact is {wide:.2g} of its radius, not small as Hertz takes it"
         )
-    return remarks if contact.face is None else remarks + _short(contact.face.forces[number])
+    return remarks + _short(contact.contacts.forces[number])
 
 
 def _short(forces: Array) -> list[str]:
@@ -213,13 +214,13 @@ def _remarks(
             f"the teeth jam: without load their back flanks overlap by up to {overlap:.3g} um{left_out}"
         )
     opposite = contact.opposite
-    if opposite is not None and np.any(opposite.forces[number] > 0):
-        bearing = np.any(opposite.forces[number] > 0, axis=-1)
+    if opposite is not None and np.any(opposite.share.forces[number] > 0):
+        bearing = np.any(opposite.share.forces[number] > 0, axis=-1)
         remarks.append(
             f"flanks on both sides of the teeth bear at {bearing.sum()} of {bearing.size} positions"
         )
     elif opposite is not None:
-        clear = 1e6 * np.min(opposite.open[number])
+        clear = 1e6 * np.min(opposite.contacts.open[number])
         remarks.append(
             f"the backlash is less than the deflection, but back flanks stand clear by at least {clear:.3g} um"
             if clear >= 0.0

@@ -10,10 +10,10 @@ import numpy as np
 from base import Array, SolverError
 from fem.contact.contact_state import ContactState
 from fem.contact.face_errors import half_as_many
-from fem.contact.face_share import yielding_over_face
+from fem.contact.shared_contacts import yielding_over_face
 from fem.contact.solver import solve_contact
 from fem.laws.edge_tables import EdgeTables
-from fem.laws.local_law import Film, film_yielding
+from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
 from fem.laws.relieved_flanks import ends_of_flanks, starts_of_relief
 from fem.pair.pair_compliance import PairCompliance
@@ -93,7 +93,7 @@ class ContactProblem:
         others = [(replace(self, film=film), share) for film, share in self.varied]
         varied = tuple((other._alike(self.bodies, fine), share) for other, share in others)
         fewer = None
-        if self.setup.face is not None and self.scatter is not None:
+        if self.scatter:
             few, share = half_as_many(self.setup.face)
             problem = replace(self, setup=replace(self.setup, face=few))
             fewer = FewerCells(problem._alike(self.bodies, fine), share, self.scatter)
@@ -162,9 +162,9 @@ class ContactProblem:
         forces = state.share.forces[0, 0] / state.lever_ratios
         rho = state.flank_rho(0)[:, 0]
         whole = np.stack([state.torques(0)[0] / abs(self.force), forces, *rho], axis=-1)
-        if state.face is None:
+        if self.setup.face.even_load:
             return whole
-        cells = state.face.forces[0, 0] / state.lever_ratios[..., None]
+        cells = state.cell_forces(0)[0]
         return np.concatenate([whole, cells * cells.shape[-1] / self.setup.pair.face_width], axis=-1)
 
     def _curves(self, state: ContactState) -> Array:
@@ -182,24 +182,12 @@ class ContactProblem:
                 if size
                 else turned / turned.sum(axis=-1, keepdims=True)
             )
-            if state.face is None:
-                added = film_yielding(self.film, rho1, turned / state.lever_ratios, shares)
-            else:
-                forces = state.face.forces[0, 0] / state.lever_ratios[..., None]
-                added = yielding_over_face(self.film, rho1, forces, shares)
+            added = yielding_over_face(self.film, rho1, state.cell_forces(0)[0], shares)
             secant = size / (size / secant + added) if size else secant
         if self.setup.back:
             moved = -(self.setup.pair.backlash + moved)
-        lost, further = (loss[:, 0] for loss in state.lever_loss(0))
-        other, behind = state.opposite, [loss[:, 0] for loss in state.lever_loss_behind(0)]
-        moments = state.moments(turned, None if other is None else other.forces[0, 0], lost, behind[0])
+        moments, slopes = state.moments(0)
         moments = moments / size if size else np.zeros_like(moments)
-        slopes = state.moments(
-            share.pair_stiffness[0, 0],
-            None if other is None else other.pair_stiffness[0, 0],
-            further,
-            behind[1],
-        )
         curves = np.stack([moved, tangent, secant, *moments, *slopes])
         return curves if self.turn is None else _less(curves, self.force, self.turn, self.setup.pair.tight)
 
@@ -250,11 +238,11 @@ def _reserve(state: ContactState, force: float, setup: MeshSetup) -> Array:
     Which pair is nearest without load changes between pairs on the path only where flanks deviate.
     """
     size = float(np.mean(state.share.transmission_error))
-    loads, gaps = state.share.forces[0, 0], state.open[0, 0]
+    loads, gaps = state.share.forces[0, 0], state.contacts.open[0, 0]
     if setup.two_sided and state.opposite is not None:
         # both sides may be pressed together without a torque, or with next to none
-        loads = np.concatenate([loads, state.opposite.forces[0, 0]], axis=-1)
-        gaps = np.concatenate([gaps, state.opposite.open[0, 0]], axis=-1)
+        loads = np.concatenate([loads, state.opposite.share.forces[0, 0]], axis=-1)
+        gaps = np.concatenate([gaps, state.opposite.contacts.open[0, 0]], axis=-1)
         force, size = (
             float(loads.sum(axis=-1).mean()),
             float(loads.sum(axis=-1).mean() / np.mean(state.share.stiffness)),

@@ -17,7 +17,7 @@ from gears.pair.hertz import peak_pressure
 
 if TYPE_CHECKING:
     from fem.contact.contact_state import ContactState
-    from fem.contact.face_share import FaceShare
+    from fem.contact.shared_contacts import SharedContacts
     from fem.laws.mesh_setup import MeshSetup
 
 __all__ = ["FaceLoads", "face_loads"]
@@ -145,7 +145,7 @@ class FaceLoads(FaceCells):
 
 
 def face_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str) -> FaceLoads | None:
-    """Line loads of one torque of a solution; None where the face has no cells.
+    """Line loads of one torque of a solution; None where they are even along the face.
 
     Parameters
     ----------
@@ -155,11 +155,10 @@ def face_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         Of the torque.
     plane : {"strain", "stress"}
     """
-    over = contact.face
-    if over is None or setup.face is None:
+    if setup.face.even_load:
         return None
-    pair, cells = setup.pair, setup.face.cells
-    forces = (over.forces[number] / contact.lever_ratios[..., None]).reshape(-1, *over.forces.shape[-2:])
+    over, pair, cells = contact.contacts, setup.pair, setup.face.cells
+    forces = contact.cell_forces(number).reshape(-1, *over.forces.shape[-2:])
     factors = face_load_factors(forces)
     candidates, (rho1, rho2) = contact.candidates, contact.candidates.rho
     radius = np.where(candidates.touchable & ~candidates.edge, rho1 * rho2 / (rho1 + rho2), np.nan)
@@ -180,10 +179,10 @@ def face_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
     )
 
 
-def _shafts(setup: MeshSetup, over: FaceShare, number: int) -> dict[str, Any]:
+def _shafts(setup: MeshSetup, over: SharedContacts, number: int) -> dict[str, Any]:
     """What the shafts do, as fields of the record."""
     if over.shafts is None:
-        return {"shaft_misalignment": np.zeros((2, over.bent(number).size))}
+        return {"shaft_misalignment": np.zeros((2, over.share.stiffness[number].size))}
     held, error = over.shafts.at(number), over.errors
     sign = -1.0 if setup.back else 1.0
     return {

@@ -19,7 +19,7 @@ from fem.laws.edge_tables import EdgeTables, edge_tables
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import Deviations, MeshSetup
 from fem.pair.compliance import compliance as _compliance
-from fem.pair.face_setting import FREE_ENDS, face_setting
+from fem.pair.face_setting import EVEN, FREE_ENDS, face_setting
 from fem.pair.pair_compliance import PairCompliance
 from fem.pair.references import REFERENCES, default_reference
 
@@ -154,7 +154,7 @@ def mesh_cycle(
         friction,
         moving_contact=contacts_move(pair, moving_contact),
         base_pitch_difference=base_pitch_difference,
-        face=face_setting(pair, alignment, cells, face_model, shafts),
+        face=face_setting(pair, alignment, cells, face_model, shafts) or EVEN,
     )
     _check(setup, torque, compliance, film, reference, plane)
     watch = Stopwatch()
@@ -208,7 +208,7 @@ def _check(
     faults = Faults()
     ready = faults.instance("compliance", compliance, PairCompliance, "as of fem.compliance", optional=True)
     known = compliance if ready else None
-    if setup.face is not None and (plane if known is None else known.plane) != "strain":
+    if setup.face is not EVEN and (plane if known is None else known.plane) != "strain":
         faults.add("plane", plane, 'must be "strain" where the face has cells', "leave plane out")
     if reference is not None:
         faults.choice("reference", reference, REFERENCES)

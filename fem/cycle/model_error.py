@@ -32,8 +32,8 @@ class LoadedContacts:
     setup : MeshSetup
     bodies : PairCompliance
     candidates : ContactCandidates
-    force : (..., pairs) array, or (cells, ..., pairs) array
-        Forces times their levers over the base radius [N]; of whole faces at the line loads of the cells.
+    force : (cells, ..., pairs) array
+        Forces times their levers over the base radius, of whole faces at the line loads of the cells [N].
     approach : (...) array
         Deflection [m].
     load : float

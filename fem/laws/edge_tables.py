@@ -175,7 +175,7 @@ def edge_tables(setup: MeshSetup, bodies: PairCompliance) -> EdgeTables:
     bodies : PairCompliance
         The very record: tables that are kept hold theirs, so that no other one can take its place.
     """
-    if setup.removed is not None or setup.face is None:
+    if setup.removed is not None or setup.face.even_load:
         return EdgeTables(setup, bodies)
     return _TABLES.obtain((id(bodies), setup.rounds), lambda: EdgeTables(setup, bodies))
 

@@ -14,7 +14,7 @@ import numpy as np
 from base import Array, Faults, Integers, Limit, rounded_down
 from fem.laws.tip_contact import Removed
 from fem.laws.tip_geometry import TipRound, chamfer_length, tip_round
-from fem.pair.face_setting import FaceSetting
+from fem.pair.face_setting import EVEN, FaceSetting
 from gears import GearDeviations
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ class MeshSetup:
     base_pitch_difference: float = 0.0
     back: bool = False
     two_sided: bool = False
-    face: FaceSetting | None = None
+    face: FaceSetting = EVEN
 
     def at(self, position: Array) -> MeshSetup:
         """The same gears at given positions (n,) [base pitches] instead of equal intervals."""
@@ -82,7 +82,7 @@ class MeshSetup:
     @property
     def opposite(self) -> MeshSetup:
         """The same gears and positions with the other flanks loaded."""
-        face = None if self.face is None else self.face.opposite(self.pair.working_pressure_angle)
+        face = self.face.opposite(self.pair.working_pressure_angle)
         return replace(self, back=not self.back, face=face)
 
     @cached_property
@@ -119,7 +119,7 @@ class MeshSetup:
         faults.number("friction", self.friction, FRICTION)
         for name in ("beyond_path", "moving_contact"):
             faults.instance(name, getattr(self, name), bool, "True or False")
-        if self.face is not None:
+        if self.face is not EVEN:
             self.face.check(faults, self.pair, self.positions)
         numbers = tuple(self.first_teeth) if isinstance(self.first_teeth, Sequence) else ()
         if len(numbers) != 2 or any(isinstance(n, bool) or not isinstance(n, Integral) for n in numbers):

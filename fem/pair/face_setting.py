@@ -15,7 +15,7 @@ from gears.tooth.face import ALIGNED, STRAIGHT, Alignment, Lead
 if TYPE_CHECKING:
     from gears import GearPair
 
-__all__ = ["PLACES", "FaceSetting", "face_setting"]
+__all__ = ["EVEN", "PLACES", "FaceSetting", "face_setting"]
 
 USUAL = 64
 """Cells of the face unless they are given."""
@@ -54,6 +54,16 @@ class FaceSetting:
     model: str = FREE_ENDS
     shafts: tuple[Shaft | None, Shaft | None] = (None, None)
     strip: float = 0.0
+
+    @property
+    def even_load(self) -> bool:
+        """Whether loads are even along the face: a single cell, which is the plane."""
+        return self.cells == 1
+
+    @property
+    def on_shafts(self) -> bool:
+        """Whether shafts give way under the face."""
+        return self.shafts != (None, None)
 
     @property
     def coupled(self) -> tuple[Any, ...]:
@@ -131,6 +141,10 @@ class FaceSetting:
             for lead, width, offset in zip(self.leads, pair.face_widths, pair.face_offsets, strict=True)
         )
         return np.asarray(self.alignment.gap(z, pair.face_width, radius[..., None]) + removed)
+
+
+EVEN = FaceSetting(1, model=SLICES)
+"""The face of a mesh in the plane: one slice, which nothing couples to others."""
 
 
 def face_setting(

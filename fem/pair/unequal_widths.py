@@ -6,8 +6,8 @@ z_c of the cells, h wide, hold waves up to K = pi/h; with c(k) the answer to a w
     C_cd = c(K) delta_cd/h + sum_(k_m < K) (2 - delta_m0)/b_g [c(k_m) - c(K)] cos k_m z_c cos k_m z_d ,
 
 z from the end of its face. The sum's terms vanish towards K, so that cells need not divide the face; where they do,
-and for b_g = b, this is the cosine transform of equally wide gears (``fem.contact.face_share``), by which it replaces
-it here.
+and for b_g = b, this is the cosine transform of equally wide gears (``fem.contact.shared_contacts``), by which it
+replaces it here.
 """
 
 from __future__ import annotations

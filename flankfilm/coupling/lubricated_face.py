@@ -9,7 +9,7 @@ import numpy as np
 
 import ehl
 from base import Array, Stopwatch
-from fem.contact.face_share import yielding_over_face
+from fem.contact.shared_contacts import yielding_over_face
 from flankfilm.coupling.along_path import FilmAlongPath, gathered
 from flankfilm.coupling.cells import cells_of
 from flankfilm.coupling.cycle import MeshCycle

@@ -155,22 +155,24 @@ def test_flanks_that_stay_clear_are_known_without_their_laws(teeth):
     given, force = MeshSetup(pair, 12), np.array([50.0, 600.0]) / pair.base_radii[0]
     tables = EdgeTables(given, bodies)
     flanks = loaded_flanks(given, bodies, None, 0.6, float(force[1]), tables)
-    alone = solve_one_side(given, bodies, force, flanks, tables).share
+    alone = solve_one_side(given, bodies, force, flanks, tables)
     apart = np.zeros(2, dtype=bool)
-    clear = stays_clear(given, bodies, force, None, flanks, alone, None, apart, 0.6)
+    clear = stays_clear(given, bodies, force, None, flanks, alone, apart, 0.6)
     assert "back_flanks" not in vars(bodies)
-    shared = share_with_opposite(given, bodies, force, None, flanks, (alone, None), apart, 0.6, tables)
-    true = shared.opposite
-    assert np.all(clear.open <= true.open)
-    deflection = alone.transmission_error[..., None]
-    near = true.open < deflection  # no more is in doubt than a few per cent of what bends
+    true = share_with_opposite(given, bodies, force, None, flanks, alone, apart, 0.6, tables).opposite
+    least_gap, gap = clear.contacts.open, true.contacts.open
+    assert np.all(least_gap <= gap)
+    deflection = alone.share.transmission_error[..., None]
+    near = gap < deflection  # no more is in doubt than a few per cent of what bends
     bent = np.broadcast_to(deflection, near.shape)[near]
-    assert np.all(true.open[near] - clear.open[near] < 0.03 * bent)
-    np.testing.assert_array_equal(clear.reached, true.reached)
-    least = np.min(true.open[1])
+    assert np.all(gap[near] - least_gap[near] < 0.03 * bent)
+    np.testing.assert_allclose(clear.closing, true.closing, rtol=1e-12)
+    least = np.min(gap[1])
     for short, free in ((0.5, True), (1.0, False), (1.5, False)):
-        closer = replace(alone, transmission_error=alone.transmission_error - short * least)
-        known = stays_clear(given, bodies, force, None, flanks, closer, None, np.array([True, False]), 0.6)
+        turn = alone.share.transmission_error - short * least
+        share = replace(alone.share, transmission_error=turn)
+        closer = replace(alone, contacts=replace(alone.contacts, share=share))
+        known = stays_clear(given, bodies, force, None, flanks, closer, np.array([True, False]), 0.6)
         assert (known is not None) is free
 
 
@@ -204,10 +206,12 @@ def test_pressed_gears_rest_in_the_middle_where_they_are_their_own_mirror(tight)
     found = solve_contact(given.at(middle), bodies, np.array([0.0]), None)
     # the mean approach of both sides is zero, and both bear alike
     np.testing.assert_allclose(found.share.transmission_error[0, 0], -0.5 * pair.backlash, rtol=2e-4)
-    both = found.share.forces[0, 0].sum(axis=-1), found.opposite.forces[0, 0].sum(axis=-1)
+    both = found.share.forces[0, 0].sum(axis=-1), found.opposite.share.forces[0, 0].sum(axis=-1)
     np.testing.assert_allclose(*both, rtol=1e-9)
     np.testing.assert_allclose(
-        np.sort(found.share.forces[0, 0], axis=-1), np.sort(found.opposite.forces[0, 0], axis=-1), rtol=2e-3
+        np.sort(found.share.forces[0, 0], axis=-1),
+        np.sort(found.opposite.share.forces[0, 0], axis=-1),
+        rtol=2e-3,
     )
 
 
@@ -218,7 +222,7 @@ def test_reversal_of_pressed_gears(tight):
     back = solve_contact(replace(given, back=True).at(position), bodies, force, None)
     front = solve_contact(given.at((given.mirror - position) % 1.0), bodies, force, None)
     np.testing.assert_allclose(back.share.forces, front.share.forces, rtol=1e-9, atol=1e-6)
-    np.testing.assert_allclose(back.opposite.forces, front.opposite.forces, rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(back.opposite.share.forces, front.opposite.share.forces, rtol=1e-9, atol=1e-6)
 
 
 def test_forces_are_those_of_a_convex_program(tight):
@@ -228,7 +232,7 @@ def test_forces_are_those_of_a_convex_program(tight):
     flanks, other = (loaded_flanks(one, bodies, None, 0.6, force, tables) for one in (given, given.opposite))
     both = both_sides(given, bodies, flanks, other)
     found = solve_contact(given, bodies, np.array([force]), None)
-    forces = np.concatenate([found.share.forces, found.opposite.forces], axis=-1)[0, 0]
+    forces = np.concatenate([found.share.forces, found.opposite.share.forces], axis=-1)[0, 0]
     length = 1e-6
     for row in range(3):
         on = np.isfinite(both.gaps[0, row])

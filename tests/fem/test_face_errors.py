@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fem import PairCompliance, compliance, mesh_cycle
-from fem.contact import face_share
+from fem.contact import shared_contacts
 from fem.contact.face_errors import LEFT, cell_errors, greatest_error, half_as_many
 from fem.pair.face_setting import FREE_ENDS, WALLS, FaceSetting
 from gears import Alignment, Gear, GearPair, Lead
@@ -100,7 +100,9 @@ def test_errors_compare_the_greatest_loads_of_both_numbers_of_cells(bodies):
 def test_ends_that_change_nothing_add_no_error(bodies, monkeypatch):
     """Cells between walls, looked at as if their ends were free: the same without them, so that errors stay."""
     seen = []
-    monkeypatch.setattr(face_share, "cell_errors", lambda *given: seen.append(given) or cell_errors(*given))
+    monkeypatch.setattr(
+        shared_contacts, "cell_errors", lambda *given: seen.append(given) or cell_errors(*given)
+    )
     mesh_cycle(PAIR, 60.0, 4, bodies, cells=16, alignment=Alignment(20e-6), face_model="walls")
     over, face, fine, coarse = seen.pop()
     walls, free = (

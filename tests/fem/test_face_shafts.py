@@ -166,14 +166,14 @@ def test_the_torque_works_what_bodies_contacts_and_shafts_store(bodies, shafts, 
     given = MeshSetup(PAIR, 1, False, face=face).at(np.array([position]))
     force = PAIR.normal_force(TORQUE) * np.array([1.0 - change, 1.0 + change])
     found = solve_contact(given, bodies, force, None)
-    forces = found.face.forces[:, 0].reshape(2, 1, -1)
+    forces = found.contacts.forces[:, 0].reshape(2, 1, -1)
     assert np.all((forces > 0.0).sum(axis=-1) == cells * found.candidates.touchable.sum())
-    assert np.abs(found.face.shafts.tilt_touch).min() > 1e-7
+    assert np.abs(found.contacts.shafts.tilt_touch).min() > 1e-7
     flanks = loaded_flanks(given, bodies, None, 0.6, force[1], EdgeTables(given, bodies))
     coupling = cell_coupling(face, bodies, flanks.candidates, flanks.lever_ratios, flanks.matrix)
     every, nothing = np.ones((2, 1), dtype=bool), np.zeros_like(forces)
     stored = 0.5 * np.sum(forces * coupling.applied(forces, every, nothing), axis=-1)[:, 0]
-    loads = found.face.forces[:, 0, 0].sum(axis=1)
+    loads = found.contacts.forces[:, 0, 0].sum(axis=1)
     for gear, shaft in enumerate(shafts):
         on_face = face.middles(PAIR.face_width), PAIR.base_radii[gear], 0.0, PAIR.face_width
         between = shaft_over_face(shaft, *on_face).between

@@ -107,7 +107,7 @@ def problem(bodies, beyond=True):
     force, tables = TORQUE / PLASTIC.base_radii[0], EdgeTables(given, bodies)
     flanks = loaded_flanks(given, bodies, None, 0.6, force, tables)
     rise = np.full((1, 1, 4, flanks.candidates.touchable.shape[-1], CELLS), 2e-6)
-    cells = moved_side(given, bodies, flanks, force, tables).on_cells(bodies, rise)
+    cells = moved_side(given, bodies, flanks, force, tables).contacts(bodies, rise)
     draw = np.random.default_rng(1).uniform(
         0.2, 1.0, (1, 1, 4, flanks.candidates.touchable.shape[-1] * CELLS)
     )

@@ -49,7 +49,8 @@ def problem(bodies, beyond, positions=5):
     for setting in (given, given.opposite):
         flanks = loaded_flanks(setting, bodies, None, REACHES[0], force, tables)
         sides.append(moved_side(setting, bodies, flanks, force, tables))
-    return MovedSides(*sides).contacts(bodies)
+    pairs = sum(len(side.flanks.candidates.offset) for side in sides)
+    return MovedSides(*sides).contacts(bodies, np.zeros((1, 1, positions, pairs, 1)))
 
 
 @pytest.mark.parametrize("beyond", [False, True])
@@ -131,7 +132,7 @@ def test_pressed_gears_rest_in_the_middle_where_they_are_their_own_mirror(tight)
     found = solve_contact(given, tight, np.zeros(1), None)
     assert found.settled
     np.testing.assert_allclose(found.share.transmission_error[0, 0], 10e-6, rtol=2e-3)
-    front, back = (np.sort(one[0, 0], axis=-1) for one in (found.share.forces, found.opposite.forces))
+    front, back = (np.sort(one[0, 0], axis=-1) for one in (found.share.forces, found.opposite.share.forces))
     np.testing.assert_allclose(front[:, -2:], back[:, -2:], rtol=0.02)
 
 

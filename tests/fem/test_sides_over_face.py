@@ -53,8 +53,7 @@ def test_pressed_gears_are_the_same_seen_from_either_side(tight):
     setup = MeshSetup(pair, face=face, two_sided=True).at(np.linspace(0.02, 0.98, 5))
     here, there = (solve_contact(each, bodies, np.zeros(1), None) for each in (setup, setup.opposite))
     first, second = (
-        tuple(side.face.forces / side.lever_ratios[..., None] for side in (state, state.opposite))
-        for state in (here, there)
+        tuple(side.cell_forces(0)[None] for side in (state, state.opposite)) for state in (here, there)
     )
     size = first[0].max()
     np.testing.assert_allclose(first[0], second[1], rtol=1e-7, atol=1e-9 * size)
@@ -98,7 +97,7 @@ def test_axes_out_of_parallel_press_the_other_flanks_at_the_other_end(tight):
     pair, bodies = tight
     face = face_setting(pair, Alignment(20e-6), CELLS, "walls")
     state = solve_contact(MeshSetup(pair, 4, face=face), bodies, np.zeros(1), None)
-    front, back = (forces[0, 0].sum(axis=1) for forces in (state.face.forces, state.opposite.face.forces))
+    front, back = (side.contacts.forces[0, 0].sum(axis=1) for side in (state, state.opposite))
     half = CELLS // 2
     assert np.all(front[:, :half].sum(axis=-1) > 1.2 * front[:, half:].sum(axis=-1))
     assert np.all(back[:, half:].sum(axis=-1) > 1.02 * back[:, :half].sum(axis=-1))

@@ -8,7 +8,7 @@ It leaves ``.coverage`` and ``map.log`` in the folder ``out/planted``. Then as m
 
     python -m tests.planted plant --faults 300 --seed 1 --out planted.jsonl
 
-``--among ehl fem/contact/face_share.py`` draws them in these folders and files, ``--since REVISION`` in lines written
+``--among ehl fem/contact/solver.py`` draws them in these folders and files, ``--since REVISION`` in lines written
 since.
 
 A fault is seen when a test that passes without it fails, hangs or cannot be loaded. The share counts every fault that

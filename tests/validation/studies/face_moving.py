@@ -52,7 +52,7 @@ def deflection(found: ContactState) -> float:
 def figures(found: ContactState) -> tuple[float, float, float, float]:
     """Deflection from where the gears touch [um], tangent [N/um], face-load factor, greatest force on a cell."""
     assert not found.refusal(0), found.refusal(0)
-    forces = found.face.forces[0, 0, 0] / found.lever_ratios[0][:, None]
+    forces = found.cell_forces(0)[0, 0]
     return (
         1e6 * float(found.share.transmission_error[0, 0, 0]),
         1e-6 * float(found.share.stiffness[0, 0, 0]),
@@ -80,15 +80,15 @@ def rows(name: str, bodies: fem.PairCompliance, position: float, torque: float, 
         moved_side.tooth_smoothing = following(how)
         others.append(100 * (deflection(solved(bodies, position, torque, face, True)) / stays[0] - 1))
     moved_side.tooth_smoothing = smoothing
-    on_cells = moved_side.MovedSide.on_cells
+    own_contacts = moved_side.MovedSide.contacts
 
     def together(*args: object) -> MovingContacts:
-        contacts = on_cells(*args)
+        contacts = own_contacts(*args)
         return replace(contacts, along=np.zeros_like(contacts.along))
 
-    moved_side.MovedSide.on_cells = together
+    moved_side.MovedSide.contacts = together
     others.append(100 * (deflection(solved(bodies, position, torque, face, True)) / stays[0] - 1))
-    moved_side.MovedSide.on_cells = on_cells
+    moved_side.MovedSide.contacts = own_contacts
     print(
         f"{name:42s} D {stays[0]:8.3f} {change[0]:+.3f} %  tangent {stays[1]:8.2f} {change[1]:+.3f} %  "
         f"K {stays[2]:.4f} {moves[2]:.4f}  slices, mean, corners together {others[0]:+.3f} {others[1]:+.3f} "

@@ -1,0 +1,200 @@
+"""Load sharing over pairs and cells of the face: the plane's equations with more unknowns.
+
+Every pair's face is divided into equal cells. With F_ic the force on a cell and n of them, n F_ic is the force that the
+whole face would bear at that line load, so that laws of the plane hold for it. With z the cells' middles, T the cosine
+transform over the face and k_m = m pi/b,
+
+    approach = n T^T diag(B_ij + W_ij(k_m)) T F_j + E_ij F_j + law(n F_i) + gap_i + g_c ,
+
+B the plane's compliance, W what waves yield beyond it (``fem.influence.gear_face``), E what free ends add. Modes of a
+tip edge, whose law holds tooth and body, change by W as those of a flank at its corner do. One active set runs over
+all.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Booleans, record
+from fem.contact.cell_contact import CellContact
+from fem.contact.face_errors import CellErrors, cell_errors, half_as_many, no_errors
+from fem.laws.local_law import Film, film_yielding
+
+if TYPE_CHECKING:
+    from fem.contact.contact_sides import ContactSides
+    from fem.pair.face_shafts import HeldShafts
+    from fem.pair.pair_compliance import PairCompliance
+    from gears import LoadShare
+
+__all__ = ["SharedContacts", "of_pairs", "settled_gaps", "share_staying", "yielding_over_face"]
+
+
+@record
+class SharedContacts:
+    """Contacts on one side of the teeth, or on both one after the other, that share loads over pairs and cells.
+
+    Attributes
+    ----------
+    share : LoadShare
+        Of the pairs.
+    forces : (torques, pitches, positions, pairs, cells) array
+        On cells [N].
+    remaining_gaps : (torques, pitches, positions, pairs, cells) array
+        Gap that is left under load [m]; where a cell bears, minus what the contact's own law yields.
+    strips, rise
+        As of ``fem.contact.cell_contact.CellShare``.
+    lost : (2, 2, torques, pitches, positions, pairs) array
+        Parts of both base radii by which levers of forces, and of further ones, are shorter: 0 of contacts that stay.
+    errors : CellErrors
+        By the cells, and of the face-load factor by free ends.
+    shafts : HeldShafts or None
+        None where they are rigid.
+    """
+
+    share: LoadShare
+    forces: Array
+    remaining_gaps: Array
+    strips: Array
+    rise: Array
+    lost: Array
+    errors: CellErrors
+    shafts: HeldShafts | None = None
+
+    @classmethod
+    def even(cls, share: LoadShare, open_: Array) -> SharedContacts:
+        """Pairs whose loads are even along the face: each a single cell, with the gap that is left (..., pairs) [m]."""
+        forces, count = share.forces[..., None], len(share.forces)
+        lost = np.zeros((2, 2, *share.forces.shape))
+        none = np.zeros_like(forces)
+        return cls(share, forces, open_[..., None], np.zeros(count), none, lost, no_errors(count))
+
+    @property
+    def open(self) -> Array:
+        """Minimum gap that is left along the face (torques, pitches, positions, pairs) [m]."""
+        return np.asarray(self.remaining_gaps.min(axis=-1))
+
+    def of_side(self, pairs: slice, turn: Array, sign: float) -> SharedContacts:
+        """Of the pairs on one side, with the turn that closes their gaps, of this sign by D (torques, ...) [m]."""
+        forces, remaining_gaps, rise = (
+            array[..., pairs, :] for array in (self.forces, self.remaining_gaps, self.rise)
+        )
+        share = replace(
+            self.share,
+            forces=self.share.forces[..., pairs],
+            transmission_error=turn,
+            pair_stiffness=sign * self.share.pair_stiffness[..., pairs],
+        )
+        lost = self.lost[..., pairs]
+        return replace(self, share=share, forces=forces, remaining_gaps=remaining_gaps, rise=rise, lost=lost)
+
+    def beside(self, remaining_gaps: Array) -> SharedContacts:
+        """With pairs after these that bear nothing, and the gaps that are left to them (..., pairs, cells) [m]."""
+        nothing = np.zeros_like(remaining_gaps)
+        forces, slopes = (
+            np.concatenate([values, nothing[..., 0]], axis=-1)
+            for values in (self.share.forces, self.share.pair_stiffness)
+        )
+        return replace(
+            self,
+            share=replace(self.share, forces=forces, pair_stiffness=slopes),
+            forces=np.concatenate([self.forces, nothing], axis=-2),
+            remaining_gaps=np.concatenate([self.remaining_gaps, remaining_gaps], axis=-2),
+            rise=np.concatenate([self.rise, nothing], axis=-2),
+            lost=np.concatenate([self.lost, np.zeros((2, 2, *nothing.shape[:-1]))], axis=-1),
+        )
+
+    def with_kept(self, kept: SharedContacts, clear: Booleans) -> SharedContacts:
+        """The same with another share where that holds (torques, pitches, positions)."""
+
+        def mixed(own: Array, its: Array) -> Array:
+            chosen = clear.reshape(*clear.shape, *(1,) * (own.ndim - clear.ndim))
+            return np.where(chosen, its, own)
+
+        mine, other = self.share, kept.share
+        share = replace(
+            mine,
+            forces=mixed(mine.forces, other.forces),
+            transmission_error=mixed(mine.transmission_error, other.transmission_error),
+            stiffness=mixed(mine.stiffness, other.stiffness),
+            pair_stiffness=mixed(mine.pair_stiffness, other.pair_stiffness),
+        )
+        return replace(
+            self,
+            share=share,
+            forces=mixed(self.forces, kept.forces),
+            remaining_gaps=mixed(self.remaining_gaps, kept.remaining_gaps),
+            rise=mixed(self.rise, kept.rise),
+        )
+
+
+def share_staying(bodies: PairCompliance, whole: Array, sides: ContactSides) -> SharedContacts:
+    """Share forces over pairs and cells that stay.
+
+    Parameters
+    ----------
+    bodies : PairCompliance
+    whole : (torques, ...) array
+        Torques over the base radius [N].
+    sides : ContactSides
+        Contacts of whole pairs, on one side of the teeth or both.
+    """
+    face = sides.setups[0].face
+    whole = whole + np.zeros(sides.gaps.shape[:-1])
+    even = sides.share(whole)
+    if face.even_load:
+        return SharedContacts.even(even, sides.open(even))
+    over = CellContact(bodies, whole, sides)
+    few, _ = half_as_many(face)
+    coarse = over.shared(few, even.forces[..., None], held=False)
+    coarse = over.shared(few, coarse.forces, over.gap_drops(few, coarse))
+    fine = over.shared(face, coarse.forces, over.gap_drops(face, coarse))
+    share = of_pairs(fine.share, face.cells)
+    return SharedContacts(
+        share,
+        fine.forces,
+        settled_gaps(fine.remaining_gaps, fine.forces),
+        fine.strips,
+        fine.rise,
+        np.zeros((2, 2, *share.forces.shape)),
+        cell_errors(over, face, fine, coarse),
+        fine.shafts,
+    )
+
+
+def of_pairs(load_share: LoadShare, cells: int) -> LoadShare:
+    """Share of pairs from that of their cells (..., pairs cells)."""
+    forces, slopes = (
+        values.reshape(*values.shape[:-1], -1, cells).sum(axis=-1)
+        for values in (load_share.forces, load_share.pair_stiffness)
+    )
+    return replace(load_share, forces=forces, pair_stiffness=slopes)
+
+
+def settled_gaps(remaining_gaps: Array, forces: Array) -> Array:
+    """Gaps that are left, of cells that bear over a part of their length none."""
+    return np.where(forces > 0.0, np.minimum(remaining_gaps, 0.0), remaining_gaps)
+
+
+def yielding_over_face(film: Film, rho1: Array, forces: Array, shares: Array) -> Array:
+    """What films of all cells yield beyond the transmission error (positions,) [m], see ``film_yielding``.
+
+    Parameters
+    ----------
+    film : Film
+        Of a whole face.
+    rho1 : (positions, pairs) array
+        Places [m]; nan where a pair is dry.
+    forces : (positions, pairs, cells) array
+        [N]
+    shares : (positions, pairs) array
+        Of the pairs, of the whole force.
+    """
+    positions, pairs, cells = forces.shape
+    whole = forces.sum(axis=-1, keepdims=True)
+    part = np.divide(forces, whole, out=np.zeros_like(forces), where=whole > 0.0)
+    flat = (positions, pairs * cells)
+    places = np.repeat(rho1, cells, axis=-1)
+    return film_yielding(film, places, cells * forces.reshape(flat), (shares[..., None] * part).reshape(flat))
