@@ -21,7 +21,7 @@ USUAL = 64
 """Cells of the face unless they are given."""
 
 FREE_ENDS, WALLS, SLICES = "free-ends", "walls", "slices"
-"""What couples the cells of the face."""
+"""What couples the cells of the face; slices are there to compare with, their factor is 7 to 13 % low."""
 
 PLACES = 2049
 """Along the face at which its minimum gap is looked for."""

@@ -101,12 +101,12 @@ def face_load_models(teeth: LoadedTeeth, cycle: MeshCycle) -> FaceLoadModels:
     >>> import fem, gears
     >>> from flankfilm.coupling import Flanks, LoadedTeeth, face_load_models
     >>> pair = gears.GearPair(gears.Gear(20), gears.Gear(30), module=2e-3, face_width=20e-3)
-    >>> flanks = Flanks(alignment=gears.Alignment(30e-6), cells=8, face_model="slices")
+    >>> flanks = Flanks(alignment=gears.Alignment(30e-6), cells=8, face_model="walls")
     >>> teeth = LoadedTeeth(pair, 50.0, compliance=fem.compliance(pair, tolerance=0.05), flanks=flanks)
     >>> found = face_load_models(teeth, teeth.cycle(8))
     >>> found.model
-    ('independent slices', 'between walls', 'ISO 6336-1, method C')
-    >>> slices, walls = found.pitch_point_factor[:2]
+    ('between walls', 'independent slices', 'ISO 6336-1, method C')
+    >>> walls, slices = found.pitch_point_factor[:2]
     >>> bool(slices < walls)
     True
     """
@@ -114,7 +114,7 @@ def face_load_models(teeth: LoadedTeeth, cycle: MeshCycle) -> FaceLoadModels:
     if cycle.contact is None or own is None:
         remedy = "give an alignment, cells, or gears with a lead"
         raise InputError.at("cycle", cycle.label, "must have cells of the face", remedy)
-    named = [own.setting.model, *(m for m in (WALLS, SLICES) if m != own.setting.model)]
+    named = list(dict.fromkeys((own.setting.model, WALLS, SLICES)))
     others = [_by(teeth, model, len(cycle.position)) for model in named[1:]]
     faces = [own, *(other.face for other in others if other.face is not None)]
     at = _at_pitch_point(cycle.contact)

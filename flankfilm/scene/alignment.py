@@ -60,9 +60,9 @@ class AlignmentSection(Section):
         such_as=10,
     )
     cells: int = key("number of equal cells of the face, an even number", USUAL, of=None, limit=CELLS)
-    face_model: Literal["free-ends", "walls", "slices"] = key(
-        "what couples the cells: gears with free ends; gears between frictionless walls, quicker and too stiff "
-        "at the ends; slices coupled by the common approach only, which share the load too evenly",
+    face_model: Literal["free-ends", "walls"] = key(
+        "what couples the cells: gears with free ends, or gears between frictionless walls, quicker and too stiff "
+        "at the ends",
         FREE_ENDS,
         of=None,
     )

@@ -280,13 +280,13 @@ def test_the_face_bears_on_the_shafts_of_the_scene():
         "pinion_speed_rpm = 7200", "pinion_speed_rpm = 2000"
     )
     oil = "[lubricant]\nviscosity_Pa_s = 0.075\npressure_viscosity_per_GPa = 19.6\ntemperature_C = 80\n"
-    face = '[alignment]\ncells = 4\nface_model = "slices"\n[film]\nmodel = "dowson"\n'
+    face = '[alignment]\ncells = 4\nface_model = "walls"\n[film]\nmodel = "dowson"\n'
     whole = f"tolerance = 0.05\n{text}{oil}{face}"
     on_shafts = parse_scene(whole.replace('"sweep"', '"film"'))
     engine = Engine(on_shafts, Cache(None))
     found = engine[DRY_CYCLE]
     straight = fem.mesh_cycle(
-        engine[PAIR_STAGE], 600.0, found.position.size, engine[COMPLIANCE], cells=4, face_model="slices"
+        engine[PAIR_STAGE], 600.0, found.position.size, engine[COMPLIANCE], cells=4, face_model="walls"
     )
     shafts = on_shafts.shafts.pinion.shaft(), None
     bent = fem.mesh_cycle(
@@ -295,7 +295,7 @@ def test_the_face_bears_on_the_shafts_of_the_scene():
         found.position.size,
         engine[COMPLIANCE],
         cells=4,
-        face_model="slices",
+        face_model="walls",
         shafts=shafts,
     )
     assert found.contact.face_load_factor == pytest.approx(bent.face_load_factor, rel=1e-9)
