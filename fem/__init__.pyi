@@ -11,6 +11,7 @@ from .laws.local_law import Film as Film
 from .pair.compliance import compliance as compliance
 from .pair.face_gears import FaceGears as FaceGears
 from .pair.face_gears import face_gears as face_gears
+from .pair.options import Options as Options
 from .pair.pair_compliance import PairCompliance as PairCompliance
 from .pair.pair_fillets import Fillets as Fillets
 from .pair.pair_fillets import fillets as fillets

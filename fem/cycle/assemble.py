@@ -25,15 +25,6 @@ from fem.pair.references import held_turns
 
 __all__ = ["cycle_of"]
 
-LARGE_DEFLECTION = 0.03
-"""Part of the module above which a deflection is reported."""
-
-LARGE_SHIFT = 0.1
-"""The same of shafts: the path of contact gets shorter by as much, the contact ratio less by a third of it."""
-
-WIDE_CONTACT = 0.07
-"""Part of the radius of relative curvature above which a contact's half-width is reported."""
-
 
 def cycle_of(
     setup: MeshSetup,
@@ -161,16 +152,16 @@ def _large(setup: MeshSetup, contact: ContactState, number: int, forces: Array, 
     width = hertz_half_width(loaded / setup.pair.face_width, radius, reduced_modulus(setup.pair, plane))
     wide = np.max(width / radius)
     remarks, far = [], contact.shafts_give_way(number)
-    if far > LARGE_SHIFT:
+    if far > setup.options.large_shift:
         remarks.append(
             f"the shafts give way by {far:.2g} modules along the line of action; that the path of contact gets shorter "
             "by as much is left out"
         )
-    if part > LARGE_DEFLECTION:
+    if part > setup.options.large_deflection:
         remarks.append(
             f"the teeth deflect by {part:.2g} modules, where what the first order leaves out counts"
         )
-    if wide > WIDE_CONTACT:
+    if wide > setup.options.wide_contact:
         remarks.append(
             f"the half-width of a contact is {wide:.2g} of its radius, not small as Hertz takes it"
         )

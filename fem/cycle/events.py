@@ -23,9 +23,6 @@ from gears.sharing.mesh_figures import CURVES, FewerCells, MeshArcs, Scatter
 
 __all__ = ["ContactProblem", "measured_less"]
 
-SAMPLING = 0.1
-"""Part of the tolerance that what the arcs leave out may be."""
-
 NAMES = (*CURVES, "moment_pinion", "moment_wheel", "slope_pinion", "slope_wheel")
 """Curves on the arcs: those of every mesh cycle, N_g/F, and dN_g/dD of pinion and wheel (``fem.pair.references``)."""
 
@@ -125,7 +122,7 @@ class ContactProblem:
 
     def _divided(self, bodies: PairCompliance) -> Division:
         """Arcs with a mesh."""
-        sample, tolerance = self._sampler(bodies), SAMPLING * self.tolerance
+        sample, tolerance = self._sampler(bodies), self.setup.options.sampling * self.tolerance
         return arcs_between_events(sample, NAMES, self._corners(bodies), self.setup.pitches, tolerance)
 
     def _corners(self, bodies: PairCompliance) -> Array:

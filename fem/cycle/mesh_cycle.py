@@ -20,6 +20,7 @@ from fem.laws.local_law import Film
 from fem.laws.mesh_setup import Deviations, MeshSetup
 from fem.pair.compliance import compliance as _compliance
 from fem.pair.face_setting import EVEN, FREE_ENDS, face_setting
+from fem.pair.options import USUAL_OPTIONS, Options
 from fem.pair.pair_compliance import PairCompliance
 from fem.pair.references import REFERENCES, default_reference
 
@@ -54,6 +55,7 @@ def mesh_cycle(
     cells: int | None = None,
     face_model: str = FREE_ENDS,
     shafts: tuple[Shaft | None, Shaft | None] | None = None,
+    options: Options = USUAL_OPTIONS,
 ) -> tuple[MeshCycle, ...]:
     """Share the load among all pairs at midpoints of equal intervals of base pitches, from A.
 
@@ -119,6 +121,8 @@ def mesh_cycle(
         Shafts of pinion and wheel, left ends at the same side: they bend and twist under the loads on the cells, and
         open the flanks by as much (``gears.pair.shaft_face``). The transmission error counts it, stiffness is that of
         the mesh on shafts that are held where the load has brought them (``fem.pair.face_shafts``).
+    options : fem.Options
+        Numerical settings: arcs, thresholds of warnings, and the mesh unless a compliance is given.
 
     Returns
     -------
@@ -133,7 +137,7 @@ def mesh_cycle(
     Warns
     -----
     base.RangeWarning
-        Deflections above 0.03 modules, half-widths above 0.07 of the radius of relative curvature.
+        Deflections above 0.03 modules, half-widths above 0.07 of the radius of relative curvature (`fem.Options`).
 
     Examples
     --------
@@ -156,11 +160,14 @@ def mesh_cycle(
         moving_contact=contacts_move(pair, moving_contact),
         base_pitch_difference=base_pitch_difference,
         face=face_setting(pair, alignment, cells, face_model, shafts) or EVEN,
+        options=options,
     )
     _check(setup, torque, compliance, film, reference, plane)
     watch = Stopwatch()
     bodies = (
-        compliance if compliance is not None else _compliance(pair, tolerance, plane, tip_edges=beyond_path)
+        compliance
+        if compliance is not None
+        else _compliance(pair, tolerance, plane, tip_edges=beyond_path, options=options)
     )
     ready = watch.seconds
     tables = edge_tables(setup, bodies)

@@ -15,6 +15,7 @@ from base import Array, Faults, Integers, Limit, rounded_down
 from fem.laws.tip_contact import Removed
 from fem.laws.tip_geometry import TipRound, chamfer_length, tip_round
 from fem.pair.face_setting import EVEN, FaceSetting
+from fem.pair.options import USUAL_OPTIONS, Options
 from gears import GearDeviations
 
 if TYPE_CHECKING:
@@ -26,9 +27,6 @@ Deviations = Sequence["GearDeviations | None"]
 
 LARGEST_ROUND = 0.2
 """Largest part of the flank [modules] that a rounding of the tip may take."""
-
-MOST_POINTS = 20
-"""Points of profile deviations or wear up to which each ends an arc of the mesh cycle."""
 
 COUNT = Limit(1, whole=True)
 FRICTION = Limit(0.0, 0.5, remedy="dry steel has about 0.2, oiled 0.05")
@@ -72,6 +70,7 @@ class MeshSetup:
     back: bool = False
     two_sided: bool = False
     face: FaceSetting = EVEN
+    options: Options = USUAL_OPTIONS
 
     def at(self, position: Array) -> MeshSetup:
         """The same gears at given positions (n,) [base pitches] instead of equal intervals."""
@@ -117,6 +116,8 @@ class MeshSetup:
         faults.number("positions", self.positions, COUNT)
         faults.number("pitches", self.pitches, COUNT)
         faults.number("friction", self.friction, FRICTION)
+        if faults.instance("options", self.options, Options, "as of fem.Options"):
+            self.options.check(faults)
         for name in ("beyond_path", "moving_contact"):
             faults.instance(name, getattr(self, name), bool, "True or False")
         if self.face is not EVEN:
@@ -209,7 +210,9 @@ class MeshSetup:
         """Curvature radii at which the slope of what a gear's flank lacks changes at once."""
         profile, deviations = self.pair.teeth_profiles[gear], self._by_gear[gear]
         relief = [] if profile.tip_relief is None else [profile.flank_rho[1] - profile.tip_relief.length]
-        return np.concatenate([relief, [] if deviations is None else deviations.kinks(MOST_POINTS)])
+        return np.concatenate(
+            [relief, [] if deviations is None else deviations.kinks(self.options.measured_points)]
+        )
 
     @property
     def corners(self) -> Array:
@@ -225,7 +228,7 @@ class MeshSetup:
             if profile.tip_relief is not None:
                 rho.append(profile.flank_rho[1] - profile.tip_relief.length)
             if deviations is not None:
-                rho += deviations.corners(MOST_POINTS).tolist()
+                rho += deviations.corners(self.options.measured_points).tolist()
             places += rho if gear == 0 else [line - radius for radius in rho]
         if self.friction:
             places.append(pair.points.C)

@@ -23,6 +23,7 @@ from fem.influence.gear_shape import MeshedShape, shapes
 from fem.influence.gear_store import GearStore, ResultStore, SolvedFlanks
 from fem.influence.tip_strips import gain_beside
 from fem.pair.checked import check_pair
+from fem.pair.options import USUAL_OPTIONS, Options
 from fem.pair.pair_compliance import PairCompliance
 
 if TYPE_CHECKING:
@@ -31,22 +32,13 @@ if TYPE_CHECKING:
 
 __all__ = ["PairCompliance", "compliance"]
 
-ORDER = 3.0
-"""Order of convergence of the displacement at a load: 4 in the limit, 3 to 3.7 on meshes in use, lowest at the tip."""
-
-FINEST = 4
-"""Most refinements that a tolerance may ask for."""
-
 TOLERANCE = Limit(2e-6, remedy="0.001 is 0.1 %")
-"""The smallest one can be met with those refinements."""
+"""The smallest one can be met with four refinements."""
 
-REFINEMENTS = Limit(1, FINEST + 1, remedy="leave it out", whole=True)
+REFINEMENTS = Limit(1, 5, remedy="leave it out", whole=True)
 
-SAMPLES, FIT = (32, 48, 64), 0.03
-"""Loads along a flank, more of them where the fit leaves more than this part of the tolerance.
-
-So little that errors are those of the mesh, whose sign and place nested meshes show; those of a fit wave.
-"""
+SAMPLES = (32, 48, 64)
+"""Loads along a flank, more of them where the fit leaves too much of the tolerance."""
 
 STEPS = 4
 """Of the edge length when it is halved for a tolerance: so few meshes are tried that pairs share their gears'."""
@@ -63,6 +55,7 @@ def compliance(
     tip_edges: bool = False,
     motion: bool = False,
     kept: ResultStore | None = None,
+    options: Options = USUAL_OPTIONS,
 ) -> PairCompliance:
     """Compliance of both gears, on the coarsest mesh that meets a tolerance.
 
@@ -94,6 +87,8 @@ def compliance(
     kept : callable, optional
         Where solved gears are kept beyond the process: called with a name, with plain inputs, and with what computes
         the record where it has none.
+    options : fem.Options
+        How fine the mesh may get, and how its error is estimated.
 
     Returns
     -------
@@ -123,6 +118,8 @@ def compliance(
     check_plane(faults, plane)
     if refinements is not None:
         faults.number("refinements", refinements, REFINEMENTS)
+    if faults.instance("options", options, Options, "as of fem.Options"):
+        options.check(faults)
     faults.raise_if_any()
     watch = Stopwatch()
     held = on_both(supports)
@@ -133,12 +130,12 @@ def compliance(
     gears = GearStore(kept)
     while True:
         first, second = (
-            _fitted(gears, MeshedShape(shape, sizes, level), tolerance).scaled(pair.module, law)
+            _fitted(gears, MeshedShape(shape, sizes, level), options.fit * tolerance).scaled(pair.module, law)
             for shape, law in zip(gear_shapes, laws, strict=True)
         )
-        mesh_error, fit_error = _errors(pair, (first, second), sizes.corner * 0.5**level)
+        mesh_error, fit_error = _errors(pair, (first, second), sizes.corner * 0.5**level, options.gain)
         error = mesh_error + fit_error
-        finer = _finer(sizes, level, mesh_error, tolerance - min(fit_error, 0.5 * tolerance))
+        finer = _finer(sizes, level, mesh_error, tolerance - min(fit_error, 0.5 * tolerance), options)
         if refinements is not None or error <= tolerance or finer is None:
             break
         sizes, level = finer
@@ -165,7 +162,7 @@ def compliance(
         message,
         supports=held,
         fit_error=fit_error,
-        gain=2**ORDER - 1,
+        gain=options.gain,
         before=(first.before, second.before),
         back_before=(first.back_before, second.back_before),
     )
@@ -177,23 +174,24 @@ def compliance(
     return replace(bodies, tip_strips=tips, tip_strips_before=coarse_tips, flank_motions=motions, cost=cost)
 
 
-def _fitted(gears: GearStore, meshed: MeshedShape, tolerance: float) -> SolvedFlanks:
-    """Solve one gear in modules and E*, with as many loads as the fit needs."""
+def _fitted(gears: GearStore, meshed: MeshedShape, most: float) -> SolvedFlanks:
+    """Solve one gear in modules and E*, with as many loads as the fit needs to leave at most a relative error."""
     local = float(hertz_indentation(0.1, meshed.shape.law, 1.0))
     for count in SAMPLES:
         flanks = gears.flanks(meshed, count)
         least = local + float(np.min(flanks.flexible.own(flanks.rho)))
-        if flanks.flexible.fit_error <= FIT * tolerance * least:
+        if flanks.flexible.fit_error <= most * least:
             break
     return flanks
 
 
-def _errors(pair: GearPair, gears: tuple[SolvedFlanks, SolvedFlanks], edge: float) -> tuple[float, float]:
+def _errors(
+    pair: GearPair, gears: tuple[SolvedFlanks, SolvedFlanks], edge: float, gain: float
+) -> tuple[float, float]:
     """Errors by the mesh and by the fit, relative to the deflection of a pair, largest along the path.
 
     The element at the corner has a length ``edge`` [modules]; beside it a refinement gains less.
     """
-    gain = 2**ORDER - 1
     rho1 = np.linspace(pair.points.A, pair.points.E, 60)
     own, change = np.zeros_like(rho1), np.zeros_like(rho1)
     for gear, rho in zip(gears, (rho1, pair.line_of_action - rho1), strict=True):
@@ -206,13 +204,15 @@ def _errors(pair: GearPair, gears: tuple[SolvedFlanks, SolvedFlanks], edge: floa
     return max(float(np.max(np.abs(change / own))), crossed / gain), fit
 
 
-def _finer(sizes: Sizes, level: int, error: float, tolerance: float) -> tuple[Sizes, int] | None:
+def _finer(
+    sizes: Sizes, level: int, error: float, tolerance: float, options: Options
+) -> tuple[Sizes, int] | None:
     """Edge lengths and refinements that should bring an error below a tolerance; None beyond the finest."""
     if error <= tolerance:  # it is the fit that errs, or nothing
         return None
-    factor = (0.6 * tolerance / error) ** (1 / ORDER) if np.isfinite(error) else 0.5
+    factor = (0.6 * tolerance / error) ** (1 / options.order) if np.isfinite(error) else 0.5
     halvings = max(0, floor(-log2(factor) + 0.3))
     factor = 2 ** (floor(STEPS * log2(factor)) / STEPS)
-    if level + halvings > FINEST:
+    if level + halvings > options.finest:
         return None
     return sizes.scaled(min(factor * 2**halvings, 1.0)), level + halvings
