@@ -31,8 +31,7 @@ class ToothField:
     cells: Integers = quantity("1", "points of each wedge, a triangle along the face", "cell corner")
     displacement_m: Array = quantity(
         "m",
-        "elastic displacement of a gear on a hub that stands still; with free ends where its cells are coupled so, "
-        "else between frictionless walls",
+        "elastic displacement of a gear on a hub that stands still, between frictionless walls",
         "point space",
     )
     tooth: Integers = quantity("1", "tooth, 0 in the pair that entered last, counted anticlockwise", "cell")
@@ -85,7 +84,7 @@ def face_fields(
     faults = Faults()
     check_row(faults, cycle, row, over_face=True)
     faults.raise_if_any()
-    ready = prisms or gear_prisms(bodies, cycle)
+    ready = prisms or gear_prisms(bodies)
     first, second = (_face_field(pair, cycle, row, bodies, gear, ready[gear]) for gear in (0, 1))
     return first, second
 
@@ -101,12 +100,6 @@ def _face_field(
     places = [on_flank(ready.mesh, rho / module) for rho in cycle.flank_rho[gear][row, loaded]]
     apart = [[tooth - own for tooth in teeth] for own in tooth_of[loaded].tolist()]
     moved = waves.moved(ready, places, apart)
-    if ready.ends is not None and cycle.face is not None:
-        edges = (cycle.face.setting.edges(pair) - pair.face_offsets[gear]) / module
-        for load, place, offsets in zip(cycle.face.line_load[row, loaded], places, apart, strict=True):
-            forces = load * pair.face_width / len(load)
-            added = ready.ends.moved(float(place.rho[0]), forces, edges, offsets) / module
-            moved[:, :, ready.ends.nodes] += added
     moved /= flexible.law.plane_modulus
     angle, centre = frames(pair, float(pair.points.A + cycle.loaded_position[row] * pair.base_pitch))[gear]
     pitch = pair.teeth_profiles[gear].pitch_angle

@@ -139,7 +139,7 @@ def _even(
 
 def _uneven(pair: GearPair, cycle: MeshCycle, bodies: PairCompliance) -> Callable[[int], Mapping[str, Any]]:
     """Blocks of rows of a cycle with cells of the face."""
-    prisms = gear_prisms(bodies, cycle)
+    prisms = gear_prisms(bodies)
     return lambda row: face_grids(*face_fields(pair, cycle, row, bodies, prisms))
 
 
