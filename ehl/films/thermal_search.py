@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
@@ -12,24 +11,24 @@ import numpy as np
 from base import Array, Cost
 from base.results import WORST
 from ehl.discrete.contact import LineContact
-from ehl.discrete.equations import Groups
+from ehl.discrete.equations import Grid, Groups
 from ehl.discrete.newton import newton
 from ehl.discrete.solids import Solid
 from ehl.discrete.supply import OilLayer, Supply
 from ehl.discrete.thermal_oil import ThermalOil
 from ehl.films.solver import REACH, moes_flow, solve_checked
 from ehl.films.thermal_errors import DONE, Compared
+from ehl.solving.grid_search import MOST_STEPS
 from ehl.solving.heat_balance import losses
+from ehl.solving.layer_supply import LayerSupply
 from ehl.solving.levels import Level, State, WarmLevel, transfer
-from ehl.solving.meniscus import MeniscusSearch
 from ehl.solving.options import Options
 from ehl.solving.plan import Plan
 from ehl.solving.refinement import doubled, refine
 
-_MOST_STEPS = 60
+_MOST_STEPS = 60  # of Newton's on one grid
 _BALANCE = 0.1  # of the heat that is lost or found, beyond which there is no solution
 _FED = 0.02  # miss of a layer's flow over the tolerance
-_MOST_PLACES = 20  # of a meniscus on one grid
 _FIRST_NODES = 65
 _MOST_NODES = 513
 _SHARES = (0.25, 0.5, 0.75, 1.0)  # of the sliding, where all of it at once fails
@@ -152,25 +151,26 @@ class Search:
         """Move the meniscus of a layer until the film carries away what the layer brings."""
         if level is None or not isinstance(self.supply, OilLayer) or not level.plan.fixed:
             return level
-        layer = self.supply.thickness
-        search = MeniscusSearch.at(-1.0 - level.plan.domain[0], math.log(level.flow / layer))
-        for _ in range(_MOST_PLACES):
-            if abs(search.miss) < _FED * self.tolerance:
-                return level
-            if search.stuck:
-                break
-            plan = level.plan.with_inlet(-1.0 - search.distance)
-            grid = plan.grid(level.grid.nodes.size)
-            P, H0 = transfer(level, self.contact, plan, grid)
-            moved = Level(self.contact, plan, grid, replace(level.solution, P=P, H0=H0))
-            trial = self._newton(moved, self._oil(moved, 1.0, level.oil))
-            if trial is None:
-                self.restarts += 1
-                search.failed()
-            else:
-                level = trial
-                search.solved(math.log(trial.flow / layer))
-        return None
+        supplied = LayerSupply(self, level, self.supply.thickness, _FED * self.tolerance).solve()
+        return supplied if supplied.solution.converged else None
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether the call has had its Newton steps."""
+        return self.iterations >= MOST_STEPS
+
+    @property
+    def finest(self) -> float:
+        """Last Newton step of a film that is solved to its end."""
+        return DONE * self.tolerance
+
+    def near(
+        self, old: WarmLevel, plan: Plan, grid: Grid, start: tuple[Array, float], done: float
+    ) -> WarmLevel:
+        """Solve from pressures and separation on a grid, with the oil of a film on another one."""
+        level = Level(self.contact, plan, grid, replace(old.solution, P=start[0], H0=start[1]))
+        solved = self._newton(level, self._oil(level, 1.0, old.oil), done)
+        return solved or replace(old, solution=replace(old.solution, converged=False))
 
     def _level(self, base: Level, n: int) -> Level:
         """Carry pressures to a grid of n nodes, as a start."""
@@ -211,7 +211,7 @@ class Search:
             oil.start_from(known)
         return oil
 
-    def _newton(self, level: Level, oil: ThermalOil) -> WarmLevel | None:
+    def _newton(self, level: Level, oil: ThermalOil, done: float | None = None) -> WarmLevel | None:
         solution = level.solution
         try:
             with np.errstate(all="ignore"):
@@ -221,7 +221,7 @@ class Search:
                     solution.P,
                     solution.H0,
                     oil=oil,
-                    done=DONE * self.tolerance,
+                    done=self.finest if done is None else done,
                     max_iterations=_MOST_STEPS,
                 )
         except np.linalg.LinAlgError:  # temperatures of a trial that diverged

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from base import Cost, Stopwatch, unclocked
+from base import Array, Cost, Stopwatch, unclocked
 from ehl.discrete.contact import LineContact
+from ehl.discrete.equations import Grid, Groups
 from ehl.discrete.grid import clusters
+from ehl.discrete.newton import STEP_DONE, newton
 from ehl.discrete.supply import OilLayer, Supply
 from ehl.solving.layer_supply import LayerSupply
 from ehl.solving.levels import Level, State, cold, spike_of, warm
@@ -34,6 +36,8 @@ _SPIKE_SHRINK = 8.0  # most that the cluster narrows at once: a spike narrower t
 
 class GridSearch:
     """Counts what it does; ``plan`` is how the next grid is laid, ``own`` how this contact alone would have it."""
+
+    finest = STEP_DONE
 
     def __init__(
         self,
@@ -144,6 +148,13 @@ class GridSearch:
             return level
         self.plan = self.own
         return self.cold(n)
+
+    def near(
+        self, old: Level, plan: Plan, grid: Grid, start: tuple[Array, float], done: float = STEP_DONE
+    ) -> Level:
+        """Solve from pressures and separation on a grid."""
+        solution = newton(grid, Groups.on(self.contact, grid), *start, done=done)
+        return self.count(Level(self.contact, plan, grid, solution))
 
     def fed(self, level: Level) -> Level:
         """Move the meniscus until the film carries away what the layer brings; the plan is left at the one found."""
