@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import NamedTuple
 
 from base import Cost, InputError, shorten
 from ehl.discrete.asperities import Roughness
@@ -22,28 +21,13 @@ from ehl.discrete.supply import OilLayer, Supply
 from ehl.films.film import Film
 from ehl.films.mixed_film import MixedFilm
 from ehl.films.result import Found
-from ehl.films.rough_slopes import RoughSlopes, rough_slopes
+from ehl.films.rough_slopes import rough_slopes
 from ehl.films.solver import solve_checked
 from ehl.solving.levels import State, figures
-from ehl.solving.load_share import (
-    ALL,
-    NOTHING,
-    KnownGap,
-    eased,
-    excess,
-    foreseen,
-    odds_of,
-    share_of,
-    usual_growth,
-)
+from ehl.solving.load_share import KnownGap, eased, foreseen, odds_of, share_of, usual_growth
 from ehl.solving.options import Options, warn_of_range
-from ehl.solving.response import Response, by_share
-
-_BALANCED = 1e-7  # relative difference of what asperities carry and are asked for
-_REACH = 3.0  # largest step of the odds
-_CLOSE = 1e-2  # between bounds as close as this the balance is straight in the odds
-_TRIES = 60
-_APART = 1e-3  # of ln of what is left, where two films show how it grows
+from ehl.solving.response import by_share
+from ehl.solving.share_search import NoFilmError, ShareSearch
 
 
 def solve_mixed(
@@ -106,139 +90,52 @@ def solve_mixed(
             "roughness", shorten(roughness), "must be a Roughness", "build one with ehl.Roughness"
         )
     options = Options(tolerance, nodes, supply=supply).checked(contact)
-    search = _Search(contact, roughness, options, start)
+    before = start.film if isinstance(start, MixedFilm) else start
+    films = _Films(contact, options, None if before is None else before.state)
     try:
-        mixed = search.solved()
-    except _NoFilmError as reason:
-        return search.failed(str(reason))
-    warn_of_range(mixed.film.contact)
-    return mixed
+        odds = ShareSearch(contact, roughness, films).odds(_likely_odds(contact, roughness, supply, start))
+    except NoFilmError as reason:
+        blank = replace(films.last.film(), converged=False, central_thickness=math.nan)
+        return MixedFilm(contact, roughness, blank, films.cost, False, str(reason))
+    film = films.last.film()
+    warn_of_range(film.contact)
+    by = by_share(films.last.fine, films.last.run.supply) if math.isfinite(odds) else None
+    answers = rough_slopes(contact, roughness, film, odds, by)
+    return MixedFilm(contact, roughness, film, films.cost, True, "converged", share_of(odds), *answers)
 
 
-class _NoFilmError(Exception):
-    """A trial film failed, or none is left to the load."""
+class _Films:
+    """Isothermal films at trial shares."""
 
-
-class _Balance(NamedTuple):
-    """A film under the share of the load that its asperities leave to it."""
-
-    film: Found
-    odds: float
-    by: Response  # derivatives by the odds
-
-
-class _Search:
-    """Films at trial shares, each started from the last."""
-
-    def __init__(
-        self, contact: LineContact, roughness: Roughness, options: Options, start: Film | MixedFilm | None
-    ) -> None:
-        self.contact = contact
-        self.roughness = roughness
-        self.options = options
-        before = start.film if isinstance(start, MixedFilm) else start
-        self.state: State | None = None if before is None else before.state
+    def __init__(self, contact: LineContact, options: Options, state: State | None) -> None:
+        self.contact, self.options, self.state = contact, options, state
         self.cost = Cost(0.0)
-        self.odds = -math.inf
-        if isinstance(start, MixedFilm) and start.converged and start.asperity_share > 0.0:
-            self.odds = self.likely_odds(start)
+        self.last: Found
 
-    def film_at(self, odds: float) -> Found:
-        """Film that carries what the asperities leave, at odds ln[s/(1-s)] of their share."""
+    def gap(self, odds: float) -> float:
+        """Central film [m] at odds of the asperities' share."""
         self.last = film = solve_checked(eased(self.contact, share_of(-odds)), self.options, self.state)
         self.cost += film.run.cost() + Cost(0.0, counts={"films": 1})
         if not film.converged:
-            raise _NoFilmError(film.film().message)
+            raise NoFilmError(film.film().message)
         self.state = film.state.bare()
-        return film
+        return figures(film.fine).central_thickness
 
-    def solved(self) -> MixedFilm:
-        """Share the load, with the asperities' stiffness at the contact's width and both derivatives."""
-        if math.isinf(self.odds):
-            smooth = self.film_at(-math.inf)
-            self.odds = self.first_odds(smooth)
-            if self.odds <= NOTHING:
-                return self.smooth(smooth)
-        balance = self.balance()
-        if balance is None:
-            return self.smooth(self.film_at(-math.inf))
-        film = balance.film.film()
-        answers = rough_slopes(self.contact, self.roughness, film, balance.odds, balance.by)
-        return self.result(film, share_of(balance.odds), answers)
+    def growth(self) -> float:
+        """Power of what is left to it with which the last film grows, by its derivative."""
+        by = by_share(self.last.fine, self.last.run.supply)
+        return by.central / figures(self.last.fine).central_thickness
 
-    def first_odds(self, smooth: Found) -> float:
-        """Odds that the smooth film makes likely; NOTHING where asperities do not reach through it."""
-        gap = figures(smooth.fine).central_thickness
-        if excess(self.contact, self.roughness, gap, NOTHING).value <= 0.0:
-            return NOTHING
-        return foreseen(self.contact, self.roughness, KnownGap(gap, -math.inf, self.growth(smooth)))
 
-    def likely_odds(self, start: MixedFilm) -> float:
-        """Odds that a neighbour makes likely: its film, changed as Moes' formula has it; behind a layer as it is."""
-        share, near = start.asperity_share, start.film.contact
-        film_share, supply = 1.0 - share, self.options.supply
-        ratio = 1.0
-        if not isinstance(supply, OilLayer):
-            ratio = moes_central(eased(self.contact, film_share)) / moes_central(near)
-        grows = usual_growth(self.contact, film_share, supply)
-        known = KnownGap(ratio * start.central_thickness, odds_of(share), grows)
-        return foreseen(self.contact, self.roughness, known)
-
-    def growth(self, film: Found) -> float:
-        """Power of what is left to it with which a film grows, by its derivative."""
-        by = by_share(film.fine, film.run.supply)
-        return by.central / figures(film.fine).central_thickness
-
-    def balance(self) -> _Balance | None:
-        """Share at which the asperities carry what is asked, from film to film in its odds between bounds.
-
-        The asperities' pressure falls as their share rises, since the film that carries less is thicker, and what
-        the share asks for rises. Each film foresees the next: it grows as a power of what is left to it, by its
-        derivative or by the last two films. None where asperities carry nothing. Close bounds that a step leaves were
-        films on a coarser grid, or solved less exactly: the balance has moved, and they are forgotten.
-        """
-        odds, low, high = self.odds, -math.inf, math.inf
-        last: KnownGap | None = None
-        for _ in range(_TRIES):
-            film = self.film_at(odds)
-            gap = figures(film.fine).central_thickness
-            more = excess(self.contact, self.roughness, gap, odds).value
-            if abs(more) < _BALANCED:
-                by = by_share(film.fine, film.run.supply).scaled(-share_of(odds))  # ln(1 - s) falls by s
-                return _Balance(film, odds, by)
-            low, high = (odds, high) if more > 0.0 else (low, odds)
-            if high <= NOTHING:
-                return None
-            if low >= ALL:
-                raise _NoFilmError(
-                    "the asperities carry all but a millionth of the load: take the contact as dry"
-                )
-            last = KnownGap(gap, odds, self.grows(film, gap, odds, last))
-            ahead = foreseen(self.contact, self.roughness, last) - odds
-            step = max(-_REACH, min(_REACH, ahead))
-            if high - low < min(abs(step), _CLOSE):
-                low, high = -math.inf, math.inf
-            target = max(NOTHING, min(ALL, odds + step))
-            odds = target if low < target < high else 0.5 * (max(low, NOTHING) + min(high, ALL))
-        raise _NoFilmError("no share of the load on which film and asperities agree was found")
-
-    def grows(self, film: Found, gap: float, odds: float, last: KnownGap | None) -> float:
-        """Power with which the film grows: by its derivative first, then from film to film where they differ."""
-        if last is None:
-            return self.growth(film)
-        between = math.log(share_of(-odds) / share_of(-last.odds))
-        return math.log(gap / last.gap) / between if abs(between) > _APART else last.grows
-
-    def smooth(self, film_alone: Found) -> MixedFilm:
-        """Return a film that carries all."""
-        film = film_alone.film()
-        return self.result(film, 0.0, RoughSlopes(0.0, film.separation_slope, film.central_slope))
-
-    def result(self, film: Film, share: float, answers: RoughSlopes) -> MixedFilm:
-        """Return the film with the share of the asperities and the answers to the load."""
-        return MixedFilm(self.contact, self.roughness, film, self.cost, True, "converged", share, *answers)
-
-    def failed(self, reason: str) -> MixedFilm:
-        """Return no figures."""
-        blank = replace(self.last.film(), converged=False, central_thickness=math.nan)
-        return MixedFilm(self.contact, self.roughness, blank, self.cost, False, reason)
+def _likely_odds(
+    contact: LineContact, roughness: Roughness, supply: Supply | None, start: Film | MixedFilm | None
+) -> float:
+    """Odds that a neighbour makes likely: its film, changed as Moes' formula has it; behind a layer as it is."""
+    if not isinstance(start, MixedFilm) or not start.converged or start.asperity_share == 0.0:
+        return -math.inf
+    share, near = start.asperity_share, start.film.contact
+    film_share, ratio = 1.0 - share, 1.0
+    if not isinstance(supply, OilLayer):
+        ratio = moes_central(eased(contact, film_share)) / moes_central(near)
+    grows = usual_growth(contact, film_share, supply)
+    return foreseen(contact, roughness, KnownGap(ratio * start.central_thickness, odds_of(share), grows))

@@ -21,15 +21,15 @@ from ehl.films.mixed import solve_mixed
 from ehl.films.mixed_film import MixedFilm, RoughFilm
 from ehl.films.thermal import ThermalFilm, solve_thermal
 from ehl.films.thermal_search import at_bulk
-from ehl.solving.load_share import NOTHING, KnownGap, eased, excess, foreseen, odds_of, share_of, usual_growth
+from ehl.solving.load_share import eased, excess, odds_of, share_of, usual_growth
+from ehl.solving.share_search import NoFilmError, ShareSearch
 
-_TRIES = 20
 _FALLS = (
     "roughness: elastic asperities carry {share:.0%} of the load here and less of a higher one: their part of the "
     "friction falls, about {loses:.0%} of it all for twice the load, where friction of gears is measured to rise; "
     "leave out law, density and tip radius, and the film ratio shares the load"
 )
-_REACH = 1.5  # largest step of the odds
+_FLATTEST = -0.05  # slope of the excess by the odds
 
 
 @record
@@ -137,20 +137,24 @@ def solve_mixed_thermal(
     )
     warm = solved_at(contact, start=near)
     cold = solve_mixed(at_bulk(contact, np.array(bulk)), roughness, tolerance, supply, near_cold, nodes)
-    search = _Search(contact, roughness, solved_at, tolerance, supply, warm)
-    share, reason = math.nan, warm.message if cold.converged else cold.message
-    if cold.converged and warm.converged:
-        share, reason = search.share(cold)
-        if roughness.elastic and contact.sliding:
-            loses = search.loses_by_load(cold, share, boundary_friction)
+    films = _Films(contact, solved_at, cold.asperity_share, supply, warm)
+    share, reason = math.nan, cold.message
+    if cold.converged:
+        try:
+            share = share_of(ShareSearch(contact, roughness, films, tolerance).odds())
+            reason = "converged"
+        except NoFilmError as failure:
+            reason = str(failure)
+        if roughness.elastic and contact.sliding and 0.0 < share < 1.0:
+            loses = _loses_by_load(contact, roughness, films, cold, share, boundary_friction)
             if loses > tolerance:
                 warnings.warn(_FALLS.format(share=share, loses=loses), RangeWarning, stacklevel=2)
-    cost = replace(search.cost + cold.cost, seconds=watch.seconds)
+    cost = replace(films.cost + cold.cost, seconds=watch.seconds)
     solved = math.isfinite(share)
     return MixedThermalFilm(
         contact,
         roughness,
-        search.film,
+        films.film,
         cost,
         solved,
         reason,
@@ -160,71 +164,45 @@ def solve_mixed_thermal(
     )
 
 
-class _Search:
-    """Films with heat at trial shares, each started from the last."""
+class _Films:
+    """Films with heat at trial shares; the first, of the whole load, is there."""
 
     def __init__(
         self,
         contact: LineContact,
-        roughness: Roughness,
         solved_at: Callable[..., ThermalFilm],
-        tolerance: float,
+        cold_share: float,
         supply: Supply | None,
         film: ThermalFilm,
     ) -> None:
-        self.contact, self.roughness, self.solved_at = contact, roughness, solved_at
-        self.tolerance, self.supply, self.film, self.cost = tolerance, supply, film, film.cost
+        self.contact, self.solved_at, self.film, self.cost = contact, solved_at, film, film.cost
+        self.cold_share, self.supply = cold_share, supply
 
-    def share(self, cold: MixedFilm) -> tuple[float, str]:
-        """Share of the asperities, NaN where none is found, and why."""
-        gap = self.film.central_thickness
-        grows = usual_growth(self.contact, share_of(-odds_of(cold.asperity_share)), self.supply)
-        if excess(self.contact, self.roughness, gap, NOTHING).value <= 0.0:
-            return 0.0, "converged"
-        known = KnownGap(gap, -math.inf, grows)
-        odds = foreseen(self.contact, self.roughness, known)
-        before, slope = None, self.slope(known.at(odds), grows, odds)
-        for _ in range(_TRIES):
-            share = share_of(odds)
-            more = self.excess(odds)
-            if not self.film.converged:
-                return math.nan, self.film.message
-            if before is not None and odds != before[0]:
-                slope = min((more - before[1]) / (odds - before[0]), -0.05)
-            step = max(-_REACH, min(_REACH, -more / slope))
-            if abs(step) < self.tolerance:
-                return share, "converged"
-            if odds + step < NOTHING:
-                return 0.0, "converged"
-            before, odds = (odds, more), odds + step
-        return (
-            math.nan,
-            "no share of the load on which film and asperities agree was found: raise the tolerance",
-        )
-
-    def slope(self, gap: float, grows: float, odds: float) -> float:
-        """Derivative of the excess by the odds where the film grows with what is left."""
-        at = excess(self.contact, self.roughness, gap, odds)
-        return min(-at.by_gap * gap * grows * share_of(odds) + at.by_odds, -0.05)
-
-    def loses_by_load(self, cold: MixedFilm, share: float, friction: float) -> float:
-        """Part of its friction that a contact loses by the share of its asperities as the load doubles; < 0: gains."""
-        if not 0.0 < share < 1.0:
-            return 0.0
-        gap, odds = self.film.central_thickness, odds_of(share)
-        grows = usual_growth(self.contact, 1.0 - share, self.supply)
-        at = excess(self.contact, self.roughness, gap, odds)
-        by_load = cold.film.contact.load * cold.film.central_slope / cold.film.central_thickness
-        follow = -(at.by_load + at.by_gap * gap * by_load) / self.slope(gap, grows, odds)
-        film = abs(self.film.traction_coefficient)
-        rubbed = (friction - film) * share * (1.0 - share) * follow
-        return -math.log(2.0) * rubbed / ((1.0 - share) * film + share * friction)
-
-    def excess(self, odds: float) -> float:
-        """By how much the asperities carry more than their share asks for."""
+    def gap(self, odds: float) -> float:
+        """Central film [m] at odds of the asperities' share."""
         contact = eased(self.contact, share_of(-odds))
-        self.film = self.solved_at(contact, start=self.film)
-        self.cost += replace(self.film.cost, counts={**self.film.cost.counts, "films": 1})
+        if contact != self.film.contact:
+            self.film = self.solved_at(contact, start=self.film)
+            self.cost += replace(self.film.cost, counts={**self.film.cost.counts, "films": 1})
         if not self.film.converged:
-            return math.nan
-        return excess(self.contact, self.roughness, self.film.central_thickness, odds).value
+            raise NoFilmError(self.film.message)
+        return self.film.central_thickness
+
+    def growth(self) -> float:
+        """Power of what is left to it with which a film grows, by Moes' formula at the share without heat."""
+        return usual_growth(self.contact, 1.0 - self.cold_share, self.supply)
+
+
+def _loses_by_load(
+    contact: LineContact, roughness: Roughness, films: _Films, cold: MixedFilm, share: float, friction: float
+) -> float:
+    """Part of its friction that a contact loses by the share of its asperities as the load doubles; < 0: gains."""
+    gap, odds = films.film.central_thickness, odds_of(share)
+    grows = usual_growth(contact, 1.0 - share, films.supply)
+    at = excess(contact, roughness, gap, odds)
+    by_load = cold.film.contact.load * cold.film.central_slope / cold.film.central_thickness
+    slope = min(at.by_odds - at.by_gap * gap * grows * share, _FLATTEST)
+    follow = -(at.by_load + at.by_gap * gap * by_load) / slope
+    film = abs(films.film.traction_coefficient)
+    rubbed = (friction - film) * share * (1.0 - share) * follow
+    return -math.log(2.0) * rubbed / ((1.0 - share) * film + share * friction)

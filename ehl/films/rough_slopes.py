@@ -20,7 +20,7 @@ class RoughSlopes(NamedTuple):
 
 
 def rough_slopes(
-    contact: LineContact, roughness: Roughness, film: Film, odds: float, by: Response
+    contact: LineContact, roughness: Roughness, film: Film, odds: float, by_part: Response | None
 ) -> RoughSlopes:
     """Stiffness of the asperities at the contact's width, and derivatives of separation and central film by the load.
 
@@ -36,12 +36,13 @@ def rough_slopes(
         Under what the asperities leave to it, with its derivatives by its load.
     odds : float
         ln[s/(1-s)] of the asperities' share s.
-    by : Response
-        Derivatives of the film by the odds.
+    by_part : Response or None
+        Derivatives of the film by ln of the part 1 - s that is left to it; None where it carries all.
     """
     share, gap = share_of(odds), film.central_thickness
-    if share == 0.0:
+    if by_part is None or share == 0.0:
         return RoughSlopes(0.0, film.separation_slope, film.central_slope)
+    by = by_part.scaled(-share)  # ln(1 - s) falls by s
     pressure, slope = roughness.under_film(gap, contact.reduced_modulus, contact.peak_pressure)
     closer = roughness.planes(gap)[1]  # planes by gap
     stiffness = -share * contact.load * slope / pressure / closer

@@ -13,7 +13,7 @@ from ehl.films.result import slope_errors
 from ehl.films.rough_slopes import rough_slopes
 from ehl.films.thermal import ThermalFilm
 from ehl.solving.levels import WarmLevel
-from ehl.solving.load_share import odds_of, share_of
+from ehl.solving.load_share import odds_of
 from ehl.solving.response import by_share, slopes, with_matrix
 
 Hot = TypeVar("Hot", ThermalFilm, MixedThermalFilm)
@@ -83,8 +83,7 @@ def _with_slopes(film: ThermalFilm, coarse: WarmLevel, fine: WarmLevel) -> Therm
 
 def _rough(film: MixedThermalFilm, sloped: ThermalFilm, fine: WarmLevel) -> MixedThermalFilm:
     """Let the asperities follow the load."""
-    odds = odds_of(film.asperity_share)
-    by = by_share(fine, sloped.supply).scaled(-share_of(odds))  # ln(1 - s) falls by s
+    odds, by = odds_of(film.asperity_share), by_share(fine, sloped.supply)
     stiffness, separation, central = rough_slopes(film.contact, film.roughness, sloped, odds, by)
     return replace(
         film, film=sloped, asperity_stiffness=stiffness, separation_slope=separation, central_slope=central

@@ -3,7 +3,7 @@
 How pressures and separation follow the meniscus is known, first from the Newton matrix of the film to start from, then
 from the last two films. So each place is solved from what is expected there, and by no more of Newton's steps than the
 next place needs: about one for each move of the nodes, as if the place were one more unknown. Films with heat, whose
-matrix leaves out most of what the oil does, begin with a step of their own.
+matrix leaves out most of what the oil does, begin with a separate step.
 """
 
 from __future__ import annotations
@@ -33,8 +33,10 @@ class Films(Protocol[L]):
     """Films of one contact, with heat or without, and the effort so far."""
 
     restarts: int
-    finest: float
-    """Last Newton step of a film that is solved to its end."""
+
+    @property
+    def finest(self) -> float:
+        """Last Newton step of a film that is solved to its end."""
 
     @property
     def exhausted(self) -> bool:

@@ -315,7 +315,7 @@ def test_trials_warn_of_no_films_that_nothing_shows(monkeypatch):
         return solve_checked(eased, *arguments)
 
     monkeypatch.setattr("ehl.films.mixed.solve_checked", noted)
-    monkeypatch.setattr("ehl.films.mixed._Search.likely_odds", lambda self, near: odds_of(1 - 2e-6))
+    monkeypatch.setattr("ehl.films.mixed._likely_odds", lambda *near: odds_of(1 - 2e-6))
     with warnings.catch_warnings():
         warnings.simplefilter("error", RangeWarning)
         found = solve_mixed(contact, STIFF, tolerance=0.05, start=start)
