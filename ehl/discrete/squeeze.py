@@ -44,6 +44,17 @@ def by_parameter(before: Content, after: Content, step: float) -> Array:
     return change
 
 
+def at_meniscus(
+    before: Content, after: Content, places: tuple[float, float], layer: float, step: float
+) -> float:
+    """Likewise of the first node's content, less what the meniscus sweeps from one place to another [m2].
+
+    Ahead of it the gap holds what the layer brings, a thickness [m].
+    """
+    swept = before.film[0] * (after.middles[0] - before.middles[0]) - layer * (places[1] - places[0])
+    return float(after.oil[0] - before.oil[0] - swept) / step
+
+
 @dataclass(frozen=True)
 class Storage:
     """Derivatives of the contents [a gap] by P and H of their nodes."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,7 +12,7 @@ from base import Array, Cost, Faults, Integers, Limit, Stopwatch, described, par
 from base.results import ITSELF
 from ehl.discrete.contact import LineContact
 from ehl.discrete.equations import Grid, Residual, film_gap
-from ehl.discrete.squeeze import Content, Storage, by_parameter
+from ehl.discrete.squeeze import Content, Storage, at_meniscus, by_parameter
 from ehl.discrete.supply import OilLayer
 from ehl.films.film import Film
 from ehl.films.mixed_film import MixedFilm
@@ -19,7 +20,7 @@ from ehl.films.mixed_thermal import MixedThermalFilm
 from ehl.films.thermal import ThermalFilm
 from ehl.solving.levels import Level, figures
 from ehl.solving.load_share import excess, odds_of
-from ehl.solving.response import STEP, eased_by_step, explicit, heavier_by_step
+from ehl.solving.response import STEP, eased_by_step, explicit, farther_by_step, heavier_by_step
 
 Complex = NDArray[np.complex128]
 
@@ -91,8 +92,8 @@ def film_response(film: Film | MixedFilm, frequency: ArrayLike) -> FilmResponse:
     Parameters
     ----------
     film : Film or MixedFilm
-        Flooded, in a given domain, or with its meniscus held, isothermal. Between rough surfaces the asperities share
-        the load with the film at every moment: their share follows the gap.
+        Isothermal, however it is supplied. The meniscus of a layer moves so that it takes up what the layer brings.
+        Between rough surfaces the asperities share the load with the film at every moment: their share follows the gap.
     frequency : float or array_like
         omega [rad/s]; at 0 stiffness and damping are the limits for slow oscillations.
 
@@ -107,7 +108,7 @@ def film_response(film: Film | MixedFilm, frequency: ArrayLike) -> FilmResponse:
     ------
     InputError
         For frequencies that are no numbers; for a film that did not converge; for films with heat, whose oil answers
-        too; behind a layer, whose meniscus moves and stores oil.
+        too.
 
     Notes
     -----
@@ -181,37 +182,49 @@ def _why_not(film: object) -> tuple[str, str] | None:
         return "must be a solved Film or MixedFilm", "ehl.solve(contact) gives one"
     if not film.converged or smooth.state is None:
         return "must have converged", film.message
-    if isinstance(smooth.supply, OilLayer) and smooth.starved:
-        return (
-            "must be flooded or hold its meniscus: behind a layer that moves and stores oil, which is not computed",
-            f"give supply=Meniscus({smooth.inlet:.4g})",
-        )
     return None
 
 
 def _answers(level: Level, film: Film | MixedFilm, frequencies: Array) -> Complex:
-    """Derivatives of separation, central and minimum film by ln of the whole load (k, 3) [m]."""
-    supply = film.film.supply if isinstance(film, MixedFilm) else film.supply
-    by_load = _Linear.of(level, *heavier_by_step(level, supply))
-    alone = np.array([by_load.answer(frequency) for frequency in frequencies])
-    if not isinstance(film, MixedFilm) or film.asperity_share == 0.0:
-        return alone
-    by_part = _Linear.of(level, *eased_by_step(level, supply))
-    eased = np.array([by_part.answer(frequency) for frequency in frequencies])
-    return _shared(film, figures(level).central_thickness, alone, eased)
+    """Derivatives of separation, central and minimum film by ln of the whole load (k, 3) [m].
 
-
-def _shared(film: MixedFilm, gap: float, alone: Complex, eased: Complex) -> Complex:
-    """Let the asperities share the load at every moment: their excess at the gap x = 0 stays 0.
-
-    From the answers to ln of the film's load and to ln of the part of load and modulus that asperities leave to it.
+    The meniscus of a layer and the asperities' share follow so that the layer's oil is taken up and the asperities
+    carry what is asked of them at every moment.
     """
-    by_odds = -film.asperity_share * eased  # ln(1 - s) falls by s
-    at = excess(film.contact, film.roughness, gap, odds_of(film.asperity_share))
-    follow = -(at.by_load + at.by_gap * alone[:, 1]) / (at.by_gap * by_odds[:, 1] + at.by_odds)
-    answer: Complex = alone + by_odds * follow[:, None]
-    answer[:, 0] += (film.roughness.planes(gap)[1] - 1.0) * answer[:, 1]
+    smooth = film.film if isinstance(film, MixedFilm) else film
+    ways = [heavier_by_step(level, smooth.supply)]
+    fed = isinstance(smooth.supply, OilLayer) and level.plan.fixed
+    rough = isinstance(film, MixedFilm) and film.asperity_share > 0.0
+    if fed:
+        ways.append(farther_by_step(level))
+    if rough:
+        ways.append(eased_by_step(level, smooth.supply))
+    linear = _Linear.of(level, ways)
+    answers = np.array([linear.answer(frequency) for frequency in frequencies])  # (k, ways, 4)
+    gap = figures(level).central_thickness
+    rows = []
+    if fed:
+        rows.append(answers[:, :, 3])
+    if isinstance(film, MixedFilm) and rough:
+        at = excess(film.contact, film.roughness, gap, odds_of(film.asperity_share))
+        balance = at.by_gap * answers[:, :, 1]
+        balance[:, 0] += at.by_load
+        balance[:, -1] -= at.by_odds / film.asperity_share  # ln(1 - s) falls by s
+        rows.append(balance)
+    answer: Complex = _followed(answers[:, :, :3], np.array(rows))
+    if isinstance(film, MixedFilm) and rough:
+        answer[:, 0] += (film.roughness.planes(gap)[1] - 1.0) * answer[:, 1]
     return answer
+
+
+def _followed(answers: Complex, rows: Complex) -> Complex:
+    """Let all ways but the first follow it, so that every row of conditions stays 0: (k, ways, 3) to (k, 3)."""
+    if rows.size == 0:
+        return answers[:, 0]
+    conditions = np.moveaxis(rows, 0, 1)  # (k, rows, ways)
+    follow = np.linalg.solve(conditions[:, :, 1:], -conditions[:, :, :1])
+    followed: Complex = answers[:, 0] + (answers[:, 1:] * follow).sum(axis=1)
+    return followed
 
 
 def _not_slower(frequency: Array, contact: LineContact) -> Array:
@@ -221,64 +234,102 @@ def _not_slower(frequency: Array, contact: LineContact) -> Array:
     return frequencies
 
 
-@dataclass(frozen=True)
-class _Linear:
-    """One grid's linear problem (matrix - i omega stored) change = forced + i omega swept, by ln of a parameter."""
+class _Way(NamedTuple):
+    """What one parameter changes with P and H0 held, by its ln, on nodes that follow it."""
 
-    level: Level
-    matrix: Array
-    stored: Array  # [s]
-    forced: Array
-    swept: Array  # [s]
-    central: float  # explicit parts of the figures [m]
+    forced: Array  # net fluxes and load
+    swept: Array  # oil that moves between the nodes' volumes [s]
+    central: float  # figures [m]
     separation: float
-    thinned: Array  # change of the film at the nodes where they are, with P and H0 held [m]
-    free: Integers
+    thinned: Array  # film at the nodes where they are [m]
+    taken: float  # flow into the film [m], and what of it the first node's volume stores [m2]
+    held: float
 
     @classmethod
-    def of(cls, level: Level, other: LineContact, moved: Grid) -> _Linear:
-        """Linearise about the steady film, towards a contact a step away on nodes that follow it."""
-        from ehl.kernels.film_kernels import newton_matrix
-
+    def of(
+        cls, level: Level, before: Residual, scale: Array, free: Integers, way: tuple[LineContact, Grid]
+    ) -> _Way:
+        """Differentiate towards another contact on another grid, a step away."""
         grid, groups, solution = level.grid, level.groups, level.solution
-        before = Residual.of(grid, groups, solution.P, solution.H0)
+        other, moved = way
+        after = groups.on(other, moved)
         own = explicit(level, before, other, moved)
-        influence = -groups.compliance * grid.potential
-        free = np.flatnonzero(solution.P[1:-1] > 0.0) + 1
-        system = newton_matrix(before.slopes, influence, grid.weights, free)
-        scale = system[:-1, -1]
-        storage = Storage.of(grid, groups, solution.P, solution.H)
-        seconds = groups.length / level.contact.entrainment
-        stored = np.zeros((free.size + 1, free.size + 1))
-        stored[:-1] = seconds * scale[:, None] * storage.rows(influence, free)
-        after = level.groups.on(other, moved)
-        content = Content.of(grid, groups, solution.P, solution.H0)
-        swept = by_parameter(content, Content.of(moved, after, solution.P, solution.H0), STEP)
-        swept /= groups.gap * level.contact.entrainment
+        was, is_now = (
+            Content.of(*there, solution.P, solution.H0) for there in ((grid, groups), (moved, after))
+        )
+        swept = by_parameter(was, is_now, STEP) / (groups.gap * level.contact.entrainment)
+        places = float(grid.nodes[0]) * groups.length, float(moved.nodes[0]) * after.length
         return cls(
-            level=level,
-            matrix=np.ascontiguousarray(system[:, :-1]),
-            stored=stored,
             forced=np.append(-scale * own.net_flux[free - 1], own.short),
             swept=np.append(scale * swept[free - 1], 0.0),
             central=own.central,
             separation=own.separation,
             thinned=_thinned(level, other, moved),
+            taken=-float(own.flow[0]),
+            held=at_meniscus(was, is_now, places, level.flow, STEP),
+        )
+
+
+@dataclass(frozen=True)
+class _Linear:
+    """One grid's linear problem (matrix - i omega stored) change = forced + i omega swept, by ln of parameters."""
+
+    level: Level
+    before: Residual
+    matrix: Array
+    stored: Array  # [s]
+    at_first: float  # content of the first node's volume by its gap
+    free: Integers
+    ways: tuple[_Way, ...]
+
+    @classmethod
+    def of(cls, level: Level, ways: list[tuple[LineContact, Grid]]) -> _Linear:
+        """Linearise about the steady film, towards contacts a step away on nodes that follow them."""
+        from ehl.kernels.film_kernels import newton_matrix
+
+        grid, groups, solution = level.grid, level.groups, level.solution
+        before = Residual.of(grid, groups, solution.P, solution.H0)
+        influence = -groups.compliance * grid.potential
+        free = np.flatnonzero(solution.P[1:-1] > 0.0) + 1
+        system = newton_matrix(before.slopes, influence, grid.weights, free)
+        scale = system[:-1, -1]
+        storage = Storage.of(grid, groups, solution.P, solution.H)
+        stored = np.zeros((free.size + 1, free.size + 1))
+        seconds = groups.length / level.contact.entrainment
+        stored[:-1] = seconds * scale[:, None] * storage.rows(influence, free)
+        return cls(
+            level=level,
+            before=before,
+            matrix=np.ascontiguousarray(system[:, :-1]),
+            stored=stored,
+            at_first=float(storage.by_gap[0]) * groups.gap * groups.length,
             free=free,
+            ways=tuple(_Way.of(level, before, scale, free, way) for way in ways),
         )
 
     def answer(self, frequency: float) -> Complex:
-        """Derivatives of separation, central and minimum film by ln of the parameter [m]."""
+        """Derivatives of separation, central and minimum film, and oil that the first node misses (ways, 4) [m]."""
+        at = 1j * float(_not_slower(np.array(frequency), self.level.contact))
+        right = np.stack([way.forced + at * way.swept for way in self.ways], axis=1)
+        changes = np.linalg.solve(self.matrix - at * self.stored, right)
+        return np.array(
+            [self._figures(way, at, change) for way, change in zip(self.ways, changes.T, strict=True)]
+        )
+
+    def _figures(self, way: _Way, at: complex, change: Complex) -> Complex:
         level, grid, groups = self.level, self.level.grid, self.level.groups
-        at = 1j * float(_not_slower(np.array(frequency), level.contact))
-        change = np.linalg.solve(self.matrix - at * self.stored, self.forced + at * self.swept)
         dP, dH0 = np.zeros(grid.nodes.size, complex), change[-1]
         dP[self.free] = change[:-1]
+        dH = dH0 - groups.compliance * (grid.potential @ dP)
         centre = dH0 - groups.compliance * (grid.centre @ dP)
-        film = self.thinned + groups.gap * (dH0 - groups.compliance * (grid.potential @ dP))
+        film = way.thinned + groups.gap * dH
         least = np.interp(figures(level).minimum_position / groups.length, grid.nodes, film)
+        slopes = self.before.slopes[0]
+        taken = way.taken - groups.gap * (slopes[1:3] @ dP[:2] + slopes[4:] @ dH[:2])
+        held = way.held + self.at_first * dH[0]
+        missing = -taken - at / level.contact.entrainment * held
         derivatives: Complex = np.array(
-            [self.separation + groups.gap * dH0, self.central + groups.gap * centre, least]
+            [way.separation + groups.gap * dH0, way.central + groups.gap * centre, least, missing]
         )
         return derivatives
 

@@ -99,9 +99,7 @@ def slopes(level: Level, supply: Supply | None) -> Slopes:
 
 def by_distance(level: Level) -> Response:
     """Differentiate by ln of the distance between the meniscus and the dry contact, at a fixed load."""
-    plan = level.plan
-    farther = plan.with_inlet(-1.0 + (plan.domain[0] + 1.0) * math.exp(_step(level)))
-    return _differentiate(level, _Before(level), level.contact, moved_grid(level, farther), flow=True)
+    return _differentiate(level, _Before(level), *farther_by_step(level), flow=True)
 
 
 def by_share(level: Level, supply: Supply | None) -> Response:
@@ -171,6 +169,13 @@ def _along(
     )
     direct = _differentiate(level, before, other, moved, flow=farther is not None)
     return direct if farther is None else direct.less(direct.flow / farther.flow, farther)
+
+
+def farther_by_step(level: Level) -> tuple[LineContact, Grid]:
+    """Return the contact and the grid whose meniscus is a step of ln(distance) farther."""
+    plan = level.plan
+    farther = plan.with_inlet(-1.0 + (plan.domain[0] + 1.0) * math.exp(_step(level)))
+    return level.contact, moved_grid(level, farther)
 
 
 def heavier_by_step(level: Level, supply: Supply | None) -> tuple[LineContact, Grid]:

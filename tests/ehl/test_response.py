@@ -18,6 +18,9 @@ from ehl import (
     solve_mixed_thermal,
     solve_thermal,
 )
+from ehl.discrete.equations import fluxes
+from ehl.films.frequency import FilmResponse
+from ehl.solving.stepping import Laying, Moment, advance, backwards, steady
 from tests.ehl.films import quiet
 from tests.validation.article import PITCH
 
@@ -117,6 +120,86 @@ def test_asperities_carry_what_a_film_that_is_squeezed_fast_gives_back():
     assert bare.compliance == pytest.approx(smooth.compliance, rel=1e-6)
 
 
+LAYERS = [0.3, 0.6, 0.9]  # of the flooded flow
+
+
+@pytest.mark.parametrize("part", LAYERS)
+def test_behind_a_layer_slow_oscillations_are_steady_and_fast_ones_leave_the_meniscus(part):
+    film = quiet(PITCH, nodes=257, supply=OilLayer(part * quiet(PITCH).flow))
+    held = quiet(PITCH, nodes=257, supply=Meniscus(film.inlet))
+    slow = film_response(film, 0.0)
+    assert slow.compliance.real == pytest.approx(-film.separation_slope, rel=2e-4)
+    assert slow.central_compliance.real == pytest.approx(-film.central_slope, rel=2e-4)
+    # what a meniscus takes up or leaves in half an oscillation falls with its time
+    at = rate(PITCH) * np.array([0.1, 100.0])
+    behind, ahead = film_response(film, at), film_response(held, at)
+    off = np.abs(behind.central_compliance / ahead.central_compliance - 1.0)
+    assert off[1] < 0.03 < 0.5 < off[0]
+
+
+def test_asperities_share_slow_loads_behind_a_layer():
+    mixed = solve_mixed(PITCH, Roughness.of_deviation(8e-7), 1e-3, OilLayer(0.5 * quiet(PITCH).flow))
+    assert mixed.asperity_share > 0.02
+    answer = film_response(mixed, 0.0)
+    assert answer.compliance.real == pytest.approx(-mixed.separation_slope, rel=2e-4)
+    assert answer.central_compliance.real == pytest.approx(-mixed.central_slope, rel=2e-4)
+
+
+def fed(moments: list[Moment], time: float, contact: LineContact, laying: Laying, layer: float) -> Moment:
+    """Film at a time behind the meniscus that takes up what a layer brings, by the secant of its place."""
+
+    def missing(place: float) -> tuple[float, Moment]:
+        moment = advance(moments, time, contact, replace(laying, supply=Meniscus(place)))
+        assert moment is not None
+        level = moment.level
+        factors = backwards(moments, time)
+        now = [moment, moments[-1], moments[-2] if len(moments) > 1 else moments[-1]]
+        ends = [one.level.grid.nodes[0] * one.level.groups.length for one in now]
+        content, middle, end = (
+            sum(f * v for f, v in zip(factors, values, strict=True))
+            for values in ([one.content[0] for one in now], [one.middles[0] for one in now], ends)
+        )
+        P, H = level.solution.P, level.solution.H
+        film = level.groups.gap * np.mean(
+            level.groups.lubricant.density_ratio(level.groups.pressure * P[:2])[0] * H[:2]
+        )
+        flow = -fluxes(level.grid, level.groups, P, H, level.grid.quick)[0][0] * level.groups.gap
+        u = contact.entrainment
+        return layer * (u - end) - (flow * u - middle * film) - content, moment
+
+    last = moments[-1]
+    place = last.level.grid.nodes[0] * last.level.groups.length
+    other = place * (1.0 + 1e-4)
+    miss, moment = missing(place)
+    for _ in range(20):
+        next_miss, moment = missing(other)
+        if abs(next_miss) < 1e-9 * layer * contact.entrainment:
+            return moment
+        place, other, miss = other, other - next_miss * (other - place) / (next_miss - miss), next_miss
+    raise AssertionError
+
+
+@pytest.mark.parametrize("omega", [0.3, 1.0])
+def test_behind_a_layer_they_are_those_of_films_followed_in_time(omega):
+    """A load that rises and falls by a hundredth from the steady film on: the last period, by its first harmonic."""
+    film = quiet(PITCH, nodes=65, supply=OilLayer(0.6 * quiet(PITCH).flow))
+    level, b_u = film.state.fine, 1.0 / rate(PITCH)
+    laying, layer = Laying(level.contact, level.plan, 65, None), level.flow
+    moments, per_period, periods = [steady(0.0, level)], 60, 2
+    times = 2 * np.pi * b_u / omega * np.arange(1, periods * per_period + 1) / per_period
+    centre, separation = [], []
+    for time in times:
+        contact = replace(PITCH, load=PITCH.load * (1 + 0.01 * np.sin(omega / b_u * time)))
+        moments = [*moments[-2:], fed(moments, time, contact, laying, layer)]
+        centre.append(moments[-1].figures.central_thickness)
+        separation.append(moments[-1].figures.separation)
+    wave = 2.0 / per_period * np.exp(-1j * omega / b_u * times[-per_period:]) / (-1j * 0.01 * PITCH.load)
+    answer: FilmResponse = film_response(film, omega / b_u)
+    for values, compliance in ((separation, answer.compliance), (centre, answer.central_compliance)):
+        marched = -wave @ np.array(values)[-per_period:]
+        assert abs(marched / complex(compliance) - 1.0) < 0.02
+
+
 def test_shapes_are_those_of_the_frequencies():
     film = quiet(PITCH, nodes=65)
     assert film_response(film, 1e4).compliance.shape == ()
@@ -125,12 +208,9 @@ def test_shapes_are_those_of_the_frequencies():
 
 def test_what_cannot_be_answered_is_refused_with_the_reason():
     film = quiet(PITCH, nodes=65)
-    layer = quiet(PITCH, supply=OilLayer(0.5 * film.flow))
     for refused, word in (
-        (layer, "behind a layer"),
         (solve_thermal(PITCH, nodes=129), "isothermal"),
         (solve_mixed_thermal(PITCH, ROUGH, nodes=65), "isothermal"),
-        (solve_mixed(PITCH, ROUGH, supply=OilLayer(0.5 * film.flow)), "behind a layer"),
         (replace(film, converged=False, message="more nodes"), "converged"),
         (PITCH, "Film"),
     ):
