@@ -14,7 +14,6 @@ from base import (
     Cost,
     Faults,
     Limit,
-    SolverError,
     Stopwatch,
     described,
     quantity,
@@ -22,7 +21,7 @@ from base import (
 )
 from base.results import EXACT
 from flankfilm.coupling.cycle import MeshCycle
-from flankfilm.coupling.films import FilmModel, contacts_of, supply_of, touching
+from flankfilm.coupling.films import FilmModel, contacts_of, films_along, supply_of, touching
 from flankfilm.coupling.lubricated import SOLVED
 from flankfilm.coupling.lubricated_record import LubricatedCycle
 from flankfilm.coupling.oscillator import pair_scales
@@ -111,7 +110,7 @@ def film_damping(
         Of the pinion [N m], [rad/s].
     lubricant : ehl.Lubricant
     film : FilmModel
-        Flooded, or with a meniscus; smooth and solved.
+        Solved; asperities share the oscillating load, the meniscus of a layer moves with it.
     frequency : float, optional
         [rad/s].
     extra_inertia : (float, float)
@@ -124,7 +123,7 @@ def film_damping(
     Raises
     ------
     InputError
-        With every fault of the arguments: formulas have no answer, layers and asperities none that is computed.
+        With every fault of the arguments: formulas have no answer.
     SolverError
         Where a film has no solution.
 
@@ -149,9 +148,14 @@ def film_damping(
     kept = np.arange(cycle.position.size) % stride == stride // 2
     loaded, number = touching(cycle)
     with warned_once():
-        _, contacts = contacts_of(pair, cycle, speed, lubricant)
+        places, contacts = contacts_of(pair, cycle, speed, lubricant)
         chosen = np.flatnonzero(kept[loaded])
-        answers = _answers([contacts[i] for i in chosen], film, omega, tolerance)
+        few = tuple(contacts[i] for i in chosen)
+        supplies = tuple(supply_of(film.supply, contact) for contact in few)
+        films = films_along(film, places[chosen], few, supplies, (), tolerance)
+        answers = [
+            ehl.film_response(solved, omega) for solved in films if not isinstance(solved, ehl.FormulaFilm)
+        ]
     slope = teeth.slopes[loaded[chosen], number[chosen]]
     yielding = np.array([answer.compliance for answer in answers]) / pair.face_width
     errors = np.array([answer.error for answer in answers]) + np.array(
@@ -197,23 +201,6 @@ class _Teeth:
         return cls(slopes * scale[:, None], cycle.against(reference, extra_inertia).mean_secant_stiffness)
 
 
-def _answers(
-    contacts: list[ehl.LineContact], model: FilmModel, omega: float, tolerance: float
-) -> list[ehl.FilmResponse]:
-    """Answers of all contacts' films, each film solved from its neighbour."""
-    answers: list[ehl.FilmResponse] = []
-    start: ehl.Film | None = None
-    for contact in contacts:
-        film = ehl.solve(
-            contact, tolerance, start=start, supply=supply_of(model.supply, contact), grid=model.grid
-        )
-        if not film.converged:
-            raise SolverError(f"no film under {contact.load:.4g} N/m: {film.message}")
-        start = film
-        answers.append(ehl.film_response(film, omega))
-    return answers
-
-
 def _check(film: FilmModel, speed: Any, frequency: Any, tolerance: Any) -> None:
     """Raise every fault of the arguments."""
     with Faults() as faults:
@@ -224,16 +211,3 @@ def _check(film: FilmModel, speed: Any, frequency: Any, tolerance: Any) -> None:
         if film.name != "ehl":
             allowed = "must be solved films for their damping: a formula has none"
             faults.add("film.name", repr(film.name), allowed, 'take film.model = "ehl"')
-        if film.roughness is not None:
-            allowed = "must be left out for the damping of films: asperities' own is not known"
-            faults.add("film.roughness", "", allowed, "take smooth flanks, or a number for the damping ratio")
-        if film.held == "oil-layer":
-            allowed = (
-                "must be flooded or a meniscus for the damping of films: behind a layer the meniscus moves"
-            )
-            faults.add(
-                "film.supply",
-                "oil-layer",
-                allowed,
-                "hold the meniscus, or give a number for the damping ratio",
-            )

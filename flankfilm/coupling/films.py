@@ -251,10 +251,10 @@ def films_of(
     flooded: tuple[ehl.Film, ...] = ()
     if model.supply is not None:
         smooth = replace(model, supply=None, roughness=None)
-        smooth_films = _solved(smooth, rho1, contacts, (None,) * len(contacts), old.flooded, tolerance)
+        smooth_films = films_along(smooth, rho1, contacts, (None,) * len(contacts), old.flooded, tolerance)
         flooded = tuple(map(film_inside, smooth_films))
     supplies = tuple(supply_of(model.supply, contact) for contact in contacts)
-    films = _solved(model, rho1, contacts, supplies, old.films, tolerance, beside)
+    films = films_along(model, rho1, contacts, supplies, old.films, tolerance, beside)
     return PathFilms(rho1, films, flooded, beside)
 
 
@@ -266,10 +266,10 @@ def held_the_other_way(model: FilmModel, path: PathFilms, tolerance: float) -> P
         None if not film.starved else ehl.Meniscus(film.inlet) if by_layer else ehl.OilLayer(film.flow)
         for film in map(film_inside, path.films)
     )
-    return replace(path, films=_solved(model, path.rho1, contacts, supplies, path.films, tolerance))
+    return replace(path, films=films_along(model, path.rho1, contacts, supplies, path.films, tolerance))
 
 
-def _solved(
+def films_along(
     model: FilmModel,
     rho1: Array,
     contacts: tuple[ehl.LineContact, ...],
@@ -278,7 +278,13 @@ def _solved(
     tolerance: float,
     beside: tuple[int, ...] = (),
 ) -> tuple[Solved, ...]:
-    """Solve contacts one after the other, each from what it was before, or from the last."""
+    """Solve contacts one after the other, each from what it was before, or from the last.
+
+    Raises
+    ------
+    SolverError
+        Where a film has no solution.
+    """
     films: list[Solved] = []
     for i, (contact, supply) in enumerate(zip(contacts, supplies, strict=True)):
         near = before[i] if before else films[-1] if films else None

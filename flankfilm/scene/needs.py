@@ -173,12 +173,6 @@ def _without_damping(raw: Raw) -> Iterator[Fault]:
     if film.get("model") in ("none", "dowson"):
         allowed = "gives no films that answer an oscillation, which damping_ratio asks for"
         yield Fault("film.model", shorten(film["model"]), allowed, f'Take "ehl" or "auto", {number}')
-    if "roughness" in raw:
-        allowed = "excludes the damping of films: that of asperities is not known"
-        yield Fault("[roughness]", "", allowed, f"Drop it, {number}")
-    if film.get("supply") == "oil-layer":
-        allowed = "excludes the damping of films: behind a layer the meniscus moves and stores oil"
-        yield Fault("film.supply", "'oil-layer'", allowed, f'Take "flooded" or "meniscus", {number}')
 
 
 def _heated(raw: Raw, listed: set[str]) -> str:

@@ -117,7 +117,6 @@ def test_films_that_damp_nothing_are_refused_with_a_remedy():
     [
         ('[film]\nmodel = "ehl"', '[film]\nmodel = "dowson"', "film.model"),
         ('[film]\nmodel = "ehl"', '[film]\nmodel = "none"', "film.model"),
-        ('model = "ehl"', 'model = "ehl"\nsupply = "oil-layer"\noil_layer_um = 0.2', "film.supply"),
         ("pinion_speed_rpm = 2000", "", "operating.pinion_speed_rpm"),
         (
             '"film"\nerror_amplitude_um = 5',
@@ -132,6 +131,21 @@ def test_scenes_without_films_that_damp_are_refused(old, new, where):
     assert old in SCENE
     with pytest.raises(InputError, match=where):
         parse_scene(SCENE.replace(old, new))
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('model = "ehl"', 'model = "ehl"\nsupply = "oil-layer"\noil_layer_um = 0.5'),
+        ("[dynamics]", "[roughness]\nRa_um = 0.6\nwheel_Ra_um = 0.6\n[dynamics]"),
+    ],
+    ids=["layer", "rough"],
+)
+def test_layers_and_rough_flanks_damp_too(engine, old, new):
+    found = Engine(parse_scene(SCENE.replace(old, new)), Cache(None))[FILM_DAMPING]
+    smooth = engine[FILM_DAMPING]
+    assert found.damping_ratio > 0.0
+    assert found.damping_ratio != pytest.approx(smooth.damping_ratio, rel=0.02)
 
 
 def test_a_number_asks_for_no_film():

@@ -91,12 +91,39 @@ def test_a_meniscus_is_held_and_what_has_no_answer_is_refused():
     )
     flooded = film_damping(cycle, LOOSE, 60.0, SPEED, OIL, frequency=3e4, tolerance=0.02)
     assert held.damping != pytest.approx(flooded.damping, rel=0.05)
-    for film, word in (
-        (FilmModel("dowson"), "formula"),
-        (FilmModel(supply=ehl.OilLayer(1e-7)), "layer"),
-        (FilmModel(roughness=ehl.Roughness(1e-7, 4e10, 1e-5)), "asperities"),
-    ):
-        with pytest.raises(InputError, match=word):
-            film_damping(cycle, LOOSE, 60.0, SPEED, OIL, film=film)
+    with pytest.raises(InputError, match="formula"):
+        film_damping(cycle, LOOSE, 60.0, SPEED, OIL, film=FilmModel("dowson"))
     with pytest.raises(InputError, match="frequency"):
         film_damping(cycle, LOOSE, 60.0, SPEED, OIL, frequency=-1.0)
+
+
+@pytest.mark.parametrize(
+    "film",
+    [FilmModel(supply=ehl.OilLayer(2e-7)), FilmModel(roughness=ehl.Roughness.of_deviation(8e-7))],
+    ids=["layer", "rough"],
+)
+def test_layers_and_asperities_answer_as_films_by_hand(film):
+    cycle = mesh_cycle(LOOSE, 60.0, model="ishikawa")
+    found = film_damping(cycle, LOOSE, 60.0, SPEED, OIL, film=film, frequency=3e4, tolerance=0.01)
+    at = int(np.argmin(np.abs(cycle.position - found.position[7])))
+    total = 0.0
+    for rho1, force, share in zip(cycle.rho1[at], cycle.forces[at], cycle.load_share[at], strict=True):
+        if not force > 0.0:
+            continue
+        path = LOOSE.path_at(np.array([rho1]))
+        contact = ehl.LineContact(
+            force / LOOSE.face_width,
+            float(path.entrainment(SPEED)[0]),
+            float(path.radius[0]),
+            LOOSE.reduced_modulus,
+            OIL,
+        )
+        if film.roughness is None:
+            solved = ehl.solve(contact, 0.01, supply=film.supply)
+        else:
+            solved = ehl.solve_mixed(contact, film.roughness, 0.01)
+        compliance = complex(ehl.film_response(solved, 3e4).compliance) / LOOSE.face_width
+        total += (1.0 / (1.0 / (share * cycle.stiffness[at]) + compliance)).imag / 3e4
+    assert found.damping_curve[7] == pytest.approx(total, rel=0.03)
+    flooded = film_damping(cycle, LOOSE, 60.0, SPEED, OIL, frequency=3e4, tolerance=0.01)
+    assert found.damping != pytest.approx(flooded.damping, rel=0.02)
