@@ -73,6 +73,28 @@ def surface_heating(edges: Array, speed: float, solid: Solid, depth: float) -> A
     return integrals / (drift * math.pi * solid.conductivity)
 
 
+def oscillating_heating(
+    still: Array, edges: Array, speed: float, solid: Solid, depth: float, omega: float
+) -> Array:
+    """Return :func:`surface_heating` (``still``) of fluxes that oscillate as exp(i omega t): complex, (n, n).
+
+    ``exp(u s/2 kappa) K0(q |s|)/(pi k)`` with ``q^2 = (u/2 kappa)^2 + i omega/kappa``: what has passed a source carries
+    the heat that it gave then. The ratio of both lines' temperatures is taken at the distance of the cells' middles, at
+    a quarter of the cell in its own.
+    """
+    from scipy.special import kve
+
+    capacity = solid.density * solid.heat_capacity / solid.conductivity
+    drift = max(0.5 * abs(speed) * capacity, 1.0 / depth)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    far = np.abs(middle[:, None] - middle)
+    np.fill_diagonal(far, 0.25 * np.diff(edges))
+    fading = np.sqrt(drift**2 + 1j * omega * capacity)
+    ratio = kve(0, fading * far) / kve(0, drift * far) * np.exp((drift - fading) * far)
+    answer: Array = still * ratio
+    return answer
+
+
 @cache
 def _source_table() -> Array:
     """Integral of exp(y) K0(|y|) from 0 to s over ln|s|, with its derivative by ln|s|: rows behind, ahead."""

@@ -23,16 +23,18 @@ class Content(NamedTuple):
     film: Array  # rho h/rho0 there (n-1,) [m]
 
     @classmethod
-    def of(cls, grid: Grid, groups: Groups, P: Array, H0: float) -> Content:
+    def of(cls, grid: Grid, groups: Groups, P: Array, H0: float, density: Array | None = None) -> Content:
         """Compute all of full gaps; the first node's pressure is that of the inlet."""
         P = P.copy()
         P[0] = inlet_pressure(grid, groups)
-        return cls.under(grid, groups, P, film_gap(grid, groups, P, H0))
+        return cls.under(grid, groups, P, film_gap(grid, groups, P, H0), density)
 
     @classmethod
-    def under(cls, grid: Grid, groups: Groups, P: Array, H: Array) -> Content:
-        """Compute all of full gaps under pressures."""
-        film = groups.lubricant.density_ratio(groups.pressure * P)[0] * H * groups.gap
+    def under(cls, grid: Grid, groups: Groups, P: Array, H: Array, density: Array | None = None) -> Content:
+        """Compute all of full gaps under pressures; with heat the density rho/rho0 is given."""
+        if density is None:
+            density = groups.lubricant.density_ratio(groups.pressure * P)[0]
+        film = density * H * groups.gap
         middles = 0.5 * groups.length * (grid.nodes[1:] + grid.nodes[:-1])
         return cls(film * grid.weights * groups.length, middles, 0.5 * (film[1:] + film[:-1]))
 

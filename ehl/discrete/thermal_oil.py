@@ -36,6 +36,40 @@ class Sheared(NamedTuple):
     yielding: Array
 
 
+class Pressed(NamedTuple):
+    """What pressures and gaps make of the oil at its reference temperature, at the nodes."""
+
+    p: Array  # [Pa]
+    gap: Array  # [m]
+    ratio: Array  # ln(eta/eta0)
+    ratio_slope: Array
+    packed: Array  # rho/rho0
+    packed_slope: Array
+    moved: Array  # through every cell, see ThermalOil._moved
+
+
+class Heat(NamedTuple):
+    """What a sweep for the temperatures begins with and changes, see ehl.kernels.heat_kernels.heat_across."""
+
+    gap: Array
+    carried: Array
+    viscosity: Array
+    across: Array
+    rate: Array
+    fall: Array
+    yielding: Array
+    speed: Array
+    gradient: Array
+    bodies: Array
+    ambient: Array
+    stores: Array
+    added: Array
+    about: Array
+    temperature: Array
+    into: Array
+    response: Array
+
+
 @dataclass
 class ThermalOil:
     """State of the oil in the cells of one grid; follows the pressures and gaps that it is given.
@@ -68,6 +102,10 @@ class ThermalOil:
     gradient: Array = field(init=False)  # p' [Pa/m] (n-1,)
     response: Array | None = None  # (n-1, 2) of the mean temperature, see heat_kernels.heat_across
     carried: Array = field(init=False)  # (n, m): c rho u h through every node [W/(m K)]
+    mass: Array = field(init=False)  # (n-1,): what flows through every cell [kg/(m s)]
+    packed: Array = field(init=False)  # (n,): rho/rho0
+    under: Pressed = field(init=False)
+    begun_with: Heat | None = None  # as the last sweep has found it
 
     def __post_init__(self) -> None:
         """Begin at the bulk temperatures."""
@@ -77,6 +115,7 @@ class ThermalOil:
         self.left = self.lengths[1:] / (self.lengths[1:] + self.lengths[:-1])
         self.temperature = np.tile(self.undisturbed, (cells, 1))
         self.into, self.sigma = np.zeros((2, cells)), np.zeros(cells)
+        self.mass = np.zeros(cells)
         if self.solids is not None:
             surfaces = zip(self.contact.surface_speeds, self.solids, strict=True)
             depth = self.contact.radius
@@ -128,34 +167,45 @@ class ThermalOil:
 
     def at(self, P: Array, H: Array) -> Fluid:
         """Let flow, shear and heat follow pressures and gaps; give what the flux needs of them."""
-        oil, groups = self.contact.lubricant, self.groups
-        p, gap = groups.pressure * P, groups.gap * H
-        self.last = int(np.flatnonzero(P > 0.0)[-1])
-        ratio, slope = oil.log_viscosity(p)
-        packed, packed_slope = oil.density_ratio(p)
-        moved = self._moved(P, H)
+        self.press(P, H)
         if self.solids is not None:
-            self.shear = self._sheared(p, gap, ratio, packed, moved)
-            self._warm(p)
-        shear = self.shear = self._sheared(p, gap, ratio, packed, moved)
+            self._warm()
+        return self.given()
+
+    def press(self, P: Array, H: Array) -> None:
+        """Let flow and shear follow pressures and gaps, at the temperatures as they are."""
+        oil = self.contact.lubricant
+        p = self.groups.pressure * P
+        self.last = int(np.flatnonzero(P > 0.0)[-1])
+        self.under = Pressed(
+            p, self.groups.gap * H, *oil.log_viscosity(p), *oil.density_ratio(p), self._moved(P, H)
+        )
+        if self.solids is not None:
+            self.shear = self._sheared()
+
+    def given(self) -> Fluid:
+        """What the flux needs of the oil at its temperatures."""
+        oil, under, scale = self.contact.lubricant, self.under, self.groups.pressure
+        shear = self.shear = self._sheared()
         _, effective, carry, steep, thinning = shear.flow.T
         cells = self.across.weights @ shear.cooling.T
-        columns = np.empty((moved.size, 5))
+        columns = np.empty((steep.size, 5))
         columns[:, 0] = np.log(effective * carry / oil.viscosity)
         columns[:, 1] = cells * thinning / steep
-        columns[:, 2], columns[:, 3] = moved, steep
+        columns[:, 2], columns[:, 3] = under.moved, steep
         columns[:, 4] = 1.0 + thinning - 2.0 * steep
         thermal = 1.0 - oil.expansion * (
             self.at_nodes(self.temperature @ self.across.weights) - oil.temperature
         )
         factor = thermal * self.at_nodes(carry)
+        self.packed = under.packed * thermal
         self.before = Fluid(
-            ratio,
-            slope * groups.pressure,
-            packed * factor,
-            packed_slope * factor * groups.pressure,
+            under.ratio,
+            under.ratio_slope * scale,
+            under.packed * factor,
+            under.packed_slope * factor * scale,
             columns,
-            self._swelling(thermal, H),
+            self._swelling(thermal, under.gap / self.groups.gap),
         )
         return self.before
 
@@ -202,10 +252,11 @@ class ThermalOil:
         moved: Array = np.where(ratio > 1.0, more, np.where(ratio > 0.0, less, flow))
         return moved
 
-    def _sheared(self, p: Array, gap: Array, ratio: Array, packed: Array, moved: Array) -> Sheared:
+    def _sheared(self) -> Sheared:
         """Shear the oil of every cell at its temperatures and with what the pressure moves there."""
         from ehl.kernels.shear_kernels import flow_across
 
+        p, gap, ratio, _, packed, _, moved = self.under
         oil, contact, across = self.contact.lubricant, self.contact, self.across
         middle, pressed = 0.5 * (gap[1:] + gap[:-1]), 0.5 * (p[1:] + p[:-1])
         between = 0.5 * (ratio[1:] + ratio[:-1])
@@ -232,53 +283,56 @@ class ThermalOil:
         )
         return Sheared(middle, density, cooling, fall, viscosity, *profiles)
 
-    def _warm(self, p: Array) -> None:
+    def heat(self) -> Heat:
+        """What a sweep for the temperatures begins with."""
+        oil, shear = self.contact.lubricant, self.shear
+        through = (shear.density * shear.gap)[:, None] * shear.speed
+        self.mass = through @ self.across.weights
+        carried = oil.heat_capacity * self.at_nodes(
+            through + (self.mass[self.last // 2] - self.mass)[:, None]
+        )
+        self.carried, self.gradient = carried, np.diff(self.under.p) / self.lengths
+        near = shear.gap < self.inlet_gap * np.interp(0.0, self.middles, shear.gap)
+        self.first = max(1, int(np.argmax(near)))
+        return Heat(
+            shear.gap,
+            carried,
+            shear.viscosity,
+            shear.across,
+            shear.rate,
+            shear.fall,
+            shear.yielding,
+            shear.speed,
+            self.gradient,
+            self.bodies,
+            np.repeat(self.bulk[:, None], shear.gap.size, axis=1),
+            np.zeros(shear.gap.size),
+            np.zeros_like(self.temperature),
+            self.temperature.copy(),
+            self.temperature,
+            self.into,
+            np.zeros((shear.gap.size, 2)),
+        )
+
+    def sweep(self, heat: Heat) -> None:
         """Sweep for the temperatures, against the flow too where some runs back."""
         from ehl.kernels.heat_kernels import heat_across
 
-        oil, across, shear = self.contact.lubricant, self.across, self.shear
-        through = (shear.density * shear.gap)[:, None] * shear.speed
-        mass = through @ across.weights
-        self.carried = oil.heat_capacity * self.at_nodes(through + (mass[self.last // 2] - mass)[:, None])
-        self.gradient = np.diff(p) / self.lengths
-        self.response = np.zeros((shear.gap.size, 2))
-        first = self.first = max(
-            1, int(np.argmax(shear.gap < self.inlet_gap * np.interp(0.0, self.middles, shear.gap)))
-        )
-        before = self.temperature.copy()
+        oil, across = self.contact.lubricant, self.across
         back = np.flatnonzero(self.carried.min(axis=1) < 0.0)
         sweeps = [(self.last, False)]
         if back.size > 0:  # some runs back
             sweeps.insert(0, (min(int(back[-1]), self.last), True))
+        rules = across.zeta, across.weights, across.derive, across.stiffness, across.sum_up
         for to, backward in sweeps:
-            heat_across(
-                self.x,
-                shear.gap,
-                self.carried,
-                shear.viscosity,
-                shear.across,
-                shear.rate,
-                shear.fall,
-                shear.yielding,
-                shear.speed,
-                self.gradient,
-                oil.expansion,
-                oil.conductivity,
-                across.zeta,
-                across.weights,
-                across.derive,
-                across.stiffness,
-                across.sum_up,
-                self.bodies,
-                self.bulk,
-                first,
-                to,
-                before,
-                self.temperature,
-                self.into,
-                backward,
-                self.response,
-            )
-        self.temperature[self.last + 1 :] = self.temperature[self.last]
-        change, warm = self.temperature - before, self.temperature - self.undisturbed
+            heat_across(self.x, *heat, oil.expansion, oil.conductivity, *rules, self.first, to, backward)
+        heat.temperature[self.last + 1 :] = heat.temperature[self.last]
+
+    def _warm(self) -> None:
+        """Sweep, and note by how much the temperatures still change."""
+        heat = self.heat()
+        self.begun_with = heat._replace(temperature=heat.about, into=self.into.copy())
+        self.sweep(heat)
+        self.response = heat.response
+        change, warm = self.temperature - heat.about, self.temperature - self.undisturbed
         self.unsettled = float(np.abs(change).sum() / max(np.abs(warm).sum(), warm.size * _COLD))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+from scipy.linalg import lu_factor, lu_solve
 
 from base import Array, Cost, Faults, Integers, Limit, Stopwatch, described, part, quantity, record, unclocked
 from base.results import ITSELF
@@ -15,17 +17,28 @@ from ehl.discrete.equations import Grid, Residual, film_gap
 from ehl.discrete.squeeze import Content, Storage, at_meniscus, by_parameter
 from ehl.discrete.supply import OilLayer
 from ehl.films.film import Film
-from ehl.films.mixed_film import MixedFilm
+from ehl.films.mixed_film import RoughFilm
 from ehl.films.mixed_thermal import MixedThermalFilm
 from ehl.films.thermal import ThermalFilm
-from ehl.solving.levels import Level, figures
+from ehl.films.thermal_slopes import with_load_slopes
+from ehl.solving.levels import Level, WarmLevel, figures
 from ehl.solving.load_share import excess, odds_of
-from ehl.solving.response import STEP, eased_by_step, explicit, farther_by_step, heavier_by_step
-
-Complex = NDArray[np.complex128]
+from ehl.solving.oil_following import Complex, FollowingOil, following_oil
+from ehl.solving.response import (
+    eased_by_step,
+    explicit,
+    farther_by_step,
+    heavier_by_step,
+    step_of,
+    with_matrix,
+)
 
 _FREQUENCY = Limit(-1e12, 1e12, "rad/s", "give the angular frequency in rad/s")
 _NO_ERROR = "not estimated; its change between two grids is part of the compliance's error"
+_UNSETTLED = (
+    "the temperatures do not settle as the load oscillates so fast, or as it changes: take lower frequencies, or the "
+    "isothermal film"
+)
 _SLOWEST = 1e-4  # u/b: below it stiffness and damping are those of this frequency, to 1e-8
 
 
@@ -35,7 +48,7 @@ class FilmResponse:
 
     headline = ("static_stiffness",)
 
-    film: Film | MixedFilm = part("the steady film")
+    film: Film | RoughFilm = part("the steady film, with its slopes by the load")
     frequency: Array = quantity("rad/s", "angular frequency of the load", "frequency")
     compliance: Complex = quantity(
         "m2/N", "complex -d(film separation)/dw", "frequency", error="relative_error"
@@ -82,7 +95,7 @@ class FilmResponse:
         return -1.0 / self.film.separation_slope
 
 
-def film_response(film: Film | MixedFilm, frequency: ArrayLike) -> FilmResponse:
+def film_response(film: Film | RoughFilm, frequency: ArrayLike) -> FilmResponse:
     """Linear response of a solved film to an oscillating load.
 
     Reynolds' equation with its squeeze term, ``d/dx[rho h^3/(12 eta) dp/dx] = u d(rho h)/dx + d(rho h)/dt``, linearised
@@ -124,13 +137,15 @@ def film_response(film: Film | MixedFilm, frequency: ArrayLike) -> FilmResponse:
     ['5.78e+12 N/m, 4.13e+09 N s/m', '1.66e+12 N/m, 2.47e+09 N s/m']
     """
     at = _checked(film, frequency)
-    smooth = film.film if isinstance(film, MixedFilm) else film
+    if math.isnan(film.separation_slope):
+        film = _with_slopes(film)
+    smooth = film.film if isinstance(film, RoughFilm) else film
     assert smooth.state is not None
     with unclocked():
         import ehl.kernels.film_kernels  # noqa: F401  numba
     watch = Stopwatch()
     coarse, fine = (
-        _answers(level, film, at.ravel()).reshape(*at.shape, 3) / film.contact.load
+        _answers(_differentiable(level), film, at.ravel()).reshape(*at.shape, 3) / film.contact.load
         for level in (smooth.state.coarse, smooth.state.fine)
     )
     # waves of the film may leave the separation as it is by accident: the central film's change counts as well
@@ -146,12 +161,24 @@ def film_response(film: Film | MixedFilm, frequency: ArrayLike) -> FilmResponse:
         least_compliance=-fine[..., 2],
         relative_error=error,
         cost=Cost(watch.seconds, unknowns=unknowns, iterations=at.size),
-        converged=True,
-        message="converged",
+        converged=bool(np.isfinite(error).all()),
+        message="converged" if np.isfinite(error).all() else _UNSETTLED,
     )
 
 
-def _checked(film: Film | MixedFilm, frequency: ArrayLike) -> Array:
+def _with_slopes(film: Film | RoughFilm) -> Film | RoughFilm:
+    """Add the slopes of a film with heat by its load."""
+    if isinstance(film, ThermalFilm):
+        return with_load_slopes(film)
+    return with_load_slopes(film) if isinstance(film, MixedThermalFilm) else film
+
+
+def _differentiable(level: Level) -> Level:
+    """Return a level with heat with its Newton matrix; another as it is."""
+    return with_matrix(level) if isinstance(level, WarmLevel) else level
+
+
+def _checked(film: Film | RoughFilm, frequency: ArrayLike) -> Array:
     """Raise every fault of the arguments; return the frequencies."""
     at = np.zeros(0)
     with Faults() as faults:
@@ -172,29 +199,24 @@ def _checked(film: Film | MixedFilm, frequency: ArrayLike) -> Array:
 
 def _why_not(film: object) -> tuple[str, str] | None:
     """What a film must be and is not, and the remedy."""
-    if isinstance(film, ThermalFilm | MixedThermalFilm):
-        return (
-            "must be isothermal: with heat the oil's temperature answers too, which is not computed",
-            "solve(contact) or solve_mixed with the oil at the film's mean temperature",
-        )
-    smooth = film.film if isinstance(film, MixedFilm) else film
-    if not isinstance(film, Film | MixedFilm) or not isinstance(smooth, Film):
+    smooth = film.film if isinstance(film, RoughFilm) else film
+    if not isinstance(film, Film | RoughFilm) or not isinstance(smooth, Film):
         return "must be a solved Film or MixedFilm", "ehl.solve(contact) gives one"
     if not film.converged or smooth.state is None:
         return "must have converged", film.message
     return None
 
 
-def _answers(level: Level, film: Film | MixedFilm, frequencies: Array) -> Complex:
+def _answers(level: Level, film: Film | RoughFilm, frequencies: Array) -> Complex:
     """Derivatives of separation, central and minimum film by ln of the whole load (k, 3) [m].
 
     The meniscus of a layer and the asperities' share follow so that the layer's oil is taken up and the asperities
     carry what is asked of them at every moment.
     """
-    smooth = film.film if isinstance(film, MixedFilm) else film
+    smooth = film.film if isinstance(film, RoughFilm) else film
     ways = [heavier_by_step(level, smooth.supply)]
     fed = isinstance(smooth.supply, OilLayer) and level.plan.fixed
-    rough = isinstance(film, MixedFilm) and film.asperity_share > 0.0
+    rough = isinstance(film, RoughFilm) and film.asperity_share > 0.0
     if fed:
         ways.append(farther_by_step(level))
     if rough:
@@ -205,14 +227,14 @@ def _answers(level: Level, film: Film | MixedFilm, frequencies: Array) -> Comple
     rows = []
     if fed:
         rows.append(answers[:, :, 3])
-    if isinstance(film, MixedFilm) and rough:
+    if isinstance(film, RoughFilm) and rough:
         at = excess(film.contact, film.roughness, gap, odds_of(film.asperity_share))
         balance = at.by_gap * answers[:, :, 1]
         balance[:, 0] += at.by_load
         balance[:, -1] -= at.by_odds / film.asperity_share  # ln(1 - s) falls by s
         rows.append(balance)
     answer: Complex = _followed(answers[:, :, :3], np.array(rows))
-    if isinstance(film, MixedFilm) and rough:
+    if isinstance(film, RoughFilm) and rough:
         answer[:, 0] += (film.roughness.planes(gap)[1] - 1.0) * answer[:, 1]
     return answer
 
@@ -235,8 +257,10 @@ def _not_slower(frequency: Array, contact: LineContact) -> Array:
 
 
 class _Way(NamedTuple):
-    """What one parameter changes with P and H0 held, by its ln, on nodes that follow it."""
+    """What one parameter changes with P and H0 held, by its ln, on nodes that follow it; without heat in the oil."""
 
+    contact: LineContact
+    moved: Grid
     forced: Array  # net fluxes and load
     swept: Array  # oil that moves between the nodes' volumes [s]
     central: float  # figures [m]
@@ -254,19 +278,22 @@ class _Way(NamedTuple):
         other, moved = way
         after = groups.on(other, moved)
         own = explicit(level, before, other, moved)
+        step = step_of(level)
         was, is_now = (
             Content.of(*there, solution.P, solution.H0) for there in ((grid, groups), (moved, after))
         )
-        swept = by_parameter(was, is_now, STEP) / (groups.gap * level.contact.entrainment)
+        swept = by_parameter(was, is_now, step) / (groups.gap * level.contact.entrainment)
         places = float(grid.nodes[0]) * groups.length, float(moved.nodes[0]) * after.length
         return cls(
+            contact=other,
+            moved=moved,
             forced=np.append(-scale * own.net_flux[free - 1], own.short),
             swept=np.append(scale * swept[free - 1], 0.0),
             central=own.central,
             separation=own.separation,
             thinned=_thinned(level, other, moved),
             taken=-float(own.flow[0]),
-            held=at_meniscus(was, is_now, places, level.flow, STEP),
+            held=at_meniscus(was, is_now, places, level.flow, step),
         )
 
 
@@ -276,8 +303,10 @@ class _Linear:
 
     level: Level
     before: Residual
+    oil: FollowingOil | None  # of films with heat
     matrix: Array
     stored: Array  # [s]
+    scale: Array  # of the rows
     at_first: float  # content of the first node's volume by its gap
     free: Integers
     ways: tuple[_Way, ...]
@@ -289,9 +318,13 @@ class _Linear:
 
         grid, groups, solution = level.grid, level.groups, level.solution
         before = Residual.of(grid, groups, solution.P, solution.H0)
-        influence = -groups.compliance * grid.potential
+        influence = by_pressure = -groups.compliance * grid.potential
         free = np.flatnonzero(solution.P[1:-1] > 0.0) + 1
-        system = newton_matrix(before.slopes, influence, grid.weights, free)
+        slopes, following = before.slopes, following_oil(level)
+        if following is not None:
+            slopes = following.after(0).residual.slopes
+            by_pressure = influence + following.swelling
+        system = newton_matrix(slopes, by_pressure, grid.weights, free)
         scale = system[:-1, -1]
         storage = Storage.of(grid, groups, solution.P, solution.H)
         stored = np.zeros((free.size + 1, free.size + 1))
@@ -300,6 +333,8 @@ class _Linear:
         return cls(
             level=level,
             before=before,
+            oil=following,
+            scale=scale,
             matrix=np.ascontiguousarray(system[:, :-1]),
             stored=stored,
             at_first=float(storage.by_gap[0]) * groups.gap * groups.length,
@@ -309,25 +344,47 @@ class _Linear:
 
     def answer(self, frequency: float) -> Complex:
         """Derivatives of separation, central and minimum film, and oil that the first node misses (ways, 4) [m]."""
-        at = 1j * float(_not_slower(np.array(frequency), self.level.contact))
-        right = np.stack([way.forced + at * way.swept for way in self.ways], axis=1)
-        changes = np.linalg.solve(self.matrix - at * self.stored, right)
+        omega = float(_not_slower(np.array(frequency), self.level.contact))
+        system = self.matrix - 1j * omega * self.stored
+        if self.oil is not None:
+            return np.array([self._with_heat(way, omega, lu_factor(system)) for way in self.ways])
+        right = np.stack([way.forced + 1j * omega * way.swept for way in self.ways], axis=1)
+        changes = np.linalg.solve(system, right)
         return np.array(
-            [self._figures(way, at, change) for way, change in zip(self.ways, changes.T, strict=True)]
+            [
+                self._figures(way, *self._at_nodes(change), omega)
+                for way, change in zip(self.ways, changes.T, strict=True)
+            ]
         )
 
-    def _figures(self, way: _Way, at: complex, change: Complex) -> Complex:
-        level, grid, groups = self.level, self.level.grid, self.level.groups
-        dP, dH0 = np.zeros(grid.nodes.size, complex), change[-1]
+    def _at_nodes(self, change: Complex) -> tuple[Complex, complex]:
+        dP = np.zeros(self.level.grid.nodes.size, complex)
         dP[self.free] = change[:-1]
+        return dP, complex(change[-1])
+
+    def _with_heat(self, way: _Way, omega: float, factors: Any) -> Complex:
+        def solve(net_flux: Complex, short: complex) -> tuple[Complex, complex]:
+            right = np.append(-self.scale * net_flux[self.free - 1], short)
+            return self._at_nodes(lu_solve(factors, right))
+
+        assert self.oil is not None
+        oil = self.oil.level.oil.on(way.contact, way.moved)
+        answer = self.oil.towards(oil, way.moved, solve, omega)
+        return self._figures(way, answer.P, answer.H0, omega, answer.missing)
+
+    def _figures(
+        self, way: _Way, dP: Complex, dH0: complex, omega: float, missing: complex | None = None
+    ) -> Complex:
+        level, grid, groups = self.level, self.level.grid, self.level.groups
         dH = dH0 - groups.compliance * (grid.potential @ dP)
         centre = dH0 - groups.compliance * (grid.centre @ dP)
         film = way.thinned + groups.gap * dH
         least = np.interp(figures(level).minimum_position / groups.length, grid.nodes, film)
-        slopes = self.before.slopes[0]
-        taken = way.taken - groups.gap * (slopes[1:3] @ dP[:2] + slopes[4:] @ dH[:2])
-        held = way.held + self.at_first * dH[0]
-        missing = -taken - at / level.contact.entrainment * held
+        if missing is None:
+            slopes = self.before.slopes[0]
+            taken = way.taken - groups.gap * (slopes[1:3] @ dP[:2] + slopes[4:] @ dH[:2])
+            held = way.held + self.at_first * dH[0]
+            missing = -taken - 1j * omega / level.contact.entrainment * held
         derivatives: Complex = np.array(
             [way.separation + groups.gap * dH0, way.central + groups.gap * centre, least, missing]
         )
@@ -341,5 +398,5 @@ def _thinned(level: Level, heavier: LineContact, moved: Grid) -> Array:
     x, x_moved = grid.nodes * groups.length, moved.nodes * after.length
     film = solution.H * groups.gap
     carried = film_gap(moved, after, solution.P, solution.H0) * after.gap
-    change: Array = (carried - film - np.gradient(film, x) * (x_moved - x)) / STEP
+    change: Array = (carried - film - np.gradient(film, x) * (x_moved - x)) / step_of(level)
     return change

@@ -53,6 +53,14 @@ def heat_across(
     yielding: Array,
     speed: Array,
     gradient: Array,
+    bodies: Array,
+    ambient: Array,
+    stores: Array,
+    added: Array,
+    about: Array,
+    temperature: Array,
+    into: Array,
+    response: Array,
     expansion: float,
     conductivity: float,
     zeta: Array,
@@ -60,15 +68,9 @@ def heat_across(
     derive: Array,
     stiffness: Array,
     sum_up: Array,
-    bodies: Array,
-    bulk: Array,
     first: int,
     last: int,
-    about: Array,
-    temperature: Array,
-    into: Array,
     backward: bool,
-    response: Array,
 ) -> None:
     """Sweep once along the film for the temperature across every cell and in both surfaces.
 
@@ -77,7 +79,7 @@ def heat_across(
     of the one and into the other, the upstream cell's, carried on to the face by its slope where it flows
     downstream; across in the weak form with the weights of integration, so that the sums over the film balance to
     rounding. The heat that shear makes changes with the temperature, at a given speed of sliding and pressure flow:
-    Newton's method about ``about``. At the surfaces T = bulk + bodies @ flux.
+    Newton's method about ``about``. At the surfaces T = ambient + bodies @ flux.
 
     Parameters
     ----------
@@ -89,48 +91,56 @@ def heat_across(
         eta [Pa s], tau [Pa] and du/dz [1/s].
     thinning, yielding : ndarray (n, m)
         -d ln(eta)/dT [1/K] and d(du/dz)/dtau [1/(Pa s)]; 0 where the stress does not yield.
-    speed, gradient, expansion : ndarray (n, m), (n,), float
-        u [m/s], p' [Pa/m], and the oil's thermal expansion [1/K].
-    conductivity : float
-        k [W/(m K)].
-    zeta, weights, derive, stiffness, sum_up : ndarray
-        Places and weights (m,); matrices (m, m) of the derivative, of the integral of products of derivatives, and of
-        the integral from -1/2.
+    speed, gradient : ndarray (n, m), (n,)
+        u [m/s] and p' [Pa/m].
     bodies : ndarray (2, n, n)
         Temperature of either surface per heat flux into it [K m2/W].
-    bulk : ndarray (2,)
-        Bulk temperatures [K].
-    first, last : int
-        First and last cell that are solved.
+    ambient : ndarray (2, n)
+        Temperatures of either surface without the film's heat, those of the bulk in steady films [K].
+    stores, added : ndarray (n,), (n, m)
+        Heat that the oil takes up per temperature [W/(m2 K)], and that further sources make, over the film's
+        thickness [W/m2]; 0 in steady films.
     about : ndarray (n, m)
         Temperatures for which stress and rate stand [K].
     temperature, into : ndarray (n, m), (2, n)
         T [K] and the heat flux into either body [W/m2]; changed in place.
-    backward : bool
-        From the outlet to the inlet.
     response : ndarray (n, 2)
         Filled with the change of every cell's mean temperature by that of the cell upstream, and by the pressure's
         rise through the cell [K/Pa].
+    expansion, conductivity : float
+        The oil's thermal expansion [1/K] and k [W/(m K)].
+    zeta, weights, derive, stiffness, sum_up : ndarray
+        Places and weights (m,); matrices (m, m) of the derivative, of the integral of products of derivatives, and of
+        the integral from -1/2.
+    first, last : int
+        First and last cell that are solved.
+    backward : bool
+        From the outlet to the inlet.
+
+    Notes
+    -----
+    Complex arrays are steady films with a small complex change: real parts decide which way heat flows.
     """
     m = weights.size
-    system = np.empty((m, m))
-    right = np.empty((m, 3))
-    wall = np.empty((2, m))
-    wall_right = np.empty(2)
-    down_flow = np.empty(m)
-    eased = np.empty(m)
-    turned = np.empty(m)
+    system = np.empty((m, m), temperature.dtype)
+    right = np.empty((m, 3), temperature.dtype)
+    wall = np.empty((2, m), temperature.dtype)
+    wall_right = np.empty(2, temperature.dtype)
+    down_flow = np.empty(m, temperature.dtype)
+    eased = np.empty(m, temperature.dtype)
+    turned = np.empty(m, temperature.dtype)
+    nothing = 0.0 * temperature[0, 0]
     for step in range(first, last + 1):
         i = last + first - step if backward else step
         h = gap[i]
         dx = x[i + 1] - x[i]
         near = dx / (x[i + 1] - x[i - 1]) if i > 0 else 0.0
         far = (x[i] - x[i - 1]) / (x[i] - x[i - 2]) if i > 1 else 0.0
-        y0 = 0.0
-        y1 = 0.0
-        y2 = 0.0
-        fluid = 0.0
-        lean = 0.0
+        y0 = nothing
+        y1 = nothing
+        y2 = nothing
+        fluid = nothing
+        lean = nothing
         for j in range(m):
             part = weights[j] * yielding[i, j]
             y0 += part
@@ -140,17 +150,17 @@ def heat_across(
             lean += weights[j] * zeta[j] / viscosity[i, j]
         lean /= fluid
         yields = y0 * y2 - y1 * y1
-        cooled = 0.0
-        tilted = 0.0
-        slid = 0.0
+        cooled = nothing
+        tilted = nothing
+        slid = nothing
         for j in range(m):
             # hotter oil shears more at the same stress; mean stress and slope of the pressure give way, since the
             # sliding and what the pressure moves are given
             slid += weights[j] * rate[i, j]
         for j in range(m):
-            eased[j] = 0.0
-            turned[j] = 0.0
-            if y0 > 0.0:
+            eased[j] = nothing
+            turned[j] = nothing
+            if y0.real > 0.0:
                 sheared = weights[j] * rate[i, j] * thinning[i, j]
                 moved = zeta[j] * sheared
                 moved -= slid * weights[j] / viscosity[i, j] * (zeta[j] - lean) * thinning[i, j] / fluid
@@ -158,7 +168,7 @@ def heat_across(
                 turned[j] = (y0 * moved - y1 * sheared) / yields
             cooled += eased[j] * about[i, j]
             tilted += turned[j] * about[i, j]
-            total = 0.0
+            total = nothing
             for k in range(m):
                 total += sum_up[j, k] * (flow[i + 1, k] - flow[i, k])
             down_flow[j] = -total / dx
@@ -172,20 +182,21 @@ def heat_across(
                 )
             source = h * stress[i, j] * rate[i, j]
             squeezed = h * expansion * speed[i, j]
-            diagonal = -squeezed * gradient[i]
-            if y0 > 0.0:
+            diagonal = stores[i] - squeezed * gradient[i]
+            if y0.real > 0.0:
                 hotter = source * thinning[i, j]
                 diagonal -= hotter
                 source -= hotter * about[i, j]
+            source += added[i, j]
             out = flow[i + 1, j] / dx
-            if out >= 0.0 and i > 0:
+            if out.real >= 0.0 and i > 0:
                 diagonal += out * near
                 source += out * near * temperature[i - 1, j]
-            elif out < 0.0 and i < last:
+            elif out.real < 0.0 and i < last:
                 diagonal -= out
                 source -= out * temperature[i + 1, j]
             enters = flow[i, j] / dx
-            if enters > 0.0 and i > 0:
+            if enters.real > 0.0 and i > 0:
                 carried = temperature[i - 1, j]
                 if i > 1:
                     carried += far * (temperature[i - 1, j] - temperature[i - 2, j])
@@ -193,11 +204,13 @@ def heat_across(
                 source += enters * carried
             system[j, j] += weights[j] * diagonal
             right[j, 0] = weights[j] * source + gives * (cooled + zeta[j] * tilted)
-            right[j, 1] = weights[j] * (max(enters, 0.0) + max(out, 0.0) * near)
+            comes = enters if enters.real > 0.0 else nothing
+            goes = out if out.real > 0.0 else nothing
+            right[j, 1] = weights[j] * (comes + goes * near)
             right[j, 2] = weights[j] * squeezed * temperature[i, j] / dx
         for side in range(2):
             row = 0 if side == 0 else m - 1
-            warmed = bulk[side]
+            warmed = ambient[side, i]
             own = bodies[side, i, i]
             for k in range(last + 1):
                 if k != i:
@@ -216,13 +229,13 @@ def heat_across(
         solve_small(system, right)
         steepest = 0.0
         for j in range(m):
-            steepest = max(steepest, abs(right[j, 0] - temperature[i, j]) * thinning[i, j])
+            steepest = max(steepest, abs(right[j, 0] - temperature[i, j]) * thinning[i, j].real)
         taken = min(1.0, _STEP / steepest) if steepest > 0.0 else 1.0
         for j in range(m):
             right[j, 0] = temperature[i, j] + taken * (right[j, 0] - temperature[i, j])
             temperature[i, j] = right[j, 0]
         for k in range(2):
-            total = 0.0
+            total = nothing
             for j in range(m):
                 total += weights[j] * right[j, 1 + k]
             response[i, k] = total

@@ -1,9 +1,7 @@
 """Derivatives of a solved contact's figures by its load, from the factorised Newton matrix.
 
 J d(P, H0) = -d(residual): the residual is differentiated by a forward difference at fixed P and H0, on nodes
-that may move; the rest is exact. With heat J leaves out most of what the oil's own state does, as it does in Newton's
-method: the difference of the residual is then taken along the derivative found so far, with the oil following, and J
-corrects it until it is balanced.
+that may move; the rest is exact. With heat the oil follows, see :mod:`ehl.solving.oil_following`.
 """
 
 from __future__ import annotations
@@ -19,20 +17,16 @@ from ehl.discrete.contact import LineContact
 from ehl.discrete.equations import Grid, Groups, Residual
 from ehl.discrete.newton import newton
 from ehl.discrete.supply import OilLayer, Supply
-from ehl.discrete.thermal_oil import ThermalOil
 from ehl.solving.levels import Level, WarmLevel, dry_approach
+from ehl.solving.oil_following import WARM_STEP, Complex, FollowingOil, behind_middle, following_oil
 from ehl.solving.plan import Plan, expected_film
 
-STEP = 3e-7
-"""Of ln w and of ln(distance of the meniscus), in differences of the residual."""
+_STEP = 3e-7  # of a parameter's ln, in differences of the residual of isothermal films
 
-_WARM_STEP = 3e-4  # likewise where the oil's own state follows, which is known to some 1e-9 of itself
 _WARM_DONE = (
     1e-6  # last step of the pressure before a film is differentiated with its oil, and the most steps
 )
 _WARM_STEPS = 6
-_BALANCED = 5e-4  # last correction of the figures' derivatives over these
-_MOST_CORRECTIONS = 40
 
 
 @dataclass(frozen=True)
@@ -85,8 +79,8 @@ def slopes(level: Level, supply: Supply | None) -> Slopes:
     supply the inlet moves, and all nodes with it.
     """
     contact, plan = level.contact, level.plan
-    before = _Before(level)
-    heavier = replace(contact, load=contact.load * math.exp(_step(level)))
+    before = before_step(level)
+    heavier = replace(contact, load=contact.load * math.exp(step_of(level)))
     growth = expected_film(heavier) / expected_film(contact)
     if supply is None or not plan.fixed:
         moving = _along(level, before, heavier, growth, supply)
@@ -99,7 +93,7 @@ def slopes(level: Level, supply: Supply | None) -> Slopes:
 
 def by_distance(level: Level) -> Response:
     """Differentiate by ln of the distance between the meniscus and the dry contact, at a fixed load."""
-    return _differentiate(level, _Before(level), *farther_by_step(level), flow=True)
+    return _differentiate(level, before_step(level), *farther_by_step(level), flow=True)
 
 
 def by_share(level: Level, supply: Supply | None) -> Response:
@@ -107,13 +101,13 @@ def by_share(level: Level, supply: Supply | None) -> Response:
     more = _eased(level)
     farther = by_distance(level) if isinstance(supply, OilLayer) and level.plan.fixed else None
     return _along(
-        level, _Before(level), more, expected_film(more) / expected_film(level.contact), supply, farther
+        level, before_step(level), more, expected_film(more) / expected_film(level.contact), supply, farther
     )
 
 
 def _eased(level: Level) -> LineContact:
     """Return the contact with a step more of load and modulus left to the film."""
-    contact, grown = level.contact, math.exp(_step(level))
+    contact, grown = level.contact, math.exp(step_of(level))
     return replace(contact, load=grown * contact.load, reduced_modulus=grown * contact.reduced_modulus)
 
 
@@ -133,28 +127,24 @@ def with_matrix(level: WarmLevel) -> WarmLevel:
     return replace(level, solution=solved, oil=oil)
 
 
-class _Before:
-    """Residual of a level; of one with an oil after every sweep of the oil, which may still change a little."""
-
-    def __init__(self, level: Level) -> None:
-        self.level = level
-        self.oil = None if level.oil is None else level.oil.on(level.contact, level.grid)
-        self.residuals: list[Residual] = []
-
-    def after(self, sweeps: int) -> Residual:
-        level, solution = self.level, self.level.solution
-        while len(self.residuals) <= sweeps:
-            self.residuals.append(Residual.of(level.grid, level.groups, solution.P, solution.H0, self.oil))
-        return self.residuals[sweeps]
+Before = Residual | FollowingOil
+"""A level before a step: its residual, or its oil that follows."""
 
 
-def _step(level: Level) -> float:
-    return STEP if level.oil is None else _WARM_STEP
+def before_step(level: Level) -> Before:
+    """Take the residual of a level, or of one with heat its oil."""
+    solution = level.solution
+    return following_oil(level) or Residual.of(level.grid, level.groups, solution.P, solution.H0)
+
+
+def step_of(level: Level) -> float:
+    """Step of a parameter's ln in differences of a level's residual."""
+    return _STEP if level.oil is None else WARM_STEP
 
 
 def _along(
     level: Level,
-    before: _Before,
+    before: Before,
     other: LineContact,
     growth: float,
     supply: Supply | None,
@@ -174,14 +164,14 @@ def _along(
 def farther_by_step(level: Level) -> tuple[LineContact, Grid]:
     """Return the contact and the grid whose meniscus is a step of ln(distance) farther."""
     plan = level.plan
-    farther = plan.with_inlet(-1.0 + (plan.domain[0] + 1.0) * math.exp(_step(level)))
+    farther = plan.with_inlet(-1.0 + (plan.domain[0] + 1.0) * math.exp(step_of(level)))
     return level.contact, moved_grid(level, farther)
 
 
 def heavier_by_step(level: Level, supply: Supply | None) -> tuple[LineContact, Grid]:
     """Return the contact under a load a step larger, and the grid whose nodes follow its film."""
     contact = level.contact
-    return _followed(level, replace(contact, load=contact.load * math.exp(STEP)), supply)
+    return _followed(level, replace(contact, load=contact.load * math.exp(step_of(level))), supply)
 
 
 def eased_by_step(level: Level, supply: Supply | None) -> tuple[LineContact, Grid]:
@@ -204,14 +194,23 @@ def moved_grid(level: Level, plan: Plan) -> Grid:
 
 
 def _differentiate(
-    level: Level, before: _Before, contact: LineContact, moved: Grid, *, flow: bool = False
+    level: Level, before: Before, contact: LineContact, moved: Grid, *, flow: bool = False
 ) -> Response:
     """Differentiate the figures towards another contact on another grid, a step of the parameter away."""
     solution, grid, groups = level.solution, level.grid, level.groups
     assert solution.factors is not None, "only a converged level is differentiated"
-    if level.oil is not None:
-        return _with_oil(level, level.oil.on(contact, moved), before, moved)
-    still = before.after(0)
+    if isinstance(before, FollowingOil):
+        factors, n = solution.factors, solution.P.size
+
+        def solve(net_flux: Complex, short: complex) -> tuple[Complex, complex]:
+            """Real changes, as complex ones."""
+            dP, dH0 = factors.solve(-net_flux.real, short.real, n)
+            return dP.astype(complex), complex(dH0)
+
+        answer = before.towards(before.level.oil.on(contact, moved), moved, solve)
+        central, separation, carried = answer.figures.real.tolist()
+        return Response(central, separation, carried, answer.P.real, answer.H0.real)
+    still = before
     own = explicit(level, still, contact, moved)
     dP, dH0 = solution.factors.solve(-own.net_flux, own.short, solution.P.size)
     by_pressure = groups.compliance * float(grid.centre @ dP)
@@ -223,43 +222,6 @@ def _differentiate(
         P=dP,
         H0=dH0,
     )
-
-
-def _with_oil(level: Level, oil: ThermalOil, before: _Before, moved: Grid) -> Response:
-    """Differentiate with an oil that follows; NaN where the figures' derivatives do not settle."""
-    solution, groups, after = level.solution, level.groups, oil.groups
-    factors, n, cells = solution.factors, solution.P.size, _behind_middle(solution.P)
-    assert factors is not None, "only a level with its matrix is differentiated"
-    stretched = (solution.H0 + dry_approach(level.grid)) * (after.gap - groups.gap) / _WARM_STEP
-    answer = Response(math.nan, math.nan, math.nan, np.zeros(n), 0.0)
-    for sweep in range(_MOST_CORRECTIONS):
-        dP, dH0 = answer.P, answer.H0
-        here = before.after(sweep)
-        with np.errstate(all="ignore"):
-            there = Residual.of(
-                moved, after, solution.P + _WARM_STEP * dP, solution.H0 + _WARM_STEP * dH0, oil
-            )
-        net_flux = (np.diff(there.flux) - np.diff(here.flux)) / _WARM_STEP
-        more, more_H0 = factors.solve(-net_flux, (there.short - here.short) / _WARM_STEP, n)
-        last, answer = (
-            answer,
-            Response(
-                central=(there.centre - here.centre) / _WARM_STEP,
-                separation=stretched + dH0 * after.gap,
-                flow=-float(np.mean((there.flux * after.gap - here.flux * groups.gap)[cells])) / _WARM_STEP,
-                P=dP + more,
-                H0=dH0 + more_H0,
-            ),
-        )
-        if np.allclose(last[:3], answer[:3], rtol=_BALANCED, atol=0.0):
-            return answer
-    return Response(math.nan, math.nan, math.nan, answer.P, answer.H0)
-
-
-def _behind_middle(P: Array) -> slice:
-    """Cells of the second half of the film."""
-    free = np.flatnonzero(P[1:-1] > 0.0) + 1
-    return slice(int(free[free.size // 2]), int(free[-1]))
 
 
 class Explicit(NamedTuple):
@@ -277,12 +239,13 @@ def explicit(level: Level, before: Residual, contact: LineContact, moved: Grid) 
     solution, groups = level.solution, level.groups
     after = Groups.on(contact, moved)
     changed = Residual.of(moved, after, solution.P, solution.H0)
+    step = step_of(level)
     return Explicit(
-        net_flux=(np.diff(changed.flux) - np.diff(before.flux)) / STEP,
-        short=(changed.short - before.short) / STEP,
-        flow=(changed.flux * after.gap - before.flux * groups.gap) / STEP,
-        central=(changed.centre - before.centre) / STEP,
-        separation=(solution.H0 + dry_approach(level.grid)) * (after.gap - groups.gap) / STEP,
+        net_flux=(np.diff(changed.flux) - np.diff(before.flux)) / step,
+        short=(changed.short - before.short) / step,
+        flow=(changed.flux * after.gap - before.flux * groups.gap) / step,
+        central=(changed.centre - before.centre) / step,
+        separation=(solution.H0 + dry_approach(level.grid)) * (after.gap - groups.gap) / step,
     )
 
 
@@ -290,7 +253,7 @@ def _flow_slope(level: Level, before: Residual, explicit: Array, dP: Array, dH0:
     """Differentiate the flow [m], taken as the mean over the second half of the film."""
     dH = dH0 - level.groups.compliance * (level.grid.potential @ dP)
     by = level.groups.gap * before.slopes
-    cells = _behind_middle(level.solution.P)
+    cells = behind_middle(level.solution.P)
     low, high = cells.start, cells.stop
     changes = explicit[low:high].copy()
     for k in range(3):
