@@ -24,6 +24,7 @@ from fem.elasticity.ring import ring_of
 from fem.influence.back_compliance import back_compliance
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.mesh_setup import MeshSetup
+from fem.pair.face_setting import face_setting
 from gears import Gear, GearDeviations, GearPair, PitchDeviations, TipRelief
 from gears.tooth.rotation import turned
 from meshes import gear_mesh, mesh_sector
@@ -174,6 +175,24 @@ def test_flanks_that_stay_clear_are_known_without_their_laws(teeth):
         closer = replace(alone, contacts=replace(alone.contacts, share=share))
         known = stays_clear(given, bodies, force, None, flanks, closer, np.array([True, False]), 0.6)
         assert (known is not None) is free
+
+
+@pytest.mark.slow
+def test_gaps_of_flanks_that_stay_clear_hold_what_free_ends_add():
+    """Free ends yield more than even loads, by which the bound is known: without their doubt it was too large."""
+    pair = GearPair(Gear(36), Gear(40), 2e-3, 4e-3)
+    bodies, force = fem.compliance(pair, tolerance=0.02), np.array([60.0 / pair.base_radii[0]])
+    setup, apart = MeshSetup(pair, 6, face=face_setting(pair, None, 8, "free-ends")), np.zeros(1, dtype=bool)
+    tables = EdgeTables(setup, bodies)
+    flanks = loaded_flanks(setup, bodies, None, 0.6, float(force[0]), tables)
+    alone = solve_one_side(setup, bodies, force, flanks, tables)
+    clear = stays_clear(setup, bodies, force, None, flanks, alone, apart, 0.6)
+    true = share_with_opposite(setup, bodies, force, None, flanks, alone, apart, 0.6, tables).opposite
+    gap, deflection = true.contacts.open, alone.share.transmission_error[..., None]
+    near = gap < deflection
+    doubted = (gap[near] - clear.contacts.open[near]) / np.broadcast_to(deflection, gap.shape)[near]
+    assert np.all(doubted >= 0.0)
+    assert np.all(doubted < 0.05)
 
 
 def testboth_sides_balance_the_torque(tight):
