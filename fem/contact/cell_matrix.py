@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Array, Booleans
+from base import Array, Booleans, Integers
 from fem.contact.cell_coupling import CellCoupling
 from fem.influence.gear_store import GearStore
 from fem.pair.face_across import pair_ends_across, pair_waves_across, places_across
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fem.laws.contact_candidates import ContactCandidates
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["cell_coupling", "cell_matrix", "cross_coupling", "cross_matrix", "in_blocks"]
+__all__ = ["cell_coupling", "cell_matrix", "coupled_by", "cross_coupling", "cross_matrix", "in_blocks"]
 
 MOST_KEPT = 8_000_000
 """Numbers of a compliance up to which it is kept."""
@@ -47,8 +47,7 @@ def cell_coupling(
 
     if size > MOST_KEPT:
         return cut()
-    arrays = (candidates.rho, candidates.touchable, lever_ratios, matrix)
-    key = (*_kept_by(bodies), face.coupled, *(array.tobytes() for array in arrays))
+    key = coupled_by(bodies, face, candidates.rho, candidates.touchable, lever_ratios, matrix)
     return GearStore().over_face("cells", key, cut)
 
 
@@ -71,7 +70,7 @@ def cross_coupling(
     loaded, other = flanks
     front, rear = (other, loaded) if back else (loaded, other)
     plane = np.swapaxes(matrix, 1, 2) if back else matrix
-    cells, own = face.cells, np.arange(face.cells)
+    cells = face.cells
 
     def cut() -> tuple[Array, ...]:
         blocks: list[Array] = []
@@ -81,10 +80,7 @@ def cross_coupling(
             levers = front.lever_ratios[of], rear.lever_ratios[of]
             sides = front.candidates.at(of), rear.candidates.at(of)
             between = cross_matrix(face, bodies, *sides, levers, plane[of])
-            rows, columns = (
-                [(np.flatnonzero(row)[:, None] * cells + own).ravel() for row in side.touchable]
-                for side in sides
-            )
+            rows, columns = (_touching(side.touchable, cells) for side in sides)
             chosen = zip(between, rows, columns, strict=True)
             blocks += (each.take(row, axis=0).take(column, axis=1) for each, row, column in chosen)
         return tuple(block.T for block in blocks) if back else tuple(blocks)
@@ -97,19 +93,20 @@ def cross_coupling(
         for side in (front, rear)
         for array in (side.candidates.rho, side.candidates.touchable, side.lever_ratios)
     )
-    key = (*_kept_by(bodies), back, face.coupled, *(array.tobytes() for array in (plane, *arrays)))
-    return GearStore().over_face("cells across", key, cut)
+    return GearStore().over_face("cells across", (back, *coupled_by(bodies, face, plane, *arrays)), cut)
 
 
-def _kept_by(bodies: PairCompliance) -> tuple[Any, ...]:
-    """What decides how a pair couples cells, but for their places."""
-    laws = (bodies.pinion.law.plane_modulus, bodies.wheel.law.plane_modulus)
-    pair = bodies.pair
-    return (
-        bodies.meshed,
-        laws,
-        (pair.module, pair.face_width, pair.face_widths, pair.face_offsets, bodies.reach),
-    )
+def coupled_by(bodies: PairCompliance, face: FaceSetting, *arrays: Array | Booleans) -> tuple[Any, ...]:
+    """What decides how a pair couples cells: gears, face, and arrays of the places."""
+    laws, pair = (bodies.pinion.law.plane_modulus, bodies.wheel.law.plane_modulus), bodies.pair
+    sizes = (pair.module, pair.face_width, pair.face_widths, pair.face_offsets, bodies.reach)
+    return bodies.meshed, laws, sizes, face.coupled, *(array.tobytes() for array in arrays)
+
+
+def _touching(touchable: Booleans, cells: int) -> tuple[Integers, ...]:
+    """Cells of pairs that may touch at each position, among those of all pairs."""
+    own = np.arange(cells)
+    return tuple((np.flatnonzero(row)[:, None] * cells + own).ravel() for row in touchable)
 
 
 def in_blocks(matrices: Callable[[slice], Array], touchable: Booleans, cells: int) -> CellCoupling:
@@ -122,8 +119,7 @@ def in_blocks(matrices: Callable[[slice], Array], touchable: Booleans, cells: in
     touchable : (positions, pairs) boolean array
     cells : int
     """
-    own, (positions, pairs) = np.arange(cells), touchable.shape
-    chosen = tuple((np.flatnonzero(row)[:, None] * cells + own).ravel() for row in touchable)
+    chosen, (positions, pairs) = _touching(touchable, cells), touchable.shape
     blocks: list[Array] = []
     step = max(1, MOST_AT_ONCE // (pairs * cells) ** 2)
     for first in range(0, positions, step):

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from base import Array, Integers, record
+from base import Array, record
 from fem.contact.cell_coupling import CellCoupling
 from fem.contact.moved_side import MovedSide
 from fem.contact.moving_contacts import MovingContacts
 from fem.contact.shared_contacts import SharedContacts, of_pairs, settled_gaps
 from fem.pair.face_shafts import HeldShafts, joined, shafts_under_face
+from fem.pair.wide_contact import shares_together
 from gears.sharing.active_set import ContactForces, LoadShare, share_forces
 
 if TYPE_CHECKING:
@@ -74,12 +75,7 @@ def moved_share(
             assert isinstance(contacts, MovingContacts)
             solved = _on_shafts(flanks, contacts, asked, near)
         else:
-            share = _solved(contacts, asked, near, stays.share.transmission_error[torques])
-            solved = (
-                None
-                if share is None
-                else _Solved(share, _open(contacts, share, near.shape[-1] == 1), contacts.lever_losses(share))
-            )
+            solved = _on_rigid_shafts(contacts, asked, near, stays.share.transmission_error[torques])
         if solved is None:
             return None
         forces[torques] = solved.share.forces.reshape(near.shape)
@@ -89,10 +85,11 @@ def moved_share(
         shares.append(of_pairs(solved.share, near.shape[-1]))
         order.append(torques)
     back = np.argsort(np.concatenate(order))
+    share = shares_together(shares, back)
     lost[:, 0] += flanks.turned_levers()
     return replace(
         stays,
-        share=_in_order(shares, back, stays.share.iterations),
+        share=replace(share, iterations=share.iterations + stays.share.iterations),
         forces=forces,
         remaining_gaps=remaining_gaps,
         lost=lost,
@@ -108,6 +105,14 @@ class _Solved:
     open: Array
     lost: tuple[Array, Array]
     shafts: HeldShafts | None = None
+
+
+def _on_rigid_shafts(contacts: Rolling, whole: Array, near: Array, approach: Array) -> _Solved | None:
+    """Solve from contacts that stay."""
+    share = _solved(contacts, whole, near, approach)
+    if share is None:
+        return None
+    return _Solved(share, _open(contacts, share, near.shape[-1] == 1), contacts.lever_losses(share))
 
 
 def _on_shafts(side: MovedSide, contacts: MovingContacts, whole: Array, near: Array) -> _Solved | None:
@@ -152,10 +157,3 @@ def _solved(contacts: Rolling, whole: Array, near: Array, approach: Array | None
         if share is not None:
             return share
     return None
-
-
-def _in_order(shares: list[LoadShare], order: Integers, before: int) -> LoadShare:
-    """Shares of some torques each, as one of all, with iterations before them."""
-    names = ("forces", "transmission_error", "stiffness", "pair_stiffness")
-    columns = {name: np.concatenate([getattr(share, name) for share in shares])[order] for name in names}
-    return replace(shares[0], **columns, iterations=before + max(share.iterations for share in shares))

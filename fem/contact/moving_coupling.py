@@ -9,7 +9,7 @@ import numpy as np
 
 from base import Array, Booleans
 from fem.contact.cell_coupling import CellCoupling
-from fem.contact.cell_matrix import MOST_KEPT, cell_matrix, in_blocks
+from fem.contact.cell_matrix import MOST_KEPT, cell_matrix, coupled_by, in_blocks
 from fem.influence.gear_store import GearStore
 from fem.pair.face_compliance import waves_of
 from fem.pair.face_setting import SLICES
@@ -32,14 +32,9 @@ def cell_roll(
 ) -> CellCoupling:
     """C' between cells of pairs that may touch [1/N], kept for loads and alignments that follow."""
     held = replace(face, strip=0.0)  # which does not change with the place
-    arrays = (candidates.rho, candidates.touchable, moves.roll)
-    laws = (bodies.pinion.law.plane_modulus, bodies.wheel.law.plane_modulus)
-    pair = bodies.pair
-    size_of = (pair.module, pair.face_width, pair.face_widths, pair.face_offsets, bodies.reach)
-    key = (bodies.meshed, laws, size_of, held.coupled, *(array.tobytes() for array in arrays))
 
     def differ(of: slice) -> Array:
-        rho, roll, step = candidates.rho[:, of], moves.roll[of], STEP * pair.module
+        rho, roll, step = candidates.rho[:, of], moves.roll[of], STEP * bodies.pair.module
         (count, pairs), n = roll.shape[:2], face.cells
         ones, still = np.ones((count, pairs)), np.zeros_like(roll)
         ahead, behind = (
@@ -57,6 +52,7 @@ def cell_roll(
 
     if np.sum((candidates.touchable.sum(axis=-1) * face.cells) ** 2) > MOST_KEPT:
         return cut()
+    key = coupled_by(bodies, held, candidates.rho, candidates.touchable, moves.roll)
     return GearStore().over_face("roll", key, cut)
 
 

@@ -243,8 +243,8 @@ def both_moved(
         kept = beside_nothing(staying, bodies, alone.contacts, even=False)
         rolled = _rolled(sides, bodies, kept)
         clear = nothing_overlaps(staying, rolled)
-        if not setup.face.even_load:  # cells are solved anew at all positions
-            clear[...] = clear.all()
+        if rolled is kept:  # then solved anew at all positions
+            clear = np.full_like(clear, clear.all())
         clear = clear | apart[:, None, None]
 
     def solve(whole: Array) -> SharedContacts | None:

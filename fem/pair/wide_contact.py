@@ -13,7 +13,7 @@ wide as the widest contact: then slopes of Hertz's law and waves together stay d
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -24,7 +24,7 @@ from base import Array, Integers
 if TYPE_CHECKING:
     from gears import LoadShare
 
-__all__ = ["NARROW", "beyond_logarithm", "shared_by_width"]
+__all__ = ["NARROW", "beyond_logarithm", "shared_by_width", "shares_together"]
 
 NARROW = 2.5
 """Half-widths of the contact that a cell is long without being narrow."""
@@ -113,21 +113,29 @@ def shared_by_width(
         wide = (width(shared) > reaches(level[numbers])) & (at < WIDEST)
         for k, number in enumerate(numbers):
             if not wide[k]:
-                shares[int(number)] = _part(shared, k)
+                shares[int(number)] = shares_together([shared], np.array([k]))
         if wide.any():
             level[numbers[wide]] += 1
             todo.append(numbers[wide])
-    share_of_all = _joined([shares[number] for number in range(len(start))])
+    numbers = np.arange(len(start))
+    share_of_all = shares_together([shares[number] for number in numbers.tolist()], numbers)
     return share_of_all, np.array([strip(int(step)) for step in level])
 
 
-def _part(share: LoadShare, number: int) -> LoadShare:
-    """Share of a single torque."""
-    names = ("forces", "transmission_error", "stiffness", "pair_stiffness")
-    return replace(share, **{name: getattr(share, name)[number] for name in names})
+def shares_together(shares: Sequence[LoadShare], order: Integers) -> LoadShare:
+    """Shares of several torques each as one of all, in an order of the torques.
 
-
-def _joined(parts: list[LoadShare]) -> LoadShare:
-    names = ("forces", "transmission_error", "stiffness", "pair_stiffness")
-    together = {name: np.stack([getattr(part, name) for part in parts]) for name in names}
-    return replace(parts[0], **together, iterations=max(part.iterations for part in parts))
+    Parameters
+    ----------
+    shares : sequence of LoadShare
+    order : (torques,) array of int
+        Numbers of the torques, of all shares one after the other.
+    """
+    return replace(
+        shares[0],
+        forces=np.concatenate([share.forces for share in shares])[order],
+        transmission_error=np.concatenate([share.transmission_error for share in shares])[order],
+        stiffness=np.concatenate([share.stiffness for share in shares])[order],
+        pair_stiffness=np.concatenate([share.pair_stiffness for share in shares])[order],
+        iterations=max(share.iterations for share in shares),
+    )
