@@ -15,8 +15,6 @@ from ehl import (
     Roughness,
     film_response,
     solve_mixed,
-    solve_mixed_thermal,
-    solve_thermal,
 )
 from ehl.discrete.equations import fluxes
 from ehl.films.frequency import FilmResponse
@@ -24,7 +22,6 @@ from ehl.solving.stepping import Laying, Moment, advance, backwards, steady
 from tests.ehl.films import quiet
 from tests.validation.article import PITCH
 
-ROUGH = Roughness(1e-7, 4e10, 1e-5)
 LIGHT = replace(PITCH, load=0.03 * PITCH.load)
 
 
@@ -209,8 +206,6 @@ def test_shapes_are_those_of_the_frequencies():
 def test_what_cannot_be_answered_is_refused_with_the_reason():
     film = quiet(PITCH, nodes=65)
     for refused, word in (
-        (solve_thermal(PITCH, nodes=129), "isothermal"),
-        (solve_mixed_thermal(PITCH, ROUGH, nodes=65), "isothermal"),
         (replace(film, converged=False, message="more nodes"), "converged"),
         (PITCH, "Film"),
     ):
