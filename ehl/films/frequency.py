@@ -104,9 +104,10 @@ def film_response(film: Film | RoughFilm, frequency: ArrayLike) -> FilmResponse:
 
     Parameters
     ----------
-    film : Film or MixedFilm
-        Isothermal, however it is supplied. The meniscus of a layer moves so that it takes up what the layer brings.
-        Between rough surfaces the asperities share the load with the film at every moment: their share follows the gap.
+    film : Film, ThermalFilm, MixedFilm or MixedThermalFilm
+        However it is supplied. The meniscus of a layer moves so that it takes up what the layer brings. Between rough
+        surfaces the asperities share the load with the film at every moment: their share follows the gap. With heat oil
+        and surfaces store heat and take it along; a film without slopes by the load gets them.
     frequency : float or array_like
         omega [rad/s]; at 0 stiffness and damping are the limits for slow oscillations.
 
@@ -120,8 +121,7 @@ def film_response(film: Film | RoughFilm, frequency: ArrayLike) -> FilmResponse:
     Raises
     ------
     InputError
-        For frequencies that are no numbers; for a film that did not converge; for films with heat, whose oil answers
-        too.
+        For frequencies that are no numbers; for a film that did not converge.
 
     Notes
     -----
