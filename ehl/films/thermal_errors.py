@@ -30,8 +30,7 @@ class Compared:
         fine: WarmLevel,
         tolerance: float,
         flooded: State | None = None,
-        *,
-        last: bool = False,
+        nodes: int | None = None,
     ) -> None:
         self.coarse, self.fine, self.before, self.oil = coarse, fine, coarse.oil, fine.oil
         self.flooded = flooded
@@ -45,7 +44,8 @@ class Compared:
         film = film_error(self.coarse, self.fine) + _LEAST * abs(lowest_0 / lowest - 1.0)
         # what the hottest oil does to film and traction is in these; itself it may stand at the spike
         self.error = max(film, GRID_FACTOR * self.traction_error) + self.inlet + cut + rest
-        self.enough = last or self.error <= tolerance
+        # a grid that is asked for has no tolerance to meet, nor do coarser ones end the search for it
+        self.enough = self.error <= tolerance if nodes is None else fine.grid.nodes.size == nodes
 
     @cached_property
     def temperature_error(self) -> float:

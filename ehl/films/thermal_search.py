@@ -123,7 +123,7 @@ class Search:
 
     def _compared(self, nodes: int | None, coarse: WarmLevel, fine: WarmLevel) -> Compared:
         n = fine.grid.nodes.size
-        compared = Compared(coarse, fine, self.tolerance, self.flooded, last=n == nodes)
+        compared = Compared(coarse, fine, self.tolerance, self.flooded, nodes)
         self.reason = f"error {compared.error:.2g} left on {n} nodes"
         return compared
 

@@ -241,3 +241,11 @@ def test_heat_closes_with_that_of_the_cavity():
     oil = replace(ROLLING, eyring_stress=5e6)
     film = solve_thermal(LineContact(3e4, 3.0, 0.012, 2.2e11, oil, sliding=0.5))
     assert abs(film.losses.closure) < 0.02
+
+
+@pytest.mark.parametrize("nodes", [65, 129, 257, 513])
+def test_grids_asked_for_are_those_that_are_solved(nodes):
+    """Also where a coarser one on the way would have met the tolerance."""
+    film = solve_thermal(SLIDING, nodes=nodes, tolerance=0.05)
+    assert film.converged
+    assert film.x.size == nodes
