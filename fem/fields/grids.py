@@ -1,4 +1,4 @@
-"""Grids of VTK: precision of what they hold, the fields that a viewer shows first, and their files."""
+"""Grids of VTK: those of fields in the plane and over the face, precision of what they hold, and their files."""
 
 from __future__ import annotations
 
@@ -10,11 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base import replacing
+from fem.fields.contact_forces import ContactForces
+from fem.fields.face_fields import FaceField, ToothField
+from fem.fields.flank_patches import FlankField
+from fem.fields.stress_fields import GearField, of_axis
 
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["active", "rounded", "single_precision", "write_grid"]
+__all__ = ["face_grids", "plane_grids", "rounded", "write_grid"]
 
 DROPPED = 12
 """Bits of the mantissa that fields but the displacement lose: 12 significant ones stay (2.5e-4 of the value), which is
@@ -23,6 +27,86 @@ finer than the fields are exact and packs far better."""
 LEVEL, BLOCK = 1, 1 << 22
 """zlib's fastest, since more effort saves no more than some per cent of digits that are nearly random; and bytes that
 are packed at once."""
+
+
+COMPONENTS = {"stress_Pa": ("xx", "yy", "zz", "xy"), "principal_Pa": ("larger", "smaller")}
+
+
+def plane_grids(
+    pinion: GearField, wheel: GearField, contacts: ContactForces
+) -> dict[str, pyvista.UnstructuredGrid]:
+    """Grids of both gears and of the contacts by the names of their blocks."""
+    return {
+        "pinion": _gear_grid(pinion, 0),
+        "wheel": _gear_grid(wheel, 1),
+        "contacts": _contact_grid(contacts),
+    }
+
+
+def _gear_grid(field: GearField, gear: int) -> pyvista.UnstructuredGrid:
+    import pyvista
+
+    grid = pyvista.UnstructuredGrid(
+        {pyvista.CellType.QUADRATIC_TRIANGLE: field.cells}, single_precision(field.points)
+    )
+    for name, values in field.point_data.items():
+        if name == "principal_direction":  # it follows from the stress, and would add an eighth to the file
+            continue
+        stored = single_precision(values, flat=name in COMPONENTS)
+        grid.point_data[name] = stored if name == "displacement_m" else rounded(stored)
+        for i, label in enumerate(COMPONENTS.get(name, ())):
+            grid.GetPointData().GetArray(name).SetComponentName(i, label)
+    for name, numbers in field.cell_data.items():
+        grid.cell_data[name] = numbers.astype(np.int32)
+    grid.cell_data["gear"] = np.full(len(field.cells), gear, dtype=np.int32)
+    return active(grid, "von_mises_Pa", "displacement_m")
+
+
+def _contact_grid(contacts: ContactForces) -> pyvista.UnstructuredGrid:
+    import pyvista
+
+    vertices = np.arange(len(contacts.points))[:, None]
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.VERTEX: vertices}, single_precision(contacts.points))
+    for name, values in contacts.point_data.items():
+        whole = np.issubdtype(values.dtype, np.integer)
+        grid.point_data[name] = values.astype(np.int32) if whole else single_precision(values)
+    return active(grid, "pressure_Pa", "force_N")
+
+
+def face_grids(pinion: FaceField, wheel: FaceField) -> dict[str, pyvista.UnstructuredGrid]:
+    """Grids of both gears by the names of their blocks."""
+    gears = {"pinion": pinion, "wheel": wheel}
+    teeth = {name: _teeth(field.teeth, gear) for gear, (name, field) in enumerate(gears.items())}
+    return teeth | {
+        f"{name}_flanks": _flanks(field.flanks, i) for i, (name, field) in enumerate(gears.items())
+    }
+
+
+def _teeth(field: ToothField, gear: int) -> pyvista.UnstructuredGrid:
+    import pyvista
+
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.WEDGE: field.cells}, single_precision(field.points))
+    grid.point_data["displacement_m"] = rounded(single_precision(field.displacement_m))
+    grid.cell_data["tooth"] = field.tooth.astype(np.int16)
+    grid.cell_data["gear"] = np.full(len(field.cells), gear, dtype=np.int8)
+    grid.GetPointData().SetActiveVectors("displacement_m")
+    return grid
+
+
+def _flanks(field: FlankField, gear: int) -> pyvista.UnstructuredGrid:
+    import pyvista
+
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.QUAD: field.cells}, field.points)
+    grid.point_data["displacement_m"] = rounded(single_precision(field.displacement_m))
+    for name, values in of_axis(field, "cell").items():
+        whole = np.issubdtype(values.dtype, np.integer)
+        # pressures keep all their digits, so that they add up to the force
+        stored = values if name == "pressure_Pa" else single_precision(values)
+        grid.cell_data[name] = values.astype(np.int16) if whole else stored
+    grid.cell_data["gear"] = np.full(len(field.cells), gear, dtype=np.int8)
+    grid.GetCellData().SetActiveScalars("pressure_Pa")
+    grid.GetPointData().SetActiveVectors("displacement_m")
+    return grid
 
 
 def active(grid: pyvista.UnstructuredGrid, scalars: str, vectors: str) -> pyvista.UnstructuredGrid:

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
-
-import numpy as np
 
 from base import replacing
 from fem.cycle.result import MeshCycle
-from fem.fields.contact_forces import ContactForces, contact_forces
+from fem.fields.contact_forces import contact_forces
 from fem.fields.drawing import GearDrawing
 from fem.fields.face_fields import face_fields
-from fem.fields.face_vtk import face_blocks, face_grids
-from fem.fields.face_waves import gear_prisms
-from fem.fields.grids import active, rounded, single_precision, write_grid
+from fem.fields.face_waves import GearPrisms, gear_prisms
+from fem.fields.grids import face_grids, plane_grids, write_grid
 from fem.fields.paraview_state import fillet_stress, write_paraview_state
-from fem.fields.stress_fields import GearField, draw_gears, loaded_fields
+from fem.fields.stress_fields import draw_gears, loaded_fields
+from fem.pair.compliance import compliance as _compliance
 from fem.pair.pair_compliance import PairCompliance
 
 if TYPE_CHECKING:
@@ -32,7 +31,8 @@ __all__ = ["field_blocks", "write_vtk_series"]
 PICTURE_REFINEMENTS = 1
 """Refinements of the mesh that is drawn: fields need no more, and files stay small."""
 
-COMPONENTS = {"stress_Pa": ("xx", "yy", "zz", "xy"), "principal_Pa": ("larger", "smaller")}
+Frame = tuple[dict[str, "pyvista.UnstructuredGrid"], tuple[float, ...]]
+"""Blocks of a position, and the stress of fillets [Pa] that the colours of a series follow."""
 
 
 def field_blocks(
@@ -53,8 +53,9 @@ def field_blocks(
     -------
     pyvista.MultiBlock
         ``pinion``, ``wheel``, and ``contacts``: points with the vectors ``force_N`` for a glyph filter, each contact
-        once for each gear. Fields are in single precision. Of a cycle with cells of the face those of
-        `fem.fields.face_vtk.face_blocks`.
+        once for each gear. Fields are in single precision. Of a cycle with cells of the face ``pinion`` and ``wheel``
+        are wedges of the teeth in mesh with their displacement, in single precision; ``pinion_flanks`` and
+        ``wheel_flanks`` quadrangles whose ``pressure_Pa`` times their area adds up to the forces, in double precision.
 
     Examples
     --------
@@ -68,10 +69,11 @@ def field_blocks(
     """
     import pyvista
 
-    if cycle.face is not None:
-        return face_blocks(pair, cycle, row, compliance)
-    gear_fields = loaded_fields(pair, cycle, row, compliance, drawings)
-    return pyvista.MultiBlock(_blocks(*gear_fields, contact_forces(pair, cycle, row)))
+    if cycle.face is None:
+        grids, _ = _plane_frame(pair, cycle, row, compliance, drawings)
+    else:
+        grids, _ = _face_frame(pair, cycle, row, compliance)
+    return pyvista.MultiBlock(grids)
 
 
 def write_vtk_series(
@@ -107,80 +109,52 @@ def write_vtk_series(
     """
     folder = Path(folder)
     rows = range(len(cycle.position)) if positions is None else positions
+    frame: Callable[..., Frame]
+    if cycle.face is None:
+        drawings = draw_gears(pair, bodies, min(bodies.refinements, PICTURE_REFINEMENTS))
+        frame = partial(_plane_frame, drawings=drawings)
+    else:
+        frame = partial(_face_frame, prisms=gear_prisms(bodies))
     stresses: list[float] = []
-    drawn = _even(pair, cycle, bodies, stresses) if cycle.face is None else _uneven(pair, cycle, bodies)
     steps: list[tuple[float, dict[str, Path]]] = []
     for done, row in enumerate(rows):
         files = {}
-        for name, grid in drawn(row).items():
+        grids, of_fillets = frame(pair, cycle, row, bodies)
+        stresses.extend(of_fillets)
+        for name, grid in grids.items():
             files[name] = folder / "vtk" / f"{name}_{row:04d}.vtu"
             write_grid(files[name], grid)
         steps.append((float(cycle.position[row]), files))
         if progress is not None:
             progress(done + 1, len(rows))
-    if cycle.face is None:
+    if stresses:
         write_paraview_state(folder, pair, cycle, rows, stresses)
     return _write_series(folder / "mesh_cycle.pvd", steps)
 
 
-def _even(
-    pair: GearPair, cycle: MeshCycle, bodies: PairCompliance, stresses: list[float]
-) -> Callable[[int], Mapping[str, Any]]:
-    """Blocks of rows of a cycle that is even along the face; notes the stress of the fillets."""
-    drawings = draw_gears(pair, bodies, min(bodies.refinements, PICTURE_REFINEMENTS))
-
-    def at(row: int) -> Mapping[str, Any]:
-        gear_fields = loaded_fields(pair, cycle, row, bodies, drawings)
-        stresses.extend(fillet_stress(field) for field in gear_fields)
-        return _blocks(*gear_fields, contact_forces(pair, cycle, row))
-
-    return at
-
-
-def _uneven(pair: GearPair, cycle: MeshCycle, bodies: PairCompliance) -> Callable[[int], Mapping[str, Any]]:
-    """Blocks of rows of a cycle with cells of the face."""
-    prisms = gear_prisms(bodies)
-    return lambda row: face_grids(*face_fields(pair, cycle, row, bodies, prisms))
+def _plane_frame(
+    pair: GearPair,
+    cycle: MeshCycle,
+    row: int,
+    bodies: PairCompliance | None,
+    drawings: tuple[GearDrawing, GearDrawing] | None = None,
+) -> Frame:
+    """Blocks of a cycle that is even along the face, and the stress of both gears' fillets."""
+    pinion, wheel = loaded_fields(pair, cycle, row, bodies, drawings)
+    grids = plane_grids(pinion, wheel, contact_forces(pair, cycle, row))
+    return grids, (fillet_stress(pinion), fillet_stress(wheel))
 
 
-def _blocks(
-    pinion: GearField, wheel: GearField, contacts: ContactForces
-) -> dict[str, pyvista.UnstructuredGrid]:
-    return {
-        "pinion": _gear_grid(pinion, 0),
-        "wheel": _gear_grid(wheel, 1),
-        "contacts": _contact_grid(contacts),
-    }
-
-
-def _gear_grid(field: GearField, gear: int) -> pyvista.UnstructuredGrid:
-    import pyvista
-
-    grid = pyvista.UnstructuredGrid(
-        {pyvista.CellType.QUADRATIC_TRIANGLE: field.cells}, single_precision(field.points)
-    )
-    for name, values in field.point_data.items():
-        if name == "principal_direction":  # it follows from the stress, and would add an eighth to the file
-            continue
-        stored = single_precision(values, flat=name in COMPONENTS)
-        grid.point_data[name] = stored if name == "displacement_m" else rounded(stored)
-        for i, label in enumerate(COMPONENTS.get(name, ())):
-            grid.GetPointData().GetArray(name).SetComponentName(i, label)
-    for name, numbers in field.cell_data.items():
-        grid.cell_data[name] = numbers.astype(np.int32)
-    grid.cell_data["gear"] = np.full(len(field.cells), gear, dtype=np.int32)
-    return active(grid, "von_mises_Pa", "displacement_m")
-
-
-def _contact_grid(contacts: ContactForces) -> pyvista.UnstructuredGrid:
-    import pyvista
-
-    vertices = np.arange(len(contacts.points))[:, None]
-    grid = pyvista.UnstructuredGrid({pyvista.CellType.VERTEX: vertices}, single_precision(contacts.points))
-    for name, values in contacts.point_data.items():
-        whole = np.issubdtype(values.dtype, np.integer)
-        grid.point_data[name] = values.astype(np.int32) if whole else single_precision(values)
-    return active(grid, "pressure_Pa", "force_N")
+def _face_frame(
+    pair: GearPair,
+    cycle: MeshCycle,
+    row: int,
+    bodies: PairCompliance | None,
+    prisms: tuple[GearPrisms, GearPrisms] | None = None,
+) -> Frame:
+    """Blocks of a cycle with cells of the face, which have no stress."""
+    ready = bodies or _compliance(pair, plane=cycle.plane)
+    return face_grids(*face_fields(pair, cycle, row, ready, prisms)), ()
 
 
 def _write_series(path: Path, steps: Sequence[tuple[float, Mapping[str, Path]]]) -> Path:
