@@ -97,7 +97,7 @@ class GearDrawing:
             if k % z in nodal:
                 drawn.append(self._with_contact(k, loaded[k % z][0], *nodal[k % z], jumps[k % z]))
                 continue
-            corrected = stress[k % z] + self._spread(jumps[k % z], self.picture)
+            corrected = stress[k % z] + self._spread(jumps[k % z], self.picture, ring.mesh)
             tensor = corrected[:, [[0, 2], [2, 1]]]
             drawn.append(DrawnSector(k, self.picture, coarse, moved[k % z], tensor, None))
         return drawn
@@ -123,7 +123,7 @@ class GearDrawing:
     ) -> list[tuple[Array, Array]]:
         """What brings the stress at a sector's right and left cut to the mean of both sides, (z) x (side, 3)."""
         ring, z = self.ring, self.ring.mesh.teeth
-        sides = [_side_nodes(ring, side) for side in ("right", "left")]
+        sides = [ring.mesh.side_nodes(side) for side in ("right", "left")]
         there = [(cuts @ matrix.T).reshape(z, -1, 3) for matrix in self.seam]
         for k, (_, stress) in nodal.items():
             for own, nodes, side in zip(there, sides, ("right", "left"), strict=True):
@@ -142,45 +142,29 @@ class GearDrawing:
         pick = (slice(None), [0, 1, 0], [0, 1, 1])
         return [(back[k][pick], half[k][pick]) for k in range(z)]
 
-    def _spread(self, jumps: tuple[Array, Array], picture: Picture, other: SectorMesh | None = None) -> Array:
-        """Correction (points, 3) of a picture by corrections at the cuts' nodes, on another mesh of the sector too."""
-        own, mesh = self.ring.mesh, other or self.ring.mesh
+    def _spread(self, jumps: tuple[Array, Array], picture: Picture, mesh: SectorMesh) -> Array:
+        """Correction (points, 3) of a picture by corrections at the cuts' nodes, on the ring's mesh or another."""
+        own = self.ring.mesh
         values = np.zeros((len(mesh.points), 3))
         for side, jump in zip(("right", "left"), jumps, strict=True):
             known = np.zeros((len(own.points), 3))
             known[own.side_nodes(side)] = jump
-            values[mesh.side_nodes(side)] = jump if other is None else carried(known, own, mesh, side)
+            values[mesh.side_nodes(side)] = jump if mesh is own else carried(known, own, mesh, side)
         return picture.interpolate(values)
 
     def _with_contact(
         self, tooth: int, contact: Contact, moved: Array, stress: Array, jumps: tuple[Array, Array]
     ) -> DrawnSector:
-        mesh, law = self.ring.mesh, self.ring.law
-        if contact.sector is not None:
-            fine = contact.sector.mesh
-            picture = picture_of(fine, (contact.at.points[0], FOCUS * contact.half_width))
-            components = picture.interpolate(stress) + self._spread(jumps, picture, fine)
-            return DrawnSector(
-                tooth,
-                picture,
-                picture.interpolate(fine.points),
-                picture.interpolate(moved),
-                components[:, [[0, 2], [2, 1]]],
-                contact,
-            )
+        ring, sector = self.ring.mesh, contact.sector
+        mesh = ring if sector is None else sector.mesh
         picture = picture_of(mesh, (contact.at.points[0], FOCUS * contact.half_width))
-        points = picture.interpolate(mesh.points)
-        components = picture.interpolate(stress) + self._spread(jumps, picture)
-        near_moved, near_stress = near_field(points, contact, law, mesh.module)
-        displacement = picture.interpolate(moved) + near_moved
-        return DrawnSector(
-            tooth, picture, points, displacement, components[:, [[0, 2], [2, 1]]] + near_stress, contact
-        )
-
-
-def _side_nodes(ring: Ring, side: str) -> Integers:
-    """Nodes of a cut from the bore outwards; the hub's node included."""
-    return ring.mesh.side_nodes(side)
+        points, displacement = picture.interpolate(mesh.points), picture.interpolate(moved)
+        components = picture.interpolate(stress) + self._spread(jumps, picture, mesh)
+        tensor = components[:, [[0, 2], [2, 1]]]
+        if sector is None:
+            near_moved, near_stress = near_field(points, contact, self.ring.law, ring.module)
+            displacement, tensor = displacement + near_moved, tensor + near_stress
+        return DrawnSector(tooth, picture, points, displacement, tensor, contact)
 
 
 def gear_drawing(ring: Ring) -> GearDrawing:
@@ -197,7 +181,7 @@ def gear_drawing(ring: Ring) -> GearDrawing:
         rows = (3 * nodes[:, None] + np.arange(3)).ravel()
         return np.asarray(recovery.matrix[rows] @ by_cut)
 
-    seam = stress_at(_side_nodes(ring, "right")), stress_at(_side_nodes(ring, "left"))
+    seam = stress_at(mesh.side_nodes("right")), stress_at(mesh.side_nodes("left"))
     moved = picture.interpolate(by_cut.reshape(-1, 2, cuts)).reshape(-1, cuts)
     stress = picture.interpolate((recovery.matrix @ by_cut).reshape(-1, 3, cuts)).reshape(-1, cuts)
     return GearDrawing(ring, recovery, picture, by_cut, moved, stress, seam)
