@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Self, TypeVar
@@ -32,8 +31,7 @@ def check_finite(faults: Faults, path: str, values: tuple[float, ...]) -> None:
         faults.add(path, "not finite", "must be finite numbers (m)", "leave out points without a value")
 
 
-@dataclass(frozen=True)
-class PointCurve(ABC):
+class PointCurve:
     """What curves through points have in common; a kind of curve names its places and its values.
 
     ``smooth``: the monotone piecewise cubic of Fritsch and Carlson (SIAM J. Numer. Anal. 17, 1980,
@@ -50,6 +48,14 @@ class PointCurve(ABC):
     kept_in: ClassVar[str]
     """Field of the values."""
 
+    form: str
+    """What is between the points."""
+
+    def __post_init__(self) -> None:
+        """Keep the points as plain numbers, so that equal curves compare equal."""
+        for name in (self.placed_in, self.kept_in):
+            object.__setattr__(self, name, numbers(getattr(self, name)))
+
     @property
     def places(self) -> tuple[float, ...]:
         """Where the points are [m]."""
@@ -57,14 +63,10 @@ class PointCurve(ABC):
         return positions
 
     @property
-    @abstractmethod
     def values(self) -> tuple[float, ...]:
         """Values at the points [m]."""
-
-    @property
-    @abstractmethod
-    def form(self) -> str:
-        """What is between the points."""
+        amounts: tuple[float, ...] = getattr(self, self.kept_in)
+        return amounts
 
     def __repr__(self) -> str:
         """One line: how many points, and where."""
@@ -140,16 +142,6 @@ class ProfileDeviation(FlankCurve):
     material: tuple[float, ...] = ()  # m
     form: str = "smooth"
 
-    def __post_init__(self) -> None:
-        """Keep the points as plain numbers, so that equal curves compare equal."""
-        object.__setattr__(self, "rho", numbers(self.rho))
-        object.__setattr__(self, "material", numbers(self.material))
-
-    @property
-    def values(self) -> tuple[float, ...]:
-        """Material in excess [m]."""
-        return self.material
-
     @classmethod
     def over_roll_angle(
         cls, base_radius: float, roll_angle: ArrayLike, material: ArrayLike, form: str = "smooth"
@@ -182,16 +174,6 @@ class WearDepth(FlankCurve):
 
     depth: tuple[float, ...] = ()  # m
     form: str = "smooth"
-
-    def __post_init__(self) -> None:
-        """Keep the points as plain numbers, so that equal curves compare equal."""
-        object.__setattr__(self, "rho", numbers(self.rho))
-        object.__setattr__(self, "depth", numbers(self.depth))
-
-    @property
-    def values(self) -> tuple[float, ...]:
-        """Depth [m]."""
-        return self.depth
 
     def faults(self, path: str = "wear") -> tuple[Fault, ...]:
         """All faults of the points, empty when there are none."""
@@ -230,16 +212,6 @@ class LeadTrace(PointCurve):
     z: tuple[float, ...]  # m
     material: tuple[float, ...] = ()  # m
     form: str = "smooth"
-
-    def __post_init__(self) -> None:
-        """Keep the points as plain numbers, so that equal traces compare equal."""
-        object.__setattr__(self, "z", numbers(self.z))
-        object.__setattr__(self, "material", numbers(self.material))
-
-    @property
-    def values(self) -> tuple[float, ...]:
-        """Material in excess [m]."""
-        return self.material
 
     def faults(self, path: str = "trace") -> tuple[Fault, ...]:
         """All faults of the points, empty when there are none."""
