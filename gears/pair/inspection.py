@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -111,64 +110,49 @@ def dimensions(
     >>> sizes.span_teeth.tolist(), (1e3 * sizes.span).round(4).tolist()
     ([4, 5], [21.6733, 27.6896])
     """
-    teeth, points, line = pair.teeth_profiles, pair.points, pair.line_of_action
-    gears = (pair.pinion, pair.wheel)
-    pins = []
-    for name, tooth, gear, chosen_diameter in zip(
-        ("pinion", "wheel"), teeth, gears, pin_diameters, strict=True
-    ):
-        middle = _middle(tooth, gear.profile_shift)
-        diameter = (
-            _rounded_up(_touching_pin(tooth, middle))
-            if chosen_diameter is None
-            else _checked(name, chosen_diameter)
-        )
-        pins.append(_over_pins(tooth, diameter))
-    spans = [
-        _span(tooth, _middle(tooth, gear.profile_shift)) for tooth, gear in zip(teeth, gears, strict=True)
-    ]
-    ends = ((points.E, points.A), (line - points.A, line - points.E))
-    bases, centres = pair.base_radii, pair.working_centre_distance
-    sliding = pair.path_at(np.array([points.A, points.E])).specific_sliding
-    half = [_half_angle(tooth) for tooth in teeth]
-    return Dimensions(
-        teeth=np.array([gear.teeth for gear in gears]),
-        profile_shift=_each(gear.profile_shift for gear in gears),
-        generating_shift=_each(gear.cut_shift for gear in gears),
-        thickness_allowance=_each(gear.thickness_allowance for gear in gears),
+    pinion, wheel = (_sizes(pair, gear, pin) for gear, pin in enumerate(pin_diameters))
+    return Dimensions(**{name: np.array([pinion[name], wheel[name]]) for name in pinion})
+
+
+def _sizes(pair: PairGeometry, number: int, chosen_pin: float | None) -> dict[str, float]:
+    """Sizes of pinion (0) or wheel (1) by the names of `Dimensions`."""
+    gear, tooth = (pair.pinion, pair.wheel)[number], pair.teeth_profiles[number]
+    mate, points = pair.teeth_profiles[1 - number], pair.points
+    ends = np.array([points.E, points.A] if number == 0 else [points.A, points.E])  # at the tip, at the root
+    rho = ends if number == 0 else pair.line_of_action - ends
+    at_tip, at_root = pair.path_at(ends).specific_sliding[number]
+    radius, half = tooth.reference_radius, _half_angle(tooth)
+    middle = _middle(tooth, gear.profile_shift)
+    name = ("pinion", "wheel")[number]
+    pin = _rounded_up(_touching_pin(tooth, middle)) if chosen_pin is None else _checked(name, chosen_pin)
+    over_pins, pin_contact = _over_pins(tooth, pin)
+    span_teeth, span, span_contact = _span(tooth, middle)
+    return {
+        "teeth": gear.teeth,
+        "profile_shift": gear.profile_shift,
+        "generating_shift": gear.cut_shift,
+        "thickness_allowance": gear.thickness_allowance,
         **{
-            f"{name}_diameter": _each(2.0 * getattr(tooth, f"{name}_radius") for tooth in teeth)
-            for name in ("tip", "flank_end", "reference", "base", "form", "root", "bore")
+            f"{circle}_diameter": 2.0 * getattr(tooth, f"{circle}_radius")
+            for circle in ("tip", "flank_end", "reference", "base", "form", "root", "bore")
         },
-        active_tip_diameter=_each(2.0 * math.hypot(r, rho[0]) for r, rho in zip(bases, ends, strict=True)),
-        active_root_diameter=_each(2.0 * math.hypot(r, rho[1]) for r, rho in zip(bases, ends, strict=True)),
-        pitch_diameter=2.0 * np.array(pair.pitch_radii),
-        tip_clearance=_each(
-            centres - tooth.tip_radius - mate.root_radius
-            for tooth, mate in zip(teeth, reversed(teeth), strict=True)
-        ),
-        tooth_thickness=_each(2.0 * t.reference_radius * a for t, a in zip(teeth, half, strict=True)),
-        chordal_thickness=_each(
-            2.0 * t.reference_radius * math.sin(a) for t, a in zip(teeth, half, strict=True)
-        ),
-        chordal_height=_each(
-            t.tip_radius - t.reference_radius * math.cos(a) for t, a in zip(teeth, half, strict=True)
-        ),
-        tip_thickness=_each(2.0 * t.tip_radius * t.tip_half_angle for t in teeth),
-        span_teeth=np.array([k for k, *_ in spans]),
-        span=_each(span for _, span, _ in spans),
-        span_diameter=_each(at for *_, at in spans),
-        pin_diameter=_each(pin for pin, *_ in pins),
-        over_pins=_each(over for _, over, _ in pins),
-        pin_contact_diameter=_each(at for *_, at in pins),
-        sliding_at_root=np.array([sliding[0][0], sliding[1][1]]),
-        sliding_at_tip=np.array([sliding[0][1], sliding[1][0]]),
-    )
-
-
-def _each(values: Iterable[float]) -> Array:
-    """A size of pinion and wheel."""
-    return np.array(list(values))
+        "active_tip_diameter": 2.0 * math.hypot(tooth.base_radius, rho[0]),
+        "active_root_diameter": 2.0 * math.hypot(tooth.base_radius, rho[1]),
+        "pitch_diameter": 2.0 * pair.pitch_radii[number],
+        "tip_clearance": pair.working_centre_distance - tooth.tip_radius - mate.root_radius,
+        "tooth_thickness": 2.0 * radius * half,
+        "chordal_thickness": 2.0 * radius * math.sin(half),
+        "chordal_height": tooth.tip_radius - radius * math.cos(half),
+        "tip_thickness": 2.0 * tooth.tip_radius * tooth.tip_half_angle,
+        "span_teeth": span_teeth,
+        "span": span,
+        "span_diameter": span_contact,
+        "pin_diameter": pin,
+        "over_pins": over_pins,
+        "pin_contact_diameter": pin_contact,
+        "sliding_at_root": at_root,
+        "sliding_at_tip": at_tip,
+    }
 
 
 def _checked(name: str, diameter: float) -> float:
@@ -223,19 +207,19 @@ def _rounded_up(length: float) -> float:
     return float(f"{math.ceil(length / step - 1e-9) * step:.3g}")
 
 
-def _over_pins(tooth: ToothProfile, pin: float) -> tuple[float, float, float]:
-    """Diameter of the pins, size over two of them and diameter of the contacts [m].
+def _over_pins(tooth: ToothProfile, pin: float) -> tuple[float, float]:
+    """Size over two pins of a diameter, and diameter of their contacts [m].
 
     nan where pins touch no involute, the root, or lie below the tip.
     """
     base, (low, high) = tooth.base_radius, _measurable(tooth)
     involute = 0.5 * pin / base - 0.5 * tooth.pitch_angle + tooth.base_half_angle
     if involute <= 0.0:
-        return pin, math.nan, math.nan
+        return math.nan, math.nan
     tangent = tangent_from_involute(involute)
     centre, contact = base * math.hypot(1.0, tangent), math.hypot(base, base * tangent - 0.5 * pin)
     odd = math.cos(0.25 * tooth.pitch_angle) if tooth.teeth % 2 else 1.0
     touches = base * tangent >= 0.5 * pin and low <= contact <= high
     if not touches or centre - 0.5 * pin < tooth.root_radius or centre + 0.5 * pin < tooth.tip_radius:
-        return pin, math.nan, math.nan
-    return pin, 2.0 * centre * odd + pin, 2.0 * contact
+        return math.nan, math.nan
+    return 2.0 * centre * odd + pin, 2.0 * contact
