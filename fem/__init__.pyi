@@ -18,6 +18,6 @@ from .pair.pair_fillets import fillets as fillets
 from .pair.single_pair import single_pair_stiffness as single_pair_stiffness
 from .stress.face_fillets import FaceFillets as FaceFillets
 from .stress.face_fillets import face_fillets as face_fillets
-from .stress.face_root import FaceRootStress as FaceRootStress
+from .stress.gear_root import FaceRootStress as FaceRootStress
 from .stress.tooth_root import RootStress as RootStress
 from .stress.tooth_root import root_stress as root_stress

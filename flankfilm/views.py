@@ -14,7 +14,7 @@ PICTURES: Mapping[str, str] = {
     "fem.cycle.result:MeshCycle": "loaded_contact",
     "fem.cycle.face_loads:FaceLoads": "face_loads",
     "fem.stress.tooth_root:RootStress": "root_stress",
-    "fem.stress.face_root:FaceRootStress": "face_root_stress",
+    "fem.stress.gear_root:FaceRootStress": "face_root_stress",
     "ehl.films.film:Film": "curves",
     "ehl.films.mixed_film:MixedFilm": "mixed_film",
     "ehl.films.mixed_thermal:MixedThermalFilm": "mixed_film",

@@ -18,18 +18,18 @@ import numpy as np
 from base import Array, record
 from fem.elasticity.fillet_strain import FilletStrain, fillet_strains
 from fem.elasticity.line_load import FlankPoints, flank_points
-from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.prism import Face, prism, section
 from fem.influence.flank_variable import FlankVariable, stretched_points
-from fem.influence.gear_face import solved_waves
+from fem.influence.gear_face import solid_of, solved_waves
 from fem.influence.series import FlankFit, FlankSeries
 
 if TYPE_CHECKING:
+    from fem.elasticity.plane_elasticity import PlaneElasticity
     from fem.elasticity.prism import Prism
     from fem.influence.fillet_influence import FilletInfluence
     from meshes import SectorMesh
 
-__all__ = ["ACROSS", "ALONG", "SHEAR", "FilletWaves", "fillet_waves", "solid_of"]
+__all__ = ["ACROSS", "ALONG", "SHEAR", "FilletWaves", "even_waves", "fillet_waves", "solid_of"]
 
 ALONG, ACROSS, SHEAR = 0, 1, 2
 """E* eps_t, E* eps_z and tau."""
@@ -38,27 +38,21 @@ PLACES, DEGREE = 14, 9
 """Places of loads on the flank, and degree of the series in the curvature radius through them."""
 
 
-def solid_of(poisson: float) -> PlaneElasticity:
-    """Solid whose plane strain has E* = 1 and nu*."""
-    nu = poisson / (1 + poisson)
-    return PlaneElasticity("strain", 1 - nu**2, nu)
-
-
 @record
 class FilletWaves:
     """What waves of line load on a gear's left flank do to its fillets beyond even loads, in modules.
 
     Attributes
     ----------
+    wavenumber : (waves,) array
+        Of the solved waves [1/module], falling to that of even loads, 0.
     series : mapping of int to FlankSeries of (waves, 3, 2, samples)
         For each tooth, counted anticlockwise from the loaded one, over the load's rho: E* eps_t, E* eps_z and tau
         [1/module] for the solved waves, on the left (index 0) and the right fillet.
-    lack : float
-        Largest part of the largest even stress that nodal forces on this mesh miss.
     """
 
+    wavenumber: Array
     series: Mapping[int, FlankSeries]
-    lack: float
 
     def beyond(self, tooth: int, rho: Array) -> Array:
         """What the solved waves do beyond even loads (loads, waves, 3, 2, samples) [1/module], rho in modules."""
@@ -81,9 +75,8 @@ def fillet_waves(mesh: SectorMesh, influence: FilletInfluence) -> FilletWaves:
     at, teeth = flank_points(mesh, rho), sorted(influence.series)
     law = solid_of(influence.law.plane_poisson)
     over, strains = section(mesh, law), fillet_strains(mesh, influence.profile, influence.line)
-    stresses = np.array(
-        [_stress(prism(over, Face.wave(k)), at, teeth, strains, k, law) for k in solved_waves()[1]]
-    )
+    _, wavenumber = solved_waves()
+    stresses = np.array([_stress(prism(over, Face.wave(k)), at, teeth, strains, k, law) for k in wavenumber])
     even = np.array([influence.stress(tooth, rho) for tooth in teeth])
     still = stresses[-1]
     lack = even - still[:, :, ALONG]
@@ -96,7 +89,20 @@ def fillet_waves(mesh: SectorMesh, influence: FilletInfluence) -> FilletWaves:
         tooth: FlankSeries(place, np.einsum("dl,wlcsn->dwcsn", weights, beyond[:, i], optimize=True))
         for i, tooth in enumerate(teeth)
     }
-    return FilletWaves(series, float(np.max(np.abs(lack)) / np.max(np.abs(even))))
+    return FilletWaves(wavenumber, series)
+
+
+def even_waves(influence: FilletInfluence) -> FilletWaves:
+    """Waves of loads that are even along the face: the one without length, which does nothing beyond itself.
+
+    Parameters
+    ----------
+    influence : FilletInfluence
+        Of a gear.
+    """
+    place = FlankVariable(influence.rho_range).scaled(1.0 / influence.profile.module)
+    nothing = np.zeros((1, 1, 3, 2, len(influence.line.arc)))
+    return FilletWaves(np.zeros(1), {tooth: FlankSeries(place, nothing) for tooth in influence.series})
 
 
 def _stress(

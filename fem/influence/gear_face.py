@@ -35,6 +35,7 @@ __all__ = [
     "between_waves",
     "end_correction",
     "section_of",
+    "solid_of",
     "solved_waves",
 ]
 
@@ -99,15 +100,15 @@ def solved_waves() -> tuple[Array, Array]:
     return unit, np.where(wavenumber > 1e-9, wavenumber, 0.0)
 
 
-def between_waves(wavenumber: Array) -> Array:
-    """Weights (waves, WAVES) of the solved waves in what any waves do; constant beyond the shortest one."""
-    unit, _ = solved_waves()
-    return np.asarray(_waves(wavenumber, WAVES) @ np.linalg.inv(chebyshev.chebvander(unit, WAVES - 1)))
+def between_waves(wavenumber: Array, solved: int = WAVES) -> Array:
+    """Weights (waves, solved) of the solved waves in what any waves do; constant beyond the shortest one."""
+    by_wave = np.linalg.inv(chebyshev.chebvander(stretched_points(solved), solved - 1))
+    return np.asarray(_waves(wavenumber, solved) @ by_wave)
 
 
-def _solid(meshed: MeshedShape) -> PlaneElasticity:
-    """The solid whose plane strain has E* = 1 and the shape's nu*."""
-    nu = meshed.shape.poisson / (1 + meshed.shape.poisson)
+def solid_of(poisson: float) -> PlaneElasticity:
+    """Solid whose plane strain has E* = 1 and nu*."""
+    nu = poisson / (1 + poisson)
     return PlaneElasticity("strain", 1 - nu**2, nu)
 
 
@@ -115,7 +116,7 @@ def section_of(meshed: MeshedShape, sizes: Sizes, refinements: int) -> Section:
     """Section of a gear of module 1 and E* = 1."""
     from meshes import mesh_sector
 
-    return section(mesh_sector(meshed.shape.profile, sizes, refinements), _solid(meshed))
+    return section(mesh_sector(meshed.shape.profile, sizes, refinements), solid_of(meshed.shape.poisson))
 
 
 def axial_harmonics(meshed: MeshedShape) -> AxialHarmonics:

@@ -1,4 +1,4 @@
-"""Fillets of both gears of a pair solved for loads that vary along the face, before root stresses ask for them."""
+"""Fillets of both gears of a pair solved for loads along the face, before root stresses ask for them."""
 
 from __future__ import annotations
 
@@ -7,17 +7,20 @@ from typing import TYPE_CHECKING
 
 from base import Cost, Stopwatch, record
 from fem.influence.fillet_ends import FilletEnds, fillet_ends
-from fem.influence.fillet_face import FilletFace
-from fem.influence.fillet_waves import FilletWaves, fillet_waves
+from fem.influence.fillet_waves import FilletWaves, even_waves, fillet_waves
 from fem.influence.gear_shape import DIGITS
 from fem.influence.gear_store import GearStore, ResultStore
-from fem.pair.face_setting import FREE_ENDS, FaceSetting
+from fem.influence.root_influence import RootInfluence
+from fem.pair.face_setting import FREE_ENDS
 from fem.pair.pair_fillets import Fillets, LoadedShape
 
 if TYPE_CHECKING:
     from gears import GearPair
 
-__all__ = ["FaceFillets", "face_fillets", "over_face"]
+__all__ = ["EVEN", "FaceFillets", "face_fillets", "root_influences"]
+
+EVEN = "even"
+"""Of loads that are even along the face, a single cell, beside the models of `FaceSetting`."""
 
 
 @record
@@ -87,27 +90,32 @@ def _ends(loaded: LoadedShape, width: float, gears: GearStore) -> FilletEnds:
     return gears.record("fillet ends", (loaded, long), partial(fillet_ends, loaded.shape, long, loaded.low))
 
 
-def over_face(
-    fillets: Fillets, solved: FaceFillets, pair: GearPair, setting: FaceSetting
-) -> tuple[FilletFace, FilletFace]:
-    """Fillets of pinion and wheel under loads on the cells of a face.
+def root_influences(fillets: Fillets, pair: GearPair, model: str) -> tuple[RootInfluence, RootInfluence]:
+    """Stress of pinion's and wheel's fillets by loads on cells of the face.
 
     Parameters
     ----------
     fillets : Fillets
-    solved : FaceFillets
-        Of these.
     pair : gears.GearPair
-    setting : FaceSetting
+    model : {"free-ends", "walls", "slices", "even"}
+        As of `face_fillets`, or loads that are even along the face, which ask for nothing beyond the fillets.
     """
+    solved = _even(fillets) if model == EVEN else face_fillets(fillets, pair, model)
     pinion, wheel = (
-        FilletFace(
+        RootInfluence(
             (fillets.pinion, fillets.wheel)[gear],
             solved.waves[gear],
             None if solved.ends is None else solved.ends[gear],
+            solved.mesh_errors[gear],
             pair.face_widths[gear],
-            setting.edges(pair) - pair.face_offsets[gear],
+            pair.face_width,
+            pair.face_offsets[gear],
         )
-        for gear in range(2)
+        for gear in (0, 1)
     )
     return pinion, wheel
+
+
+def _even(fillets: Fillets) -> FaceFillets:
+    waves = even_waves(fillets.pinion), even_waves(fillets.wheel)
+    return FaceFillets(waves, None, (0.0, 0.0), Cost(0.0))

@@ -1,4 +1,4 @@
-"""Root stress of one gear along the mesh cycle: at its positions, and the largest on its arcs."""
+"""Root stress of one gear along the mesh cycle: at its positions and the largest on its arcs; and along its face."""
 
 from __future__ import annotations
 
@@ -7,13 +7,78 @@ from collections.abc import Mapping
 import numpy as np
 
 from base import Array, Integers, described, part, quantity, record
-from base.results import ITSELF
+from base.results import EXACT, ITSELF
 from fem.elasticity.fillet import FilletLine
 from fem.elasticity.plane_elasticity import PlaneElasticity
-from fem.stress.face_root import FaceRootStress
 from fem.stress.root_peaks import LOADED, OTHER, RootPeak, extreme
 
-__all__ = ["GearRootStress"]
+__all__ = ["FaceRootStress", "GearRootStress"]
+
+SINGLE = "not estimated at single places; the maximum stresses have errors"
+
+
+@record
+class FaceRootStress:
+    """Maximum stresses along the fillets of one gear at places of its face.
+
+    Errors of the maximum stresses are by the cells, by the waves' mesh and by free ends, beyond those of even loads.
+    """
+
+    no_error = SINGLE
+    headline = ("face_factor",)
+
+    face_position: Array = quantity(
+        "m",
+        "places on the gear's own face, ends included, 0 at the middle of the face in contact",
+        "place",
+        shown="mm",
+        no_error=EXACT,
+    )
+    travel: Array = quantity(
+        "1", "base pitches since each tooth's pair passed A", "position tooth", no_error=EXACT
+    )
+    tension: Array = quantity(
+        "Pa",
+        "maximum principal stress along the fillet under the loaded flank",
+        "position tooth place",
+        shown="MPa",
+    )
+    compression: Array = quantity(
+        "Pa",
+        "minimum stress along the other fillet, negative in compression",
+        "position tooth place",
+        shown="MPa",
+    )
+    cycle_tension: Array = quantity("Pa", "maximum tension of all teeth and instants", "place", shown="MPa")
+    cycle_compression: Array = quantity(
+        "Pa", "maximum compression of all teeth and instants, negative", "place", shown="MPa"
+    )
+    tangential: Array = quantity(
+        "Pa",
+        "stress along the fillet under the loaded flank at the instant of the maximum tension",
+        "place sample",
+        shown="MPa",
+    )
+    face_factor: float = quantity(
+        "1",
+        "stress face-load factor: maximum tension over its mean over the face in contact, at the instant of the "
+        "greatest",
+    )
+    over_even: float = quantity(
+        "1",
+        "maximum tension over that of the same forces of all pairs spread evenly along the face: what uneven loads "
+        "cost this root",
+    )
+    tension_error: float = quantity(
+        "1",
+        "estimated relative error of the maximum tension from the variation along the face",
+        no_error=ITSELF,
+    )
+    compression_error: float = quantity(
+        "1",
+        "estimated relative error of the maximum compression from the variation along the face",
+        no_error=ITSELF,
+    )
 
 
 @record

@@ -7,20 +7,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from base import Array, Integers, quantity, record
+from base import Array, quantity, record
 from base.results import ITSELF
 from fem.elasticity.fillet import FilletLine
-from fem.elasticity.plane_elasticity import MIRROR
-from fem.influence.fillet_influence import FilletInfluence
 from gears.sharing.arc_series import OVERSHOOT, left_out, to_series
 from gears.sharing.arcs import Arcs
 
-__all__ = ["LOADED", "OTHER", "RootNodes", "RootPeak", "extreme", "peak_of"]
+__all__ = ["LOADED", "OTHER", "SIGNS", "Greatest", "RootNodes", "RootPeak", "extreme"]
 
 LOADED, OTHER = 0, 1
 """Fillet under the loaded flank, in tension when its tooth bears, and the one on the other side."""
 
-_SIGNS = {LOADED: 1.0, OTHER: -1.0}
+SIGNS = {LOADED: 1.0, OTHER: -1.0}
 
 FINER = 4
 """Points between the nodes of an arc, of which the largest has a parabola through its neighbours."""
@@ -81,7 +79,7 @@ class RootNodes:
         ends, candidates = np.cumsum([len(piece.position) for piece in self.arcs.arcs])[:-1], []
         positions, stress = (
             np.split(self.position, ends),
-            np.split(_SIGNS[side] * self.stress[:, :, side], ends),
+            np.split(SIGNS[side] * self.stress[:, :, side], ends),
         )
         nodes = [extreme(line.arc, of_arc)[0] for of_arc in stress]
         most = max(float(of_arc.max()) for of_arc in nodes)
@@ -123,46 +121,6 @@ def _on_arc(stress: Array, samples: Array, crowded: bool) -> tuple[float, float,
     value, beyond = float(extreme(samples, along)[0]), float(values.max() - values[::FINER].max())
     off = np.linalg.norm(left_out(series[:, np.argmax(along)], unit, np.ones(1), crowded))
     return value, min(float(off), OVERSHOOT * max(beyond, 0.0)), float(unit[0]), along
-
-
-def peak_of(
-    nodes: RootNodes,
-    before: RootNodes | None,
-    gain: float,
-    teeth: Integers,
-    influence: FilletInfluence,
-    side: int,
-) -> RootPeak:
-    """Maximum stress on one side of all teeth, and what is missed between the nodes.
-
-    Parameters
-    ----------
-    nodes, before : RootNodes
-        By the forces of the mesh in use, and of the one before the last refinement; None where there is none.
-    gain : float
-        By how much the refinement reduced the error.
-    teeth : (teeth,) array of int
-    influence : FilletInfluence
-    side : int
-    """
-    line, law = influence.line, influence.law
-    best = nodes.greatest(line, side)
-    coarse = best if before is None else before.greatest(line, side)
-    value, place = best.value, float(extreme(line.arc, best.along)[1])
-    nu = law.nu if law.plane == "strain" else 0.0
-    point = np.array([np.interp(place, line.arc, line.points[:, axis]) for axis in (0, 1)])
-    return RootPeak(
-        _SIGNS[side] * value,
-        float(np.sqrt(1 - nu + nu**2)) * value,
-        int(teeth[best.tooth]),
-        best.position + float(teeth[best.tooth]),
-        place,
-        float(np.interp(place, line.arc, line.tangent_angle)),
-        point * MIRROR if side == LOADED else point,
-        _SIGNS[side] * best.along,
-        best.off / value,
-        abs(coarse.value / value - 1.0) / gain,
-    )
 
 
 def extreme(arc: Array, values: Array) -> tuple[Array, Array]:

@@ -10,28 +10,25 @@ third is nu sigma_t.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Cost, Faults, InputError, Integers, Stopwatch, described, part, quantity, record
+from base import Array, Cost, Faults, InputError, Stopwatch, described, part, quantity, record
 from fem.cycle.mesh_cycle import MeshCycle
-from fem.influence.fillet_influence import FilletInfluence
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.pair_fillets import Fillets
 from fem.pair.pair_fillets import fillets as _fillets
-from fem.stress.face_fillets import face_fillets, over_face
-from fem.stress.face_root import RootOnArcs, root_over_face
+from fem.stress.face_fillets import EVEN, root_influences
 from fem.stress.gear_root import GearRootStress
-from fem.stress.root_peaks import LOADED, OTHER, RootNodes, peak_of
-from fem.stress.stress_over_face import StressOverFace
-from gears.sharing.arcs import FORCE, Arcs
-from gears.sharing.mesh_figures import MeshArcs
+from fem.stress.root_peaks import LOADED, OTHER
+from fem.stress.root_search import RootSearch, face_root_stress
+from fem.stress.tooth_stress import CellLoads, ToothStress
+from gears.sharing.arcs import Arcs
 
 if TYPE_CHECKING:
-    from fem.cycle.face_loads import FaceLoads
-    from fem.influence.fillet_face import FilletFace
     from gears import GearPair
 
 __all__ = ["RootStress", "root_stress"]
@@ -130,10 +127,12 @@ def root_stress(
     watch = Stopwatch()
     roots = fillets if fillets is not None else _fillets(pair, tolerance, cycle.plane)
     ready = watch.seconds
-    if cycle.face is None:
-        pinion, wheel = (_gear_stress(pair, cycle, arcs, roots, gear) for gear in (0, 1))
-    else:
-        pinion, wheel = _over_face(pair, cycle, cycle.face, arcs, roots)
+    model, line_load = _over_cells(pair, cycle)
+    searches = (
+        RootSearch(ToothStress(root, cycle.pair_offset, gear), arcs, partial(_positions, cycle))
+        for gear, root in enumerate(root_influences(roots, pair, model))
+    )
+    pinion, wheel = (_gear_stress(pair, cycle, roots, search, line_load) for search in searches)
     parts = {**({} if fillets is not None else roots.cost.parts), "superpose": watch.seconds - ready}
     cost = Cost(watch.seconds, roots.cost.unknowns, parts=parts, counts=roots.cost.counts)
     return RootStress(
@@ -146,95 +145,40 @@ def root_stress(
     )
 
 
+def _over_cells(pair: GearPair, cycle: MeshCycle) -> tuple[str, Array]:
+    """What couples the cells of the face, and line loads on them [N/m]; a face of even loads is a single cell."""
+    if cycle.face is None:
+        return EVEN, cycle.forces[..., None] / pair.face_width
+    return cycle.face.setting.model, cycle.face.line_load
+
+
 def _gear_stress(
-    pair: GearPair, cycle: MeshCycle, mesh_arcs: MeshArcs, roots: Fillets, gear: int
+    pair: GearPair, cycle: MeshCycle, roots: Fillets, search: RootSearch, line_load: Array
 ) -> GearRootStress:
     """Stress at the cycle's positions, and the largest on its arcs."""
-    influence, fillets_error = (roots.pinion, roots.wheel)[gear], float(roots.errors[gear])
-    offsets = cycle.pair_offset
-    teeth = np.arange(offsets.min() - 1, offsets.max() + 2)
-    forces = _Forces(offsets, teeth, pair.face_width, gear)
-    total = forces.stress(influence, cycle.forces, cycle.flank_rho[gear])
-    nodes, before = (
-        None if arcs is None else RootNodes(arcs, _positions(cycle, arcs), forces.at_nodes(influence, arcs))
-        for arcs in (mesh_arcs.arcs, mesh_arcs.before)
-    )
-    assert nodes is not None
-    low, high = nodes.stress.min(axis=(0, 1)), nodes.stress.max(axis=(0, 1))
-    tension, compression = (
-        peak_of(nodes, before, mesh_arcs.gain, teeth, influence, side) for side in (LOADED, OTHER)
-    )
+    stress = search.stress
+    gear, even = stress.gear, stress.root.influence
+    peaks, loads = search.peaks(), CellLoads(line_load, cycle.flank_rho[gear])
+    over_face, tension, compression = None, peaks[LOADED].peak, peaks[OTHER].peak
+    if cycle.face is not None:
+        over_face = face_root_stress(search, peaks, loads, cycle.loaded_position)
+        tension, compression = (
+            replace(peak, face_position=float(z))
+            for peak, z in zip((tension, compression), search.most, strict=True)
+        )
     return GearRootStress(
-        influence.line,
-        influence.law,
+        even.line,
+        even.law,
         cycle.loaded_position,
-        teeth,
-        total,
+        stress.teeth,
+        stress.at(loads, search.most[:1])[:, :, 0],
         tension,
         compression,
-        np.stack([low, high]),
-        fillets_error,
+        search.passage(),
+        float(roots.errors[gear]),
+        over_face,
         webbed=(pair.pinion, pair.wheel)[gear].blank is not None,
     )
-
-
-def _over_face(
-    pair: GearPair, cycle: MeshCycle, face: FaceLoads, mesh_arcs: MeshArcs, roots: Fillets
-) -> tuple[GearRootStress, GearRootStress]:
-    """Stress of both gears under loads on cells of the face."""
-    solved = face_fillets(roots, pair, face.setting.model)
-    offsets = cycle.pair_offset
-    teeth = np.arange(offsets.min() - 1, offsets.max() + 2)
-
-    def of(gear: int, fillets: FilletFace) -> GearRootStress:
-        stress = StressOverFace(fillets, offsets, teeth, 1 if gear == 0 else -1, pair.face_offsets[gear])
-        on_arcs = RootOnArcs(stress, mesh_arcs, partial(_positions, cycle), gear, solved.mesh_errors[gear])
-        over = root_over_face(on_arcs, face, cycle.flank_rho[gear], cycle.loaded_position)
-        return GearRootStress(
-            fillets.influence.line,
-            fillets.influence.law,
-            cycle.loaded_position,
-            teeth,
-            over.tangential,
-            over.tension,
-            over.compression,
-            over.passage,
-            float(roots.errors[gear]),
-            over.face,
-            webbed=(pair.pinion, pair.wheel)[gear].blank is not None,
-        )
-
-    pinion, wheel = over_face(roots, solved, pair, face.setting)
-    return of(0, pinion), of(1, wheel)
-
-
-@record
-class _Forces:
-    """Forces on the teeth of one gear: columns are pairs, each so many base pitches ahead."""
-
-    offsets: Integers
-    teeth: Integers
-    width: float
-    gear: int
-
-    def stress(self, influence: FilletInfluence, forces: Array, rho: Array) -> Array:
-        """Stress (n, teeth, 2, samples) by forces on the pairs at curvature radii, both (n, pairs)."""
-        # the pair ahead is the next tooth anticlockwise on the pinion, clockwise on the wheel
-        turn = 1 if self.gear == 0 else -1
-        total = np.zeros((len(forces), len(self.teeth), 2, len(influence.line.arc)))
-        for column, offset in enumerate(self.offsets):
-            rows = np.flatnonzero(forces[:, column] > 0)
-            line_load = forces[rows, column, None, None] / self.width
-            for i, tooth in enumerate(self.teeth):
-                total[rows, i] += line_load * influence.stress(turn * int(tooth - offset), rho[rows, column])
-        return total
-
-    def at_nodes(self, influence: FilletInfluence, arcs: Arcs) -> Array:
-        """Stress at all nodes of arcs, one after the other."""
-        nodes = [arc.pairs for arc in arcs.arcs if arc.pairs is not None]
-        assert len(nodes) == len(arcs.arcs)  # of finite elements
-        pairs = np.concatenate(nodes)
-        return self.stress(influence, pairs[..., FORCE], pairs[..., FORCE + 1 + self.gear])
 
 
 def _positions(cycle: MeshCycle, arcs: Arcs) -> Array:

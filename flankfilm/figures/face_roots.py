@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from fem.stress.face_root import FaceRootStress
+    from fem.stress.gear_root import FaceRootStress
 
 NEEDED = 'run a scene that wants "root-stress" and whose pair has a lead or an alignment'
 

@@ -18,18 +18,16 @@ from fem.elasticity.prism import Face, prism, section
 from fem.influence.fillet_waves import _stress, solid_of
 from fem.influence.gear_face import between_waves, solved_waves
 from fem.influence.gear_store import GearStore
-from fem.pair.face_setting import FaceSetting
 from fem.pair.pair_fillets import fillets
-from fem.stress.face_fillets import face_fillets, over_face
+from fem.stress.face_fillets import EVEN, face_fillets, root_influences
 from fem.stress.root_peaks import LOADED, OTHER
-from fem.stress.stress_over_face import CellLoads, StressOverFace
 from fem.stress.tooth_root import root_stress
+from fem.stress.tooth_stress import CellLoads, ToothStress
 from gears import Alignment, Gear, GearPair, Lead
 from meshes.triangle import shape
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
 TORQUE, CELLS = 100.0, 8
-SETTING = FaceSetting(CELLS, model="walls")
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +42,7 @@ def roots():
 
 @pytest.fixture(scope="module")
 def walls(roots):
-    return over_face(roots, face_fillets(roots, PAIR, "walls"), PAIR, SETTING)
+    return root_influences(roots, PAIR, "walls")
 
 
 def _found(bodies, roots, pair=PAIR, cells=CELLS, face_model="walls", torque=TORQUE, **more):
@@ -62,6 +60,21 @@ def test_even_loads_between_walls_are_the_plane_s(walls, roots):
             found = over.tangential(tooth, rho, np.full((3, CELLS), 1e5), z)
             plane = 1e5 * even.stress(tooth, rho)
             np.testing.assert_allclose(found, plane[:, None] + 0 * found, atol=1e-10 * np.abs(plane).max())
+
+
+def test_a_single_cell_is_the_plane(walls, roots):
+    """To the last bit by the wave without length alone, to rounding by all waves; nothing is cleared beside contacts."""
+    z = np.array([-0.5, 0.1, 0.5]) * PAIR.face_width
+    rho, load = np.array([PAIR.points.C, PAIR.points.D]), np.array([[1e5], [3e4]])
+    even = root_influences(roots, PAIR, EVEN)
+    for over, solved, plane in zip(even, walls, (roots.pinion, roots.wheel), strict=True):
+        stress = np.repeat((load[:, :, None] * plane.stress(0, rho))[:, None], len(z), axis=1)
+        np.testing.assert_array_equal(over.tangential(0, rho, load, z), stress)
+        size = np.abs(stress).max()
+        np.testing.assert_allclose(solved.tangential(0, rho, load, z), stress, atol=1e-13 * size)
+        compared = over.von_mises([over.components(0, rho, load, z)])
+        np.testing.assert_allclose(compared, 0.79**0.5 * np.abs(stress.sum(axis=0)), atol=1e-14 * size)
+        assert over.disturbed == 0.0 < solved.disturbed
 
 
 def test_cells_add_up_to_the_plane_and_each_load_keeps_its_mean(walls, roots):
@@ -221,22 +234,22 @@ def test_out_of_parallel_stresses_an_end_less_than_the_load_and_mirrors(bodies, 
 def test_what_a_contact_does_next_to_itself_is_no_root_stress(walls):
     """A load on one cell at A, close above the fillet: the root's greatest is that of bending, lower down."""
     over, count = walls[0], 64
-    finer = replace(over, edges=np.linspace(over.edges[0], over.edges[-1], count + 1))
-    stress = StressOverFace(finer, np.array([0]), np.array([0]), 1, 0.0)
+    stress = ToothStress(over, np.array([0]), 0)
     low = np.array([PAIR.points.A])
-    loads, z = CellLoads(1e5 * np.eye(count)[None, :1], low[None]), finer.edges[:1]
-    raw = stress.at_place(loads, float(z[0]))
-    clear = stress.clear(raw, loads)[0, 0]
-    away = np.linalg.norm(finer.influence.line.points - finer.influence.profile.involute(low), axis=-1)
+    loads, z = CellLoads(1e5 * np.eye(count)[None, :1], low[None]), over.edges(count)[:1]
+    everywhere = stress.at(loads, z)
+    own = stress.teeth.tolist().index(0)
+    raw, clear = everywhere[0, own, 0], stress.clear(everywhere, loads)[0, own, 0]
+    away = np.linalg.norm(over.influence.line.points - over.influence.profile.involute(low), axis=-1)
     far = away >= 0.5 * PAIR.module
-    assert not far[np.argmax(raw[0, 0, LOADED])]
-    np.testing.assert_array_equal(clear[OTHER], raw[0, 0, OTHER])
-    np.testing.assert_array_equal(clear[LOADED, far], raw[0, 0, LOADED, far])
-    assert clear[LOADED].max() == raw[0, 0, LOADED, far].max() < 0.8 * raw[0, 0, LOADED].max()
-    assert stress.greatest(loads, z)[0][0, 0, 0] == pytest.approx(clear[LOADED].max(), rel=0.02)
+    assert not far[np.argmax(raw[LOADED])]
+    np.testing.assert_array_equal(clear[OTHER], raw[OTHER])
+    np.testing.assert_array_equal(clear[LOADED, far], raw[LOADED, far])
+    assert clear[LOADED].max() == raw[LOADED, far].max() < 0.8 * raw[LOADED].max()
+    assert stress.greatest(loads, z)[LOADED, 0, own, 0] == pytest.approx(clear[LOADED].max(), rel=0.02)
     # high on the flank the contact is far from all of the fillet
     high = CellLoads(loads.load, np.array([[PAIR.points.E]]))
-    there = stress.at_place(high, float(z[0]))
+    there = stress.at(high, z)
     np.testing.assert_array_equal(stress.clear(there, high), there)
 
 
@@ -271,11 +284,7 @@ def test_free_ends_are_those_of_each_gear_and_its_own_face(roots, monkeypatch):
 @pytest.mark.slow
 def test_free_ends_draw_less_at_the_very_end_and_little_inside(bodies, roots):
     """Nothing holds the end along the face: sigma_z vanishes there, and the stress along the fillet falls."""
-    setting = FaceSetting(CELLS)
-    held, free = (
-        over_face(roots, face_fillets(roots, PAIR, model), PAIR, setting)[0]
-        for model in ("walls", "free-ends")
-    )
+    held, free = (root_influences(roots, PAIR, model)[0] for model in ("walls", "free-ends"))
     z, rho = np.array([0.0, 0.25, 0.45, 0.5]) * PAIR.face_width, np.array([PAIR.points.C])
     load = np.full((1, CELLS), 1e5)
     one, other = (some.components(0, rho, load, z) for some in (held, free))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fem
-from fem.stress.face_fillets import face_fillets, over_face
+from fem.stress.face_fillets import root_influences
 from gears import Alignment, Bearing, Gear, GearPair, Material, Shaft, ShaftSegment
 
 STEEL, PA66 = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
@@ -69,7 +69,7 @@ def test_what_single_cells_move_farther_changes_little(plastic):
         fem.mesh_cycle(PLASTIC, 20.0, 8, bodies, moving_contact=moving, **given) for moving in (True, False)
     )
     found = fem.root_stress(PLASTIC, moved, roots)
-    over = over_face(roots, face_fillets(roots, PLASTIC, "walls"), PLASTIC, moved.face.setting)
+    over = root_influences(roots, PLASTIC, "walls")
     for gear, (name, fillets) in enumerate(zip(("pinion", "wheel"), over, strict=True)):
         stress = getattr(found, name)
         row = int(np.argmax(stress.face.tension.max(axis=(1, 2))))

@@ -12,8 +12,7 @@ from face_three_dimensions import CELLS, FULL, PAIR
 
 import fem
 import fem.influence.fillet_ends as ends
-from fem.pair.face_setting import FaceSetting
-from fem.stress.face_fillets import face_fillets, over_face
+from fem.stress.face_fillets import root_influences
 
 FROM_END = np.array([0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 10.0])
 """Places [modules]."""
@@ -31,7 +30,7 @@ LOADS = {
 def tensions(model: str) -> dict[str, np.ndarray]:
     """Greatest tension along the fillet at the places by each load."""
     roots = fem.fillets(PAIR, 0.003)
-    over = over_face(roots, face_fillets(roots, PAIR, model), PAIR, FaceSetting(CELLS, model=model))[0]
+    over = root_influences(roots, PAIR, model)[0]
     z, rho = FROM_END * PAIR.module - 0.5 * PAIR.face_width, np.array([PAIR.points.C])
     return {
         name: over.tangential(0, rho, FULL * load[None], z)[0, :, 0].max(axis=-1)

@@ -20,7 +20,7 @@ from face_three_dimensions import CELLS, FULL, PAIR, Solid, means, near_C, piece
 from two_gear_meshes import MIRROR, Focus
 
 import fem
-from fem.stress.face_fillets import face_fillets, over_face
+from fem.stress.face_fillets import root_influences
 from gears import Alignment, Lead
 
 FILLET = 0.05
@@ -113,14 +113,14 @@ def loads_at_C(bodies):
         torque, own = part * FULL * pair.face_width * pair.base_radii[0], replace(bodies, pair=pair)
         tilted = Alignment(across)
         cycle = fem.mesh_cycle(pair, torque, positions, own, beyond_path=False, alignment=tilted, cells=CELLS)
-        yield cycle.face.setting, cycle.line_load[row].sum(axis=0)
+        yield cycle.line_load[row].sum(axis=0)
 
 
 def compare(half_width):
     """Print the greatest tension over the face by both, and their differences."""
     began = time.process_time()
-    settings, loads = zip(*loads_at_C(fem.compliance(PAIR, 0.002)), strict=True)
-    names, loads = [*CASES, "the end cell alone"], [*loads, np.eye(CELLS)[0] * FULL]
+    loads = [*loads_at_C(fem.compliance(PAIR, 0.002)), np.eye(CELLS)[0] * FULL]
+    names = [*CASES, "the end cell alone"]
     half, b, rho = 0.5 * PAIR.face_width, PAIR.face_width, PAIR.points.C
     ends, q = pieces(half), np.array(loads).T
     profile, m = PAIR.teeth_profiles[0], PAIR.module
@@ -138,7 +138,7 @@ def compare(half_width):
     print(f"{time.process_time() - began:.0f} s of processor time", flush=True)
     roots = fem.fillets(PAIR, 0.003)
     for model in ("free-ends", "walls"):
-        fillets = over_face(roots, face_fillets(roots, PAIR, model), PAIR, settings[0])[0]
+        fillets = root_influences(roots, PAIR, model)[0]
         print(f"{model}; places over the face width {PLACES}")
         for k, name in enumerate(names):
             ours = fillets.tangential(0, np.array([rho]), q[:, k][None], z)[0, :, 0].max(axis=-1)
