@@ -16,6 +16,7 @@ import numpy as np
 from base import Array, Integers, record
 from fem.elasticity import flamant
 from fem.elasticity.fillet import FilletLine, fillet_line, fillet_stress_matrix
+from fem.elasticity.fillet_strain import SIDES
 from fem.elasticity.flank_samples import CORNER_CLEARANCE
 from fem.elasticity.line_load import LineLoads, flank_points, line_loads
 from fem.elasticity.plane_elasticity import MIRROR, PlaneElasticity
@@ -32,8 +33,6 @@ LOADS, DEGREE = 24, 14
 
 ON_SAMPLE = 1e-4
 """Of the samples' distance: a load nearer to a sample stands on it, where rounding would grow beyond bounds."""
-
-SIDES = ("left", "right")
 
 
 @record
