@@ -63,7 +63,7 @@ def test_even_loads_between_walls_are_the_plane_s(walls, roots):
 
 
 def test_a_single_cell_is_the_plane(walls, roots):
-    """To the last bit by the wave without length alone, to rounding by all waves; nothing is cleared beside contacts."""
+    """To the last bit by the wave without length, to rounding by all waves; nothing is cleared beside contacts."""
     z = np.array([-0.5, 0.1, 0.5]) * PAIR.face_width
     rho, load = np.array([PAIR.points.C, PAIR.points.D]), np.array([[1e5], [3e4]])
     even = root_influences(roots, PAIR, EVEN)
