@@ -8,7 +8,6 @@ import numpy as np
 
 from base import Array, record
 from fem.laws.contact_candidates import ContactCandidates, contact_candidates
-from fem.laws.cut_off import cut_offs
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.local_law import Film, FilmLaw, PairLaws
 from fem.laws.mesh_setup import MeshSetup
@@ -112,21 +111,11 @@ def loaded_flanks(
     """
     placed = flanks_in_place(setup, film, reach)
     candidates, lever_ratios = placed.candidates, placed.lever_ratios
-    table, largest = tables.at(candidates)
+    laws, largest = tables.at(candidates, lever_ratios, setup.moving_contact)
     rho1, rho2 = candidates.rho
     matrix = bodies.bulk(rho1, rho2, candidates.leaning)
     _leave_out_corner(bodies, matrix, candidates)
     matrix /= lever_ratios[..., :, None] * lever_ratios[..., None, :]
-    on_path = candidates.touchable & ~candidates.edge
-    middle = 0.5 * float(setup.pair.points.A + setup.pair.points.E)
-    # contacts that move have a separate law near the corner
-    near = (
-        ()
-        if setup.moving_contact
-        else cut_offs(setup, bodies, candidates, greatest_force(bodies, candidates, force))
-    )
-    place = np.where(on_path, candidates.place, middle)
-    laws = PairLaws(bodies.hertz(place, candidates.curvature, lever_ratios), candidates.edge, table, near)
     return LoadedFlanks(
         candidates, lever_ratios, placed.oil, placed.tilted_lever_ratios, matrix, laws, largest
     )

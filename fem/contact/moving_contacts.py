@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Booleans, Integers, record
-from fem.laws.place_surface import Pushed
+from fem.laws.corner_law import Pushed
 from gears.sharing.active_set import Linearised
 from gears.sharing.load_coupling import Coupling
 from gears.sharing.staying_contacts import JointLaw

@@ -3,7 +3,7 @@ r"""Tip corners under contacts that move: what the laws beside A and E become wh
 The wheel is held, so that a contact keeps its distance from the wheel's corner and rolls on by D towards the pinion's:
 beside E all is as if the involutes touched at x_1 = x + D, with the wheel turned back by D. There the force stands on
 the wheel's flank and has the lever 1 about the wheel's axis; with the energy Psi(F, x_1) of the corner's law over
-force and place (``fem.laws.place_surface``), in turns of the wheel,
+force and place (``fem.laws.corner_law``), in turns of the wheel,
 
     D = dPsi/dF + ...,        T/r_b1 = sum F - dPsi/dx_1 - ...,
 
@@ -22,9 +22,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Booleans, record
-from fem.laws.cut_off import cut_offs
+from fem.laws.corner_law import CornerSurface, Pushed
+from fem.laws.corner_surface import up_to
 from fem.laws.local_law import PairLaws
-from fem.laws.place_surface import PlaceSurface, Pushed, up_to
 from fem.laws.tip_geometry import gap_at
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class MovedFlanks:
         [m], without those that the surface has.
     tilted_lever_ratios : (positions, pairs) array
         Without D.
-    surfaces : tuple of PlaceSurface
+    surfaces : tuple of CornerSurface
         Of the corners of pinion and wheel; none where relief has laws of the corners at held places.
     beside : tuple of (positions, pairs) boolean arrays
         Contacts of either.
@@ -72,7 +72,7 @@ class MovedFlanks:
     laws: PairLaws
     gaps: Array
     tilted_lever_ratios: Array
-    surfaces: tuple[PlaceSurface, ...]
+    surfaces: tuple[CornerSurface, ...]
     beside: tuple[Booleans, ...]
     beyond: Array
     base: Array
@@ -174,17 +174,14 @@ def moved_flanks(
     matrix[..., diagonal, diagonal] -= np.where(after, 0.0, own)
     middle = 0.5 * (pair.points.A + pair.points.E)
     place = np.where(candidates.touchable, np.clip(candidates.place, *setup.ends), middle)
-    hertz, tilted_lever_ratios = (
-        bodies.hertz(place, candidates.curvature, lever_ratios),
-        flanks.tilted_lever_ratios * ratio,
-    )
+    tilted_lever_ratios = flanks.tilted_lever_ratios * ratio
     beyond = np.zeros((2, *clear.shape))
     beside: tuple[Booleans, ...] = ()
     if surfaces:
         tilted_lever_ratios = np.where(
             after, tilted_lever_ratios - flanks.lever_ratios + 1.0, tilted_lever_ratios
         )
-        laws = PairLaws(hertz, np.zeros_like(candidates.edge))
+        laws = PairLaws(bodies.hertz(place, candidates.curvature))
         wheel, other = bodies.wheel, pair.line_of_action - candidates.place
         rounded = up_to(other, wheel.rho_range[1], wheel.module)[0]
         known = np.where(before, wheel.hub_windup, wheel.own(candidates.rho[1]))
@@ -200,10 +197,7 @@ def moved_flanks(
             )
         )
     else:
-        table, _ = tables.at(candidates, slid=tables.slid)
-        laws = PairLaws(
-            hertz, candidates.edge, table, cut_offs(setup, bodies, candidates, force, slid=tables.slid)
-        )
+        laws, _ = tables.at(candidates, lever_ratios, moving=True)
     base = np.where(after, candidates.place, candidates.rho[0]) - held
     base = np.where(
         before & bool(surfaces), candidates.rho[0] - held - np.where(before, candidates.lacking, 0.0), base

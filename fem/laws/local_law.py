@@ -8,9 +8,10 @@ from typing import Protocol
 import numpy as np
 
 from base import Array, Booleans, Integers, record
+from fem.laws.corner_law import CornerLaw
 from fem.pair.hertz_approach import LEAST_FORCE, HertzApproach
 
-__all__ = ["CutOff", "Film", "FilmLaw", "PairLaws", "Table", "film_yielding"]
+__all__ = ["Film", "FilmLaw", "PairLaws", "Table", "film_yielding"]
 
 
 @record
@@ -76,53 +77,6 @@ class Table:
         return value + s1 * beyond, slope
 
 
-@record
-class CutOff:
-    """What a near tip corner adds to the flank's law of some contacts, over the force (``fem.laws.cut_off``).
-
-    Cubic between its points in the force's logarithm; in proportion to the force below the first one, where it is
-    zero for true involutes, and beyond the last, which strips do not cover.
-
-    Attributes
-    ----------
-    at : boolean array
-        Which contacts (positions, pairs), n of them in row-major order.
-    log_force : (n, k) array
-        Logarithms of forces [N].
-    quotient, slope : (n, k) arrays
-        Further deflection over the force [m/N], and its derivative by the logarithm.
-    """
-
-    at: Booleans
-    log_force: Array
-    quotient: Array
-    slope: Array
-
-    def of(self, position: int) -> CutOff:
-        """Corrections at a single position."""
-        rows = np.nonzero(self.at)[0] == position
-        contacts = self.at[position : position + 1]
-        return CutOff(contacts, self.log_force[rows], self.quotient[rows], self.slope[rows])
-
-    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
-        """Further deflection [m] and its derivative [m/N] under forces (..., n) [N], one of each contact."""
-        return _by_row(self._at, force)
-
-    def _at(self, rows: Integers, force: Array) -> tuple[Array, Array]:
-        log, last = np.log(np.maximum(force, LEAST_FORCE)), self.log_force.shape[1] - 1
-        cell = np.clip((self.log_force[rows] <= log[:, None]).sum(axis=-1) - 1, 0, last - 1)
-        start = self.log_force[rows, cell]
-        width = self.log_force[rows, cell + 1] - start
-        q0, q1 = self.quotient[rows, cell], self.quotient[rows, cell + 1]
-        s0, s1 = self.slope[rows, cell] * width, self.slope[rows, cell + 1] * width
-        t = np.clip((log - start) / width, 0.0, 1.0)
-        quotient = q0 * (1 + 2 * t) * (1 - t) ** 2 + q1 * t**2 * (3 - 2 * t)
-        quotient = quotient + s0 * t * (1 - t) ** 2 - s1 * t**2 * (1 - t)
-        slope = (6 * t * (1 - t) * (q1 - q0) + s0 * (1 - t) * (1 - 3 * t) + s1 * t * (3 * t - 2)) / width
-        slope = np.where(log < self.log_force[rows, -1], slope, 0.0)
-        return force * quotient, quotient + np.where(log > self.log_force[rows, 0], slope, 0.0)
-
-
 def _by_row(at: Callable[[Integers, Array], tuple[Array, Array]], force: Array) -> tuple[Array, Array]:
     """Ask laws of rows at forces (m,) for forces (..., rows): those without a force once a row."""
     bears, count = force != 0.0, force.shape[-1]
@@ -137,35 +91,25 @@ def _by_row(at: Callable[[Integers, Array], tuple[Array, Array]], force: Array) 
 
 @record
 class PairLaws:
-    """Hertz on the path of contact, a table for each tip-edge contact outside it.
+    """Hertz's law of each contact, and what tip corners add to it.
 
     Attributes
     ----------
     hertz : HertzApproach
-        For all (positions, pairs).
-    edge : (positions, pairs) boolean array
-        Contacts of a tip edge.
-    table : Table or None
-        One row for each of them, in row-major order.
-    cut_offs : tuple of CutOff
-        Corrections of contacts near tip corners.
+        For all (positions, pairs); at the end of the flank for tip edges.
+    corners : tuple of CornerLaw
+        Of contacts at or near tip corners.
     """
 
     hertz: HertzApproach
-    edge: Booleans
-    table: Table | None = None
-    cut_offs: tuple[CutOff, ...] = ()
+    corners: tuple[CornerLaw, ...] = ()
 
     def at(self, position: int) -> PairLaws:
         """Laws of a single position."""
         row = slice(position, position + 1)
-        per_log = np.broadcast_to(self.hertz.per_log, self.edge.shape)[row]
-        table = self.table
-        if table is not None:
-            rows = np.nonzero(self.edge)[0] == position
-            table = Table(table.force[rows], table.approach[rows], table.steepness[rows])
-        near = tuple(cut.of(position) for cut in self.cut_offs)
-        return PairLaws(HertzApproach(self.hertz.constant[row], per_log), self.edge[row], table, near)
+        per_log = np.broadcast_to(self.hertz.per_log, self.hertz.constant.shape)[row]
+        corners = tuple(corner.of(position) for corner in self.corners)
+        return PairLaws(HertzApproach(self.hertz.constant[row], per_log), corners)
 
     def approach(self, force: Array) -> Array:
         """Local deflection (positions, pairs) [m]."""
@@ -178,12 +122,10 @@ class PairLaws:
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Both together."""
         value, slope = self.hertz.value_and_slope(force)
-        if self.table is not None:
-            value[..., self.edge], slope[..., self.edge] = self.table.value_and_slope(force[..., self.edge])
-        for cut in self.cut_offs:
-            more, steeper = cut.value_and_slope(force[..., cut.at])
-            value[..., cut.at] += more
-            slope[..., cut.at] += steeper
+        for corner in self.corners:
+            more, steeper = corner.value_and_slope(force[..., corner.at])
+            value[..., corner.at] += more
+            slope[..., corner.at] += steeper
         return value, slope
 
 

@@ -25,8 +25,9 @@ if TYPE_CHECKING:
 
     from fem.laws.mesh_setup import MeshSetup
     from fem.laws.tip_contact import Removed
+    from gears import GearPair
 
-__all__ = ["Touch", "ends_of_flanks", "gentle", "starts_of_relief", "touch"]
+__all__ = ["Touch", "ends_of_flanks", "gentle", "plain_touch", "starts_of_relief", "touch"]
 
 SPAN = 0.05
 """Half of the stretch over which slope and curvature of what is missing are differences [modules]."""
@@ -73,6 +74,13 @@ class Touch:
     lever: Array
     leaning: Array
     beyond: Booleans
+
+
+def plain_touch(pair: GearPair, place: Array) -> Touch:
+    """Where true involutes touch."""
+    none, one = np.zeros((2, len(place))), np.ones((2, len(place)))
+    rho = np.stack([place, pair.line_of_action - place])
+    return Touch(rho, none[0], one[0], one, none, np.zeros(len(place), dtype=bool))
 
 
 def touch(setup: MeshSetup, place: Array, removed: tuple[Removed, Removed]) -> Touch:
@@ -182,7 +190,7 @@ def ends_of_flanks(setup: MeshSetup) -> tuple[float, float]:
     pitch, ends = setup.pair.base_pitch, []
     for place, outwards in ((start, -1.0), (end, 1.0)):
         apart = place + 0.5 * outwards * pitch * np.array([-1.0, 1.0])
-        for _ in range(6):  # 15 places at once
+        for _ in range(7):  # 15 places at once
             places = np.linspace(apart[0], apart[1], 17)
             inside = ~touch(setup, places, removed).beyond
             last = int(np.flatnonzero(inside)[-1]) if inside.any() else 0

@@ -10,6 +10,7 @@ import pytest
 import fem
 from base import InputError
 from fem.laws.cut_off import FAR, cut_off
+from fem.laws.relieved_flanks import plain_touch
 from fem.laws.tip_geometry import unloaded_gap
 from gears import Gear, GearPair, TipRelief
 
@@ -37,16 +38,18 @@ def test_shares_add_up_and_deflections_are_equal(article_pair, article_bodies, b
         deflection = article_bodies.bulk(rho1) @ force + article_bodies.hertz(rho1).approach(force)
         if beyond:
             deflection += by_corners(article_bodies, rho1, force)
-        np.testing.assert_allclose(deflection, cycle.transmission_error[row], rtol=1e-9)
+        law = 1e-5 if beyond else 1e-9  # that of corners is a surface through those of strips
+        np.testing.assert_allclose(deflection, cycle.transmission_error[row], rtol=law)
 
 
 def by_corners(bodies, rho1, force):
-    """What near corners add to the deflections."""
+    """What near corners add to the deflections, by strips about these very places."""
     added, line = np.zeros(len(rho1)), bodies.pair.line_of_action
     for corner, gear, rho in ((0, bodies.pinion, rho1), (1, bodies.wheel, line - rho1)):
         near = (gear.rho_end**2 - rho**2) / (2 * gear.base_radius) < FAR[1] * bodies.pair.module
-        if near.any():
-            added[near] += cut_off(bodies, corner, rho1[near], near).value_and_slope(force[near])[0]
+        touched = plain_touch(bodies.pair, rho1[near])
+        more = cut_off(bodies, corner, touched, rho1[near], np.maximum(force[near], 1.0))
+        added[near] += np.diagonal(more) * force[near]
     return added
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
@@ -14,8 +12,11 @@ from fem.elasticity.flamant import hertz_half_width, hertz_indentation
 from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.influence.strip_contact import flat_kernel, from_the_corner, smoothed
 from fem.influence.tip_strips import sharp_layout
+from fem.laws.corner_law import CornerLaw, CornerSurface
+from fem.laws.corner_surface import corner_surfaces, up_to
 from fem.laws.cut_off import FADE, FAR, cut_off
 from fem.laws.mesh_setup import MeshSetup
+from fem.laws.relieved_flanks import plain_touch
 from fem.laws.tip_geometry import lever_ratio, opening, unloaded_gap
 from gears import Gear, GearPair, Material
 
@@ -43,6 +44,30 @@ def near(bodies, corner, distance):
     gear, line = (bodies.pinion, bodies.wheel)[corner], bodies.pair.line_of_action
     rho = np.sqrt(gear.rho_end**2 - 2 * gear.base_radius * distance)
     return (rho if corner == 0 else line - rho), rho * (line - rho) / line
+
+
+def law_at(bodies, corner, distance):
+    """Law that the corner adds at distances from it along its flank (n,) [m]."""
+    place, _ = near(bodies, corner, np.asarray(distance))
+    gear, setup = (bodies.pinion, bodies.wheel)[corner], MeshSetup(bodies.pair, 1)
+    rho = place if corner == 0 else bodies.pair.line_of_action - place
+    surface, _ = corner_surfaces(setup, bodies, corner, 0.6)
+    rounded = up_to(rho, gear.rho_range[1], gear.module)[0]
+    further = (gear.own(rounded) - gear.own(rho)) / bodies.pair.face_width
+    return surface.held(np.ones((len(rho), 1), dtype=bool), rho - gear.rho_end, further)
+
+
+@pytest.fixture
+def nothing_inside(monkeypatch):
+    """Flanks have their own law up to A and E."""
+    held = CornerSurface.held
+
+    def outside(surface, at, place, further):
+        law = held(surface, at, place, further)
+        inside = surface.reach[1] == 0.0
+        return CornerLaw(at, law.log_force, 0.0 * law.quotient, 0.0 * law.slope) if inside else law
+
+    monkeypatch.setattr(CornerSurface, "held", outside)
 
 
 @pytest.fixture(scope="module")
@@ -85,8 +110,8 @@ def test_nothing_steps_with_a_plastic_wheel(plastic):
             assert tangent[1] == pytest.approx(tangent[0], rel=STEP)
 
 
-def test_without_the_strips_inside_it_would_step(article_pair, article_bodies, monkeypatch):
-    monkeypatch.setattr(sys.modules["fem.contact.loaded_flanks"], "cut_offs", lambda *_: ())
+@pytest.mark.usefixtures("nothing_inside")
+def test_without_the_strips_inside_it_would_step(article_pair, article_bodies):
     approach, _, _ = solved(article_pair, article_bodies, 600.0, [-1e-6, 1e-6])
     assert abs(approach[1] / approach[0] - 1) > 4 * STEP
 
@@ -103,9 +128,9 @@ def test_curves_are_smooth_where_the_flanks_law_takes_over(article_pair, article
         assert fine < 0.2 * STEP * curve.mean()
 
 
-def test_the_cycle_moves_little(article_pair, article_bodies, monkeypatch):
+def test_the_cycle_moves_little(article_pair, article_bodies, request):
     with_strips = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
-    monkeypatch.setattr(sys.modules["fem.contact.loaded_flanks"], "cut_offs", lambda *_: ())
+    request.getfixturevalue("nothing_inside")
     without = fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
     for name in ("stiffness", "secant_stiffness"):
         mean, before = getattr(with_strips, name).mean(), getattr(without, name).mean()
@@ -134,11 +159,11 @@ def test_the_correction_is_that_of_narrow_strips(article_pair, article_bodies, c
     kernel += flat_kernel(middle, strip, LAW, pair.module)
     levers = np.ones_like(where) if corner == 1 else lever_ratio(pair, where, np.array([place])[:, None])
     wanted = bearing(kernel, gaps[0], levers[0], load)
-    table = cut_off(bodies, corner, np.array([place]), np.ones((1, 1), dtype=bool))
+    law = law_at(bodies, corner, [part * a])
     flank = float(bodies.hertz(np.array([place])).approach(np.array([load * width]))[0])
     rho_here = np.array([place if corner == 0 else pair.line_of_action - place])
     flank += load * float(gear.own(rho_here)[0] - gear.hub_windup)
-    got = flank + float(table.value_and_slope(np.array([load * width]))[0][0])
+    got = flank + float(law.value_and_slope(np.array([load * width]))[0][0])
     assert abs(got - flank) > 10 * abs(got - wanted) > 0
     assert got == pytest.approx(wanted, rel=STEP)
 
@@ -160,25 +185,27 @@ def bearing(kernel, gaps, levers, load):
 
 
 def test_small_contacts_and_far_ones_have_the_flanks_own_law(article_bodies):
-    at = np.ones((1, 1), dtype=bool)
+    pair = article_bodies.pair
     for corner in (0, 1):
         for distance in (0.01 * 2e-3, 0.05 * 2e-3):
-            place, radius = near(article_bodies, corner, distance)
-            table = cut_off(article_bodies, corner, np.array([place]), at)
+            place, radius = near(article_bodies, corner, np.array([distance]))
             load = np.pi * LAW.plane_modulus * (distance / FADE[1]) ** 2 / (8 * radius)
-            force = np.array([0.99 * load * article_bodies.pair.face_width])
-            assert table.value_and_slope(force) == (0.0, 0.0)
-        place, _ = near(article_bodies, corner, FAR[1] * 2e-3)
-        table = cut_off(article_bodies, corner, np.array([place]), at)
-        np.testing.assert_allclose(table.quotient, 0.0, atol=1e-25)
+            force = 0.99 * load * pair.face_width
+            assert cut_off(article_bodies, corner, plain_touch(pair, place), place, force) == 0.0
+            law = law_at(article_bodies, corner, [distance])
+            own = 5e-10  # what a pair yields per force [m/N]
+            value, slope = law.value_and_slope(force)
+            assert abs(value[0]) < 1e-4 * own * force[0]
+            assert abs(slope[0]) < 1e-3 * own
+        law = law_at(article_bodies, corner, [FAR[1] * 2e-3, 1.2 * FAR[1] * 2e-3])
+        np.testing.assert_allclose(law.quotient, 0.0, atol=1e-24)
 
 
 def test_the_correction_is_smooth_and_its_slope_is_its_derivative(article_bodies):
-    place, _ = near(article_bodies, 1, np.array([0.0, 0.02, 0.05, 0.1]) * 2e-3)
-    table = cut_off(article_bodies, 1, place, np.ones((4, 1), dtype=bool))
+    law = law_at(article_bodies, 1, np.array([0.0, 0.02, 0.05, 0.1]) * 2e-3)
     force = np.geomspace(3.0, 5e4, 400)[:, None] * np.ones(4)
-    ahead, behind = (table.value_and_slope(force * (1 + h))[0] for h in (1e-5, -1e-5))
-    slope = table.value_and_slope(force)[1]
+    ahead, behind = (law.value_and_slope(force * (1 + h))[0] for h in (1e-5, -1e-5))
+    slope = law.value_and_slope(force)[1]
     own = 5e-10  # what a pair yields per force [m/N]
     np.testing.assert_allclose(slope, (ahead - behind) / (2e-5 * force), atol=1e-5 * own)
     assert np.abs(np.diff(slope, axis=0)).max() < 0.01 * own
@@ -205,9 +232,8 @@ def test_a_smoothed_law_by_strips_is_hertz():
 
 
 def test_beyond_the_strips_the_correction_grows_in_proportion(article_bodies):
-    place, _ = near(article_bodies, 1, np.array([0.0, 0.05]) * 2e-3)
-    table = cut_off(article_bodies, 1, place, np.ones((2, 1), dtype=bool))
-    last = np.exp(table.log_force[:, -1])
-    (one, rises), (much, steep) = (table.value_and_slope(last * part) for part in (1.0 + 1e-9, 1e4))
+    law = law_at(article_bodies, 1, np.array([0.0, 0.05]) * 2e-3)
+    last = np.exp(law.log_force[[-1, -1]])
+    (one, rises), (much, steep) = (law.value_and_slope(last * part) for part in (1.0 + 1e-9, 1e4))
     np.testing.assert_allclose(much, 1e4 * one, rtol=1e-6)
     np.testing.assert_allclose(steep, rises, rtol=1e-6)

@@ -75,6 +75,9 @@ def test_figures_are_those_of_very_many_positions(article_pair, article_bodies, 
         # each step is somewhere between two samples: half an interval of it, and the square of one for corners
         rows = np.array([arc.values[CURVES.index(curve), [0, -1]] for arc in arcs.arcs])
         steps = np.sum(np.abs(rows[:, 0] - np.roll(rows[:, 1], 1)))
+        # at an event the tangent goes on as the inverse of a logarithm, of which the first sample shows more
+        sampled, after = getattr(many, curve), np.searchsorted(many.position, few.event_position) % MANY
+        steps = max(steps, np.sum(np.abs(sampled[after] - sampled[after - 1])))
         mean, error = arcs.mean(curve)
         allowed = error + 0.5 / MANY * steps + MANY**-2.0 * mean
         assert abs(mean - np.mean(getattr(many, curve))) < allowed
@@ -205,27 +208,26 @@ def test_third_order_energies_wait_until_they_are_asked_for(article_pair):
 
 
 def test_laws_of_tip_edges_are_computed_once(article_pair, article_bodies, monkeypatch):
-    """For each place within a base pitch, whatever the pitch and the torque, on both meshes of an estimate."""
-    from fem.laws import edge_tables
+    """For either corner, whatever the pitch and the torque, on both meshes of an estimate."""
+    from fem.laws import corner_surface, edge_tables
 
-    asked, laws = [], edge_tables.edge_laws
+    edge_tables.forget_laws()
+    asked, laws = [], corner_surface.edge_laws
 
-    def counted(pair, strips, corner, rho1, *others):
+    def counted(pair, strips, corner, rho1, *others, **more):
         asked.extend((id(strips), corner, round(one / article_pair.base_pitch, 12)) for one in rho1)
-        return laws(pair, strips, corner, rho1, *others)
+        return laws(pair, strips, corner, rho1, *others, **more)
 
-    monkeypatch.setattr(edge_tables, "edge_laws", counted)
+    monkeypatch.setattr(corner_surface, "edge_laws", counted)
     cycles = fem.mesh_cycle(article_pair, (300.0, 600.0), 10, article_bodies, pitches=3)
-    assert len(asked) == len(set(asked))
-    once = len(asked)
     for cycle in cycles:
         assert cycle.transmission_error_range > 0
-    # but for places on the edge of rounding, on both meshes
+    once = len(asked)
+    assert once == len(set(asked))
     assert len({mesh for mesh, *_ in asked}) == 4
-    assert len(asked) - len(set(asked)) < 0.005 * len(asked)
     one = fem.mesh_cycle(article_pair, 600.0, 10, article_bodies)
     assert one.transmission_error_range == pytest.approx(cycles[1].transmission_error_range, rel=1e-6)
-    assert once > 0
+    assert len(asked) == once > 0
 
 
 @pytest.mark.slow

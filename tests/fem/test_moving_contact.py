@@ -39,7 +39,7 @@ def alone(bodies, position, torque, staying=False):
     rho = np.array([[[rho1]], [[pair.line_of_action - rho1]]])
     yes, no = np.ones((1, 1), dtype=bool), np.zeros((1, 1), dtype=bool)
     where = replace(contact_candidates(MeshSetup(pair, 1, False)), rho=rho, touchable=yes, edge=no)
-    moves, laws = contact_moves(bodies, where), PairLaws(bodies.hertz(rho[0]), no)
+    moves, laws = contact_moves(bodies, where), PairLaws(bodies.hertz(rho[0]))
     force, bulk, gaps = np.array([torque / pair.base_radii[0]]), bodies.bulk(rho[0]), np.zeros((1, 1))
     stays = share_load(force, bulk, laws, gaps)
     if staying:
