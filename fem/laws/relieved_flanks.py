@@ -78,9 +78,9 @@ class Touch:
 
 def plain_touch(pair: GearPair, place: Array) -> Touch:
     """Where true involutes touch."""
-    none, one = np.zeros((2, len(place))), np.ones((2, len(place)))
     rho = np.stack([place, pair.line_of_action - place])
-    return Touch(rho, none[0], one[0], one, none, np.zeros(len(place), dtype=bool))
+    nothing, even = np.zeros_like(rho), np.ones_like(rho)
+    return Touch(rho, nothing[0], even[0], even, nothing, np.zeros(len(place), dtype=bool))
 
 
 def touch(setup: MeshSetup, place: Array, removed: tuple[Removed, Removed]) -> Touch:
