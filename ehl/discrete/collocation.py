@@ -9,9 +9,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from base import Array
-
-POINTS = 11
-"""Points across the film: flows of Sig = 6 hold to 5e-10."""
+from ehl.discrete.method import METHOD
 
 
 class Collocation(NamedTuple):
@@ -25,7 +23,7 @@ class Collocation(NamedTuple):
 
 
 @cache
-def lobatto(points: int = POINTS) -> Collocation:
+def lobatto(points: int = METHOD.points_across) -> Collocation:
     """Return the places and matrices of as many points."""
     order = points - 1
     top = np.zeros(points)

@@ -11,10 +11,8 @@ from scipy.linalg.lapack import dgesv, dgetrs
 from base import Array, Integers
 from ehl.discrete.equations import Grid, Groups, Oil, film_gap, fluxes, inlet_pressure, load_inside
 from ehl.discrete.grid import face_weights
+from ehl.discrete.method import METHOD
 from ehl.discrete.squeeze import Squeeze
-
-STEP_DONE = 1e-6
-"""Newton converges quadratically: after such a step the error is near rounding."""
 
 _PRESSURE_STEP = 0.3  # largest change of P in one step
 _GAP_LEFT = 0.2  # share of the film that one step must leave
@@ -77,7 +75,7 @@ def newton(
     spent: int = 0,
     max_iterations: int = 60,
     oil: Oil | None = None,
-    done: float = STEP_DONE,
+    done: float = METHOD.newton_done,
     squeeze: Squeeze | None = None,
 ) -> Iteration:
     """Solve Reynolds' equation, the gap and the load balance together.

@@ -12,10 +12,10 @@ from base import Array
 from ehl.discrete.collocation import Collocation, lobatto
 from ehl.discrete.contact import LineContact
 from ehl.discrete.equations import Fluid, Grid, Groups, plain_oil
+from ehl.discrete.method import METHOD
 from ehl.discrete.solids import Solid, surface_heating
 
 _COLD = 1e-3  # mean rise below which changes are not looked at in proportion [K]
-INLET_GAP = 30.0  # gap over the central film ahead of which heat stays with the oil that turns back there
 _NEWTONIAN = 1e12  # Eyring stress that no oil reaches [Pa]; with more, sums across the film lose digits
 _UNLIMITED = 1e30  # [Pa]
 _LEAST_STRESS = 1e3  # of the limiting stress where hardly any pressure stands [Pa]
@@ -92,7 +92,7 @@ class ThermalOil:
     middles: Array = field(init=False)  # of the cells [m] (n-1,)
     lengths: Array = field(init=False)  # of the cells [m] (n-1,)
     left: Array = field(init=False)  # share of the left cell at the nodes between two (n-2,)
-    inlet_gap: float = INLET_GAP
+    inlet_gap: float = METHOD.heat_reach
     first: int = 0  # cell where heat begins to be followed
     last: int = 0  # and where it ends
     unsettled: float = 0.0
@@ -170,10 +170,10 @@ class ThermalOil:
         self.press(P, H)
         if self.solids is not None:
             self._warm()
-        return self.given()
+        return self.fluid()
 
     def press(self, P: Array, H: Array) -> None:
-        """Let flow and shear follow pressures and gaps, at the temperatures as they are."""
+        """Let flow and shear follow pressures and gaps, temperatures unchanged."""
         oil = self.contact.lubricant
         p = self.groups.pressure * P
         self.last = int(np.flatnonzero(P > 0.0)[-1])
@@ -183,7 +183,7 @@ class ThermalOil:
         if self.solids is not None:
             self.shear = self._sheared()
 
-    def given(self) -> Fluid:
+    def fluid(self) -> Fluid:
         """What the flux needs of the oil at its temperatures."""
         oil, under, scale = self.contact.lubricant, self.under, self.groups.pressure
         shear = self.shear = self._sheared()

@@ -20,7 +20,7 @@ from ehl.discrete.regressions import moes_central
 from ehl.discrete.supply import OilLayer, Supply
 from ehl.films.film import Film
 from ehl.films.mixed_film import MixedFilm
-from ehl.films.result import Found
+from ehl.films.result import GridSolution
 from ehl.films.rough_slopes import rough_slopes
 from ehl.films.solver import solve_checked
 from ehl.solving.levels import State, figures
@@ -110,7 +110,7 @@ class _Films:
     def __init__(self, contact: LineContact, options: Options, state: State | None) -> None:
         self.contact, self.options, self.state = contact, options, state
         self.cost = Cost(0.0)
-        self.last: Found
+        self.last: GridSolution
 
     def gap(self, odds: float) -> float:
         """Central film [m] at odds of the asperities' share."""

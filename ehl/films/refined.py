@@ -7,33 +7,33 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from base.results import WORST
-from ehl.films.result import Found, above, film_error, remedy, spike_error
+from ehl.discrete.method import METHOD
+from ehl.films.result import GridSolution, above, film_error, remedy, spike_error
 from ehl.solving.grid_search import GridSearch
 from ehl.solving.levels import Level
 from ehl.solving.options import Options
 from ehl.solving.refinement import doubled, refine
 
 _SHARP_NODES = 257
-_MOST_NODES = 2049
 _SETTLING = 0.7  # the spike's error has to fall by this factor from grid to grid
 
 
-def refined(run: GridSearch, coarse: Level, fine: Level, options: Options) -> Found:
+def refined(run: GridSearch, coarse: Level, fine: Level, options: Options) -> GridSolution:
     """Double the grid until the estimates meet what is asked, then report."""
     inlet = run.plan.inlet_error
     judge = _Judge(options, inlet)
     if options.sharp and coarse.solution.converged and fine.solution.converged:
         if options.nodes is None and options.spike is None and judge.compared(coarse, fine).enough:
-            return Found(run, coarse, fine, film_error(coarse, fine) + inlet, inlet)
+            return GridSolution(run, coarse, fine, film_error(coarse, fine) + inlet, inlet)
         n = _SHARP_NODES if options.nodes is None else fine.grid.nodes.size
         coarse = run.sharpened(fine, (n + 1) // 2)
         fine = run.sharpened(coarse, n)
     if not coarse.solution.converged:
-        return Found(run, coarse, fine, math.nan, inlet, coarse.solution.message)
+        return GridSolution(run, coarse, fine, math.nan, inlet, coarse.solution.message)
     nearest = refine(doubled(_levels(run, coarse, fine, options), judge.compared))
     if run.failed is not None or nearest is None:
         failed = run.failed or fine
-        return Found(run, coarse, failed, math.nan, inlet, failed.solution.message)
+        return GridSolution(run, coarse, failed, math.nan, inlet, failed.solution.message)
     return nearest.reported(run, inlet, options)
 
 
@@ -43,7 +43,7 @@ def _levels(run: GridSearch, coarse: Level, fine: Level, options: Options) -> It
     while True:
         n, gave_in = 2 * fine.grid.nodes.size - 1, fine.solution.converged
         yield fine if gave_in else None
-        if options.nodes is None and gave_in and n <= _MOST_NODES:
+        if options.nodes is None and gave_in and n <= METHOD.most_nodes:
             coarse, fine = fine, run.sharpened(fine, n) if options.sharp else run.warm(fine, None, n)
         elif options.nodes is None and not gave_in and n <= run.most_cold and not run.exhausted:
             fine = run.warm(coarse, None, n)
@@ -79,9 +79,9 @@ class _Pair:
     enough: bool
     settles: bool  # whether the spike's error falls from grid to grid
 
-    def reported(self, run: GridSearch, inlet: float, options: Options) -> Found:
+    def reported(self, run: GridSearch, inlet: float, options: Options) -> GridSolution:
         """Say what was found, and what of the error is left."""
-        report = Found(run, self.coarse, self.fine, self.error, inlet)
+        report = GridSolution(run, self.coarse, self.fine, self.error, inlet)
         if not self.settles:
             return replace(report, failure=f"error {self.off:.2g} of the spike, which does not settle")
         if self.enough:

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from base import Array, RangeWarning
+from ehl.discrete.method import METHOD
 from ehl.discrete.supply import OilLayer, Supply
 from ehl.films.film import Film, FilmErrors, Spike
-from ehl.solving.grid_search import DRY, GridSearch
+from ehl.solving.grid_search import GridSearch
 from ehl.solving.levels import Level, State, figures, spike_of
 from ehl.solving.plan import Plan
 from ehl.solving.response import Slopes, slopes
 
-GRID_FACTOR = 0.4  # error of N nodes over its difference from (N+1)/2: 1/3 at second order, with a margin
 _SEPARATION_LOSS = 20.0  # times the film's own error by the finite inlet
 
 
@@ -34,7 +34,7 @@ def film_error(coarse: Level, fine: Level) -> float:
     profile = math.sqrt(float(weights @ change**2 / weights.sum()))
     names = ("central_thickness", "minimum_thickness", "separation")
     changes = [abs(float(getattr(before, name)) / getattr(after, name) - 1.0) for name in names]
-    return GRID_FACTOR * (profile + math.fsum(changes))
+    return METHOD.grid_factor * (profile + math.fsum(changes))
 
 
 def pressure_error(coarse: Level, fine: Level) -> float:
@@ -67,8 +67,8 @@ def spike_error(coarse: Level, fine: Level) -> float:
 
 
 @dataclass(frozen=True)
-class Found:
-    """What one call found: two grids with what they differ by, or the reason why there are none."""
+class GridSolution:
+    """Two grids with what they differ by, or the reason why there are none."""
 
     run: GridSearch
     coarse: Level
@@ -111,7 +111,7 @@ def film_of(run: GridSearch, coarse: Level, fine: Level, error: float, inlet: fl
     shown, before = figures(fine), figures(coarse)
     slope, slope_before = slopes(fine, supply), slopes(coarse, supply)
     change = before.separation / shown.separation - 1.0
-    off = GRID_FACTOR * abs(change) + _SEPARATION_LOSS * inlet
+    off = METHOD.grid_factor * abs(change) + _SEPARATION_LOSS * inlet
     errors = FilmErrors(
         film=error,
         separation=off,
@@ -143,14 +143,14 @@ def film_of(run: GridSearch, coarse: Level, fine: Level, error: float, inlet: fl
     )
 
 
-def slope_errors(coarse: Slopes, fine: Slopes, inlet: float) -> dict[str, float]:
-    """Errors of the derivatives by the load, from two grids."""
-    lost = _SEPARATION_LOSS * inlet
+def slope_errors(coarse: Slopes, fine: Slopes, inlet: float, rest: float = 0.0) -> dict[str, float]:
+    """Errors of the derivatives by the load, from two grids; ``rest`` is what corrections would still change."""
+    lost = _SEPARATION_LOSS * inlet + rest
     steeper = coarse.separation / fine.separation - 1.0
     return {
         "approach_stiffness": abs(steeper) + fine.ripple + lost,
         "tangent_stiffness": abs(coarse.central / fine.central - 1.0) + lost,
-        "slope_shift": GRID_FACTOR * steeper,
+        "slope_shift": METHOD.grid_factor * steeper,
     }
 
 
@@ -198,11 +198,11 @@ def remedy(run: GridSearch, plan: Plan) -> str:
     layer = isinstance(run.supply, OilLayer)
     if plan.fixed and not layer and plan.domain[0] > -1.05:
         return "the inlet lies at the edge of the dry contact and starves it; move it farther out"
-    if plan.H_c < DRY:
+    if plan.H_c < METHOD.dry:
         held = "the layer holds the inlet at the edge of the dry contact, and " if layer else ""
         return (
             f"{held}the film is too thin beside the flattening to be resolved (h R/b^2 = {plan.H_c:.2g}, below "
-            f"{DRY:g}); take the contact as dry (separation 0)"
+            f"{METHOD.dry:g}); take the contact as dry (separation 0)"
         )
     if run.whole_spike:
         return (

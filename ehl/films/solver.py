@@ -10,21 +10,18 @@ import numpy as np
 
 from base import Cost
 from ehl.discrete.contact import LineContact
+from ehl.discrete.method import METHOD
 from ehl.discrete.regressions import moes_central
 from ehl.discrete.supply import Meniscus, OilLayer, Supply
 from ehl.films.film import Film
 from ehl.films.refined import refined
-from ehl.films.result import Found
+from ehl.films.result import GridSolution
 from ehl.solving.grid_search import GridSearch
 from ehl.solving.levels import Level, State
 from ehl.solving.options import Options, warn_of_range
 from ehl.solving.plan import Plan
 
-_FIRST_NODES = 65
 _MOST_FIRST_NODES = 257
-REACH = 40.0
-"""Inlet length in sqrt(h R) that keeps the error of the separation below 1e-3."""
-
 SURELY = 0.7
 """Share of the expected flooded flow below which a layer starves the contact for certain."""
 
@@ -140,17 +137,17 @@ def solve_path(
 
 def solve_checked(
     contact: LineContact, options: Options, start: State | None, spent: Cost | None = None
-) -> Found:
+) -> GridSolution:
     """Find the grids of a film, with arguments that were checked."""
     if options.supply is not None:
         return _starved(contact, options, options.supply, start)
-    reach = max(REACH, (10.0 / options.tolerance) ** (1.0 / 3.0))
+    reach = max(METHOD.inlet_reach, (10.0 / options.tolerance) ** (1.0 / 3.0))
     flooded = Plan.of(contact, options.grid, options.domain, reach)
     run = GridSearch(contact, flooded, None, whole_spike=options.spike is not None, spent=spent)
     return _solve(run, options, start)
 
 
-def _starved(contact: LineContact, options: Options, supply: Supply, start: State | None) -> Found:
+def _starved(contact: LineContact, options: Options, supply: Supply, start: State | None) -> GridSolution:
     """Solve with a supply: a layer may be thicker than what the contact takes, which the flooded one shows."""
     held = start if start is not None and start.plan.fixed else None
     full = start if held is None else held.flooded
@@ -189,7 +186,7 @@ def _held(
     held: State | None,
     flooded: State | None,
     spent: Cost | None,
-) -> Found:
+) -> GridSolution:
     """Solve a starved contact, whose flooded flow would be about ``flow`` [m]."""
     plan = Plan.fed(contact, options.grid, supply, flow)
     whole = options.spike is not None
@@ -197,7 +194,7 @@ def _held(
     return _solve(run, options, held)
 
 
-def _solve(run: GridSearch, options: Options, old: State | None) -> Found:
+def _solve(run: GridSearch, options: Options, old: State | None) -> GridSolution:
     """Solve a first pair of grids, then refine.
 
     A start gives films on the first pair alone: on finer ones a film of another load is often too far off.
@@ -205,7 +202,7 @@ def _solve(run: GridSearch, options: Options, old: State | None) -> Found:
     if old is not None and old.plan.serves(run.plan, run.supply):
         run.plan = old.plan
     fed = isinstance(run.supply, OilLayer)
-    n = 2 * _FIRST_NODES - 1
+    n = 2 * METHOD.first_nodes - 1
     if options.nodes is not None:
         n = int(options.nodes)
     half = (n + 1) // 2

@@ -10,6 +10,7 @@ import numpy as np
 
 from base import Array, Faults, Limit, RangeWarning, Stopwatch, part, quantity, record, unclocked
 from ehl.discrete.contact import LineContact
+from ehl.discrete.method import METHOD
 from ehl.discrete.solids import STEEL, Solid
 from ehl.discrete.supply import Supply
 from ehl.discrete.thermal_oil import ThermalOil
@@ -23,7 +24,6 @@ from ehl.solving.levels import WarmLevel, figures
 from ehl.solving.options import Options, warn_of_range
 
 _TEMPERATURE = Limit(200.0, 600.0, "K", "353.15 is 80 degC")
-_HOTTEST = 1000.0  # [K]
 _DECOMPOSING = 620.0  # [K]
 _STRONGEST = 0.06  # mean shear stress over the maximum pressure
 _YIELDING = "give eyring_stress (5e6 to 1e7 Pa) or limiting_shear_ratio"
@@ -167,7 +167,7 @@ def solve_thermal(
     watch = Stopwatch()
     search = Search(contact, solids, np.array(bulk), tolerance)
     compared = supplied(search, supply, None if start is None else start.state, nodes)
-    if compared is not None and compared.oil.temperature.max() > _HOTTEST:
+    if compared is not None and compared.oil.temperature.max() > METHOD.hottest:
         hottest = compared.oil.temperature.max()
         search.reason, compared = f"the oil would reach {hottest:.0f} K, which no liquid does", None
     if compared is None:

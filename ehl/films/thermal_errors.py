@@ -6,13 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
-from ehl.discrete.thermal_oil import INLET_GAP
-from ehl.films.result import GRID_FACTOR, film_error
+from ehl.discrete.method import METHOD
+from ehl.films.result import film_error
 from ehl.solving.heat_balance import losses, rises, traction
 from ehl.solving.levels import State, WarmLevel, figures
-
-DONE = 0.05
-"""Last step of the pressure over the tolerance; steps shrink by three and more each."""
 
 _LEAST = 0.6  # the minimum under a spike falls with the cells' size, not with its square: as much more of its change
 _INLET_SHARE = (
@@ -34,16 +31,18 @@ class Compared:
     ) -> None:
         self.coarse, self.fine, self.before, self.oil = coarse, fine, coarse.oil, fine.oil
         self.flooded = flooded
-        rest = DONE * tolerance / 3.0  # what further steps would still change
+        rest = METHOD.newton_done_with_heat * tolerance / 3.0  # what further steps would still change
         mu_0, mu = traction(self.before), traction(self.oil)
         self.rest, self.inlet = rest, self.fine.plan.inlet_error
         self.traction_error = rest + abs(mu_0 - mu) / max(abs(mu), 1e-4)
         oil = self.oil.contact.lubricant
-        cut = 0.0 if self.oil.solids is None or oil.viscosity_slope == 0.0 else _INLET_SHARE / INLET_GAP
+        cut = (
+            0.0 if self.oil.solids is None or oil.viscosity_slope == 0.0 else _INLET_SHARE / METHOD.heat_reach
+        )
         lowest_0, lowest = (figures(level).minimum_thickness for level in (self.coarse, self.fine))
         film = film_error(self.coarse, self.fine) + _LEAST * abs(lowest_0 / lowest - 1.0)
         # what the hottest oil does to film and traction is in these; itself it may stand at the spike
-        self.error = max(film, GRID_FACTOR * self.traction_error) + self.inlet + cut + rest
+        self.error = max(film, METHOD.grid_factor * self.traction_error) + self.inlet + cut + rest
         # a grid that is asked for has no tolerance to meet, nor do coarser ones end the search for it
         self.enough = self.error <= tolerance if nodes is None else fine.grid.nodes.size == nodes
 

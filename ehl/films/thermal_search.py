@@ -12,13 +12,13 @@ from base import Array, Cost
 from base.results import WORST
 from ehl.discrete.contact import LineContact
 from ehl.discrete.equations import Grid, Groups
+from ehl.discrete.method import METHOD
 from ehl.discrete.newton import newton
 from ehl.discrete.solids import Solid
 from ehl.discrete.supply import OilLayer, Supply
 from ehl.discrete.thermal_oil import ThermalOil
-from ehl.films.solver import REACH, moes_flow, solve_checked
-from ehl.films.thermal_errors import DONE, Compared
-from ehl.solving.grid_search import MOST_STEPS
+from ehl.films.solver import moes_flow, solve_checked
+from ehl.films.thermal_errors import Compared
 from ehl.solving.heat_balance import losses
 from ehl.solving.layer_supply import LayerSupply
 from ehl.solving.levels import Level, State, WarmLevel, transfer
@@ -27,10 +27,6 @@ from ehl.solving.plan import Plan
 from ehl.solving.refinement import doubled, refine
 
 _MOST_STEPS = 60  # of Newton's on one grid
-_BALANCE = 0.1  # of the heat that is lost or found, beyond which there is no solution
-_FED = 0.02  # miss of a layer's flow over the tolerance
-_FIRST_NODES = 65
-_MOST_NODES = 513
 _SHARES = (0.25, 0.5, 0.75, 1.0)  # of the sliding, where all of it at once fails
 
 
@@ -80,17 +76,17 @@ class Search:
             None  # of a starved film: the flooded one of this contact, or of one like it
         )
         self.isothermal = at_bulk(contact, bulk)
-        self.reach = max(REACH, (10.0 / tolerance) ** (1.0 / 3.0))
+        self.reach = max(METHOD.inlet_reach, (10.0 / tolerance) ** (1.0 / 3.0))
         self.iterations, self.restarts, self.nodes, self.reason = 0, 0, 0, ""
 
     def from_nothing(self, nodes: int | None) -> Compared | None:
         """Start from the isothermal, Newtonian film."""
         tolerance = max(self.tolerance, 0.01)
-        for n in (_FIRST_NODES, None) if nodes is None or nodes >= _FIRST_NODES else (nodes,):
+        for n in (METHOD.first_nodes, None) if nodes is None or nodes >= METHOD.first_nodes else (nodes,):
             film = solve_checked(self.isothermal, Options(tolerance, n, supply=self.supply), None)
             self.iterations += film.run.iterations
             if film.converged:
-                base = film.state.bare().fine if n == _FIRST_NODES else film.state.bare().coarse
+                base = film.state.bare().fine if n == METHOD.first_nodes else film.state.bare().coarse
                 return self._refine(base, None, nodes)
         self.reason = f"without heat and shear: {film.film().message}"
         return None
@@ -132,8 +128,8 @@ class Search:
 
         A neighbour gives starts on its own two grids.
         """
-        sizes = [_MOST_NODES if nodes is None else nodes]
-        while sizes[0] >= 4 * _FIRST_NODES - 3:
+        sizes = [METHOD.most_nodes_with_heat if nodes is None else nodes]
+        while sizes[0] >= 4 * METHOD.first_nodes - 3:
             # a grid that is asked for starts from coarser ones as any does
             sizes.insert(0, (sizes[0] + 1) // 2)
         known = base.oil
@@ -151,18 +147,20 @@ class Search:
         """Move the meniscus of a layer until the film carries away what the layer brings."""
         if level is None or not isinstance(self.supply, OilLayer) or not level.plan.fixed:
             return level
-        supplied = LayerSupply(self, level, self.supply.thickness, _FED * self.tolerance).solve()
+        supplied = LayerSupply(
+            self, level, self.supply.thickness, METHOD.layer_flow_with_heat * self.tolerance
+        ).solve()
         return supplied if supplied.solution.converged else None
 
     @property
     def exhausted(self) -> bool:
         """Whether the call has had its Newton steps."""
-        return self.iterations >= MOST_STEPS
+        return self.iterations >= METHOD.newton_steps
 
     @property
     def finest(self) -> float:
         """Last Newton step of a film that is solved to its end."""
-        return DONE * self.tolerance
+        return METHOD.newton_done_with_heat * self.tolerance
 
     def near(
         self, old: WarmLevel, plan: Plan, grid: Grid, start: tuple[Array, float], done: float
@@ -229,7 +227,7 @@ class Search:
         self.iterations += solved.iterations
         if not solved.converged or not np.isfinite(oil.temperature).all():
             return None
-        if oil.solids is not None and _out_of_balance(losses(oil)) > _BALANCE:
+        if oil.solids is not None and _out_of_balance(losses(oil)) > METHOD.heat_balance:
             return None  # heat that goes round in the inlet has run away
         return WarmLevel(self.contact, level.plan, level.grid, solved, oil)
 

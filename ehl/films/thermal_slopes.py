@@ -14,7 +14,10 @@ from ehl.films.rough_slopes import rough_slopes
 from ehl.films.thermal import ThermalFilm
 from ehl.solving.levels import WarmLevel
 from ehl.solving.load_share import odds_of
+from ehl.solving.oil_following import BALANCED
 from ehl.solving.response import by_share, slopes, with_matrix
+
+_FILM_SHARE = 0.25  # of the film's error, by which a film is off that Newton's method has not led to its end
 
 Hot = TypeVar("Hot", ThermalFilm, MixedThermalFilm)
 
@@ -75,7 +78,8 @@ def _with_slopes(film: ThermalFilm, coarse: WarmLevel, fine: WarmLevel) -> Therm
     """Differentiate by the load on both grids."""
     before, after = (slopes(level, film.supply) for level in (coarse, fine))
     load = film.contact.load
-    errors: FilmErrors = replace(film.errors, **slope_errors(before, after, film.errors.inlet))
+    rest = 2.0 * BALANCED + _FILM_SHARE * film.errors.film  # corrections on both grids
+    errors: FilmErrors = replace(film.errors, **slope_errors(before, after, film.errors.inlet, rest))
     return replace(
         film, separation_slope=after.separation / load, central_slope=after.central / load, errors=errors
     )

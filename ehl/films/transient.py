@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike
 from base import Array, Cost, Stopwatch, unclocked
 from base.results import WORST
 from ehl.discrete.contact import LineContact
+from ehl.discrete.method import METHOD
 from ehl.discrete.supply import Meniscus
 from ehl.films.film import Film
-from ehl.films.result import GRID_FACTOR
 from ehl.films.solver import solve
 from ehl.films.transient_film import TransientFilm
 from ehl.solving.refinement import refine
@@ -22,8 +22,6 @@ from ehl.solving.stepping import Laying
 from ehl.solving.time_inputs import OverTime, at_time, checked, jump_fault
 from ehl.solving.time_march import JumpError, Shot, TimeMarch
 
-_FIRST_NODES = 129
-_MOST_NODES = 513
 _ROUNDS = 6
 _TIME_SHARE = 0.4  # of the tolerance, for the steps of time
 _STEPS = 25.0  # of time in one transit, at first
@@ -163,7 +161,7 @@ class _Run:
 
     def pairs(self, nodes: int | None) -> Iterator[_Marched]:
         """Follow the film on two grids, then with whatever of nodes and steps was too coarse made finer."""
-        n, prescribed = nodes or _FIRST_NODES, nodes is not None or self.step is not None
+        n, prescribed = nodes or METHOD.first_nodes_in_time, nodes is not None or self.step is not None
         for _ in range(_ROUNDS):
             first = self.first = solve(self.contact_at(float(self.times[0])), nodes=n, supply=self.supply)
             if not first.converged:
@@ -181,9 +179,9 @@ class _Run:
             yield march
             if steps > _TIME_SHARE * self.tolerance:
                 self.allowed *= 0.7 * (_TIME_SHARE * self.tolerance / steps) ** 1.5
-            while grid > (1.0 - _TIME_SHARE) * self.tolerance and n <= _MOST_NODES:
+            while grid > (1.0 - _TIME_SHARE) * self.tolerance and n <= METHOD.most_nodes_in_time:
                 n, grid = 2 * n - 1, 0.3 * grid  # of second order, with a margin
-            if n > _MOST_NODES:
+            if n > METHOD.most_nodes_in_time:
                 return
 
     def pair(self, first: Film) -> tuple[TimeMarch, TimeMarch] | str:
@@ -278,7 +276,7 @@ def _grid_error(coarse: TimeMarch, fine: TimeMarch) -> float:
     worst = 0.0
     for before, after in zip(coarse.shots, fine.shots, strict=True):
         changes = [getattr(before.figures, name) / getattr(after.figures, name) - 1.0 for name in names]
-        worst = max(worst, GRID_FACTOR * math.fsum(abs(float(change)) for change in changes))
+        worst = max(worst, METHOD.grid_factor * math.fsum(abs(float(change)) for change in changes))
     return worst
 
 

@@ -9,17 +9,12 @@ from base import Array, Cost, Stopwatch, unclocked
 from ehl.discrete.contact import LineContact
 from ehl.discrete.equations import Grid, Groups
 from ehl.discrete.grid import clusters
-from ehl.discrete.newton import STEP_DONE, newton
+from ehl.discrete.method import METHOD
+from ehl.discrete.newton import newton
 from ehl.discrete.supply import OilLayer, Supply
 from ehl.solving.layer_supply import LayerSupply
 from ehl.solving.levels import Level, State, cold, spike_of, warm
 from ehl.solving.plan import Plan
-
-DRY = 1e-5
-"""h R/b^2 below which a contact that is not solved is as good as dry."""
-
-MOST_STEPS = 1200
-"""Newton steps of one call, on 257 nodes each, after which no new start is tried."""
 
 _STEP_NODES = 257
 
@@ -37,7 +32,7 @@ _SPIKE_SHRINK = 8.0  # most that the cluster narrows at once: a spike narrower t
 class GridSearch:
     """Counts what it does; ``plan`` is how the next grid is laid, ``own`` how this contact alone would have it."""
 
-    finest = STEP_DONE
+    finest = METHOD.newton_done
 
     def __init__(
         self,
@@ -53,7 +48,7 @@ class GridSearch:
         self.plan = self.own = plan
         self.supply = supply
         self.whole_spike = whole_spike
-        self.most_cold = _MOST_COLD_NODES_DRY if plan.H_c < DRY else _MOST_COLD_NODES
+        self.most_cold = _MOST_COLD_NODES_DRY if plan.H_c < METHOD.dry else _MOST_COLD_NODES
         self.narrowest = _SPIKE_LEAST if whole_spike else _SPIKE_FOR_FILM * clusters(plan.H_c)[1]
         with unclocked():
             import ehl.kernels.film_kernels  # noqa: F401  numba
@@ -68,7 +63,7 @@ class GridSearch:
     @property
     def exhausted(self) -> bool:
         """Whether the call has had its Newton steps."""
-        return self.work >= MOST_STEPS
+        return self.work >= METHOD.newton_steps
 
     def count(self, level: Level) -> Level:
         """Add a level to the cost."""
@@ -150,7 +145,7 @@ class GridSearch:
         return self.cold(n)
 
     def near(
-        self, old: Level, plan: Plan, grid: Grid, start: tuple[Array, float], done: float = STEP_DONE
+        self, old: Level, plan: Plan, grid: Grid, start: tuple[Array, float], done: float = METHOD.newton_done
     ) -> Level:
         """Solve from pressures and separation on a grid."""
         solution = newton(grid, Groups.on(self.contact, grid), *start, done=done)

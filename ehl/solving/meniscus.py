@@ -6,11 +6,12 @@ import math
 import sys
 from dataclasses import dataclass
 
+from ehl.discrete.method import METHOD
+
 _FARTHEST = 1.5  # most that ln(distance) changes at once
 _NEAREST = 1e-6  # a change too small to help a start that fails
 _FLATTEST = 1e-3  # slope of ln(flow) over ln(distance) below which it says nothing
 _USUAL_SLOPE = 0.5
-_DONE = 1e-10  # relative difference of flow and layer where no larger one is enough
 _ROUNDED = 4.0 * sys.float_info.epsilon  # of the place of the meniscus, which is about one half-width
 
 
@@ -28,14 +29,14 @@ class MeniscusSearch:
     low: float = -math.inf  # nearer than the root
     high: float = math.inf  # farther
     rough: bool = False  # whether the flow of the last solution is known roughly
-    enough: float = _DONE  # miss that ends the search
+    enough: float = METHOD.layer_flow  # miss that ends the search
     slope: float = _USUAL_SLOPE
     reach: float = _FARTHEST
     target: float = math.nan  # place to be tried
 
     @classmethod
     def at(
-        cls, distance: float, miss: float, slope: float = _USUAL_SLOPE, enough: float = _DONE
+        cls, distance: float, miss: float, slope: float = _USUAL_SLOPE, enough: float = METHOD.layer_flow
     ) -> MeniscusSearch:
         """Begin at a solution, a distance [half-widths] ahead of the dry contact."""
         search = cls(math.log(distance), miss, slope=slope, enough=enough)

@@ -30,8 +30,12 @@ Solve = Callable[[Complex, complex], tuple[Complex, complex]]
 WARM_STEP = 3e-4
 """Of a parameter's ln: the oil's own state is known to some 1e-9 of itself."""
 
-_BALANCED = 5e-4  # last correction of the figures' derivatives over these
-_MOST_CORRECTIONS = 40
+BALANCED = 5e-4
+"""Last correction of the figures' derivatives over these."""
+
+_MOST_CORRECTIONS = 60
+_CALM_AFTER = 12  # corrections after which those that go round are followed more slowly,
+_CALM = 0.5  # by this share
 
 
 class Swept(NamedTuple):
@@ -119,12 +123,14 @@ class FollowingOil:
             flow = change.flow()
             centre = complex(change.of(lambda s: s.residual.centre))
             figures: Complex = np.array([centre, stretched + dH0 * after.gap, -np.mean(flow[cells])])
-            if np.allclose(last, figures, rtol=_BALANCED, atol=0.0):
+            done = BALANCED if sweep <= _CALM_AFTER else _CALM * BALANCED
+            if np.allclose(last, figures, rtol=done, atol=0.0):
                 ends = float(level.grid.nodes[0]) * groups.length, float(moved.nodes[0]) * after.length
                 held = change.held(ends, level.flow)
                 missing = complex(flow[0] - 1j * omega / level.contact.entrainment * held)
                 return Followed(figures, missing, dP + more, dH0 + more_H0)
-            last, dP, dH0 = figures, dP + more, dH0 + more_H0
+            share = 1.0 if sweep < _CALM_AFTER else _CALM
+            last, dP, dH0 = figures, dP + share * more, dH0 + share * more_H0
         return Followed(np.full(3, np.nan, complex), complex(np.nan), dP, dH0)
 
 
@@ -211,7 +217,7 @@ class _Oscillation:
             self._warm(here, here.heat, dP, stored)
         swept = []
         for oil, (P, H0) in zip(self.oils, states, strict=True):
-            residual = Residual.of(oil.grid, oil.groups, P, H0, _Held(oil.given()))
+            residual = Residual.of(oil.grid, oil.groups, P, H0, _Held(oil.fluid()))
             swept.append(Swept.after(residual, oil.grid, oil, P, H0))
         return swept[0], swept[1]
 

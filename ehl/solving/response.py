@@ -26,7 +26,7 @@ _STEP = 3e-7  # of a parameter's ln, in differences of the residual of isotherma
 _WARM_DONE = (
     1e-6  # last step of the pressure before a film is differentiated with its oil, and the most steps
 )
-_WARM_STEPS = 6
+_WARM_STEPS = 10
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ from typing import Protocol
 
 from ehl.discrete.asperities import Roughness
 from ehl.discrete.contact import LineContact
+from ehl.discrete.method import METHOD
 from ehl.solving.load_share import ALL, NOTHING, KnownGap, excess, foreseen, share_of
 
-_BALANCED = 1e-7  # relative difference of what asperities carry and are asked for
 _REACH = 3.0  # largest step of the odds
 _CLOSE = 1e-2  # between bounds as close as this the balance is straight in the odds
 _TRIES = 60
@@ -67,7 +67,7 @@ class ShareSearch:
         for _ in range(_TRIES):
             gap = self.films.gap(odds)
             more = excess(self.contact, self.roughness, gap, odds).value
-            if abs(more) < _BALANCED:
+            if abs(more) < METHOD.asperity_balance:
                 return odds
             low, high = (odds, high) if more > 0.0 else (low, odds)
             if high <= NOTHING:

@@ -8,8 +8,8 @@ import pytest
 
 from base import RangeWarning
 from ehl import LineContact, Lubricant, solve
+from ehl.discrete.method import METHOD
 from ehl.films.result import pressure_error, teeth
-from ehl.solving.grid_search import MOST_STEPS
 from tests.ehl.films import quiet, sound
 from tests.hard.random_contacts import random_contact
 from tests.validation.article import PITCH, SECTION_2
@@ -90,5 +90,5 @@ def test_what_cannot_be_solved_ends_within_its_steps():
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RangeWarning)
             film = solve(LineContact.from_moes(M, L, roelands_z=z))
-        assert film.cost.iterations < MOST_STEPS + 2 * 60 * 4
+        assert film.cost.iterations < METHOD.newton_steps + 2 * 60 * 4
         assert film.converged or np.isnan(film.central_thickness)

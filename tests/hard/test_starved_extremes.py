@@ -10,7 +10,7 @@ import pytest
 from base import RangeWarning
 from ehl import LineContact, Lubricant, Meniscus, OilLayer, Roughness, solve, solve_mixed
 from ehl.discrete.asperities import LAWS
-from ehl.solving.grid_search import DRY
+from ehl.discrete.method import METHOD
 from tests.ehl.films import sound
 from tests.hard.random_contacts import random_contact, refused
 from tests.validation.article import PITCH
@@ -113,7 +113,7 @@ def test_layers_close_to_what_the_inlet_takes(load):
 def test_layers_as_good_as_none_are_refused_as_dry_contacts_or_solved():
     """M 3899, L 1.6 with 3 and 0.1 % of the flooded flow: the thicker film is a 170 000th of the flattening b^2/2R."""
     contact = LineContact(8.7165e6, 0.0565692, 0.036157, 2.2e11, Lubricant(0.0055525, 1.40549e-08))
-    assert contact.film_parameter(2.95879e-10) < DRY
+    assert contact.film_parameter(2.95879e-10) < METHOD.dry
     starved_soundly(contact, 2.95879e-10)
     message = refused(solve(contact, supply=OilLayer(1e-11)))
     assert "below 1e-05" in message
@@ -123,7 +123,7 @@ def test_layers_as_good_as_none_are_refused_as_dry_contacts_or_solved():
 def starved_soundly(contact, layer):
     """Solve with a layer; one of h R/b^2 below 1e-5 may be refused, as the dry contact that it nearly is."""
     film = solve(contact, supply=OilLayer(layer))
-    if contact.film_parameter(layer) < DRY and not film.converged:
+    if contact.film_parameter(layer) < METHOD.dry and not film.converged:
         assert "take the contact as dry" in refused(film)
         return
     sound(film)
