@@ -1,4 +1,8 @@
-"""Contacts beside a sharp tip corner as fields take them: the strips' pressure instead of Hertz's."""
+"""Contacts beside a sharp tip corner as fields take them: the strips' pressure instead of Hertz's.
+
+Two of five positions of a mesh cycle have such a contact (the article's pair, 600 N m). Hertz's field cut off at the
+corner would have 2.5 instead of 1.1 GPa at A.
+"""
 
 from __future__ import annotations
 

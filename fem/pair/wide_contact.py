@@ -9,6 +9,9 @@ to Hertz's,
 and what that has beyond the logarithm is added here. Cells that are more than ``NARROW`` half-widths long need none of
 it, and one matrix serves all loads. Narrower ones get a strip of 2, 4, 8, .. cells over NARROW, the first that is as
 wide as the widest contact: then slopes of Hertz's law and waves together stay definite.
+
+Fewer cells are no way round it: lines alone on the usual 64 cells of a face of ten modules, 40 um askew, have a
+face-load factor 1.5 % too high at 270 N/mm and no solution at 530 N/mm, on 128 cells none at 130 N/mm.
 """
 
 from __future__ import annotations
