@@ -11,7 +11,7 @@ import numpy as np
 from base import Array, record
 from fem.elasticity.flamant import hertz_half_width
 from fem.laws.corner_law import CornerSurface
-from fem.laws.cut_off import FAR, along, cut_off
+from fem.laws.cut_off import FAR, FIRST, along, cut_off
 from fem.laws.local_law import Table
 from fem.laws.relieved_flanks import ends_of_flanks, gentle, plain_touch, touch
 from fem.laws.tip_contact import edge_laws, rounded_law
@@ -117,7 +117,11 @@ class _Corner:
             gap = np.nanmin(approach, axis=1)
             # where strips farther in recede, those that bear go on bearing
             largest = np.where(np.isfinite(points[:, -1]), points[:, -1], np.inf)
-            return along(points, approach - gap[:, None], asked)[0], gap, largest
+            # contacts of a few strips are Hertz's on the arc
+            size = np.maximum(asked, np.sort(points, axis=1)[:, FIRST : FIRST + 1])
+            by_strips = along(points, approach - gap[:, None], size)[0]
+            per_log = self.bodies.hertz(place[:1]).per_log
+            return by_strips - per_log * np.log(asked / size), gap, largest
         law = edge_laws(*tips)
         table = Table.through(law.force, law.approach - law.approach[:, :1], law.smooth)
         return (table.value_and_slope(asked.T)[0] / force[:, None]).T, law.approach[:, 0], law.largest

@@ -96,7 +96,8 @@ def cut_off(
     of_one = hertz_half_width(1 / (width * lever_ratios), radius, _reduced(bodies))
     law: Callable[[Array], tuple[Array, Array]]
     tips = pair, bodies.tips[corner], corner, rho1, other.law
-    if rounding is None or rounding.radius == 0.0:
+    rounded = rounding is not None and rounding.radius > 0.0
+    if rounding is None or not rounded:
         points, approach = strip_law(*tips, removed, turned)
         least, law = points[:, FIRST], partial(_between, points, approach - touched.gap[:, None])
     else:
@@ -112,7 +113,8 @@ def cut_off(
     own = (gear.own(rho) - gear.hub_windup) / (width * lever_ratios**2)
     further = _leaning(bodies, corner, distance, rho, touched.leaning[corner]) / (width * lever_ratios**2)
     per_log, constant = np.reshape(flank.per_log + 0.0 * rho1, (-1, 1)), flank.constant + own + further
-    asked = np.clip(force, comes, last[:, None])
+    # over a rounding the law goes on straight beyond its last strip
+    asked = np.clip(force, comes, (np.full_like(last, np.inf) if rounded else last)[:, None])
     quotient, steepness = law(np.concatenate([comes, asked], axis=1))
     away = quotient + per_log * np.log(np.concatenate([comes, asked], axis=1)) - constant[:, None]
     slope = steepness[:, :1] - quotient[:, :1] + per_log
