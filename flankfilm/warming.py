@@ -131,7 +131,7 @@ def _drives() -> None:
 
 def _films() -> None:
     """Films, with heat too."""
-    from ehl import LineContact, Lubricant, Solid, solve, solve_thermal
+    from ehl import LineContact, Lubricant, Solid, film_response, solve, solve_thermal
 
     oil = Lubricant(
         viscosity=0.05, pressure_viscosity=18e-9, density=860.0, temperature=343.15, viscosity_slope=0.04,
@@ -142,7 +142,8 @@ def _films() -> None:
     )
     solve(contact, nodes=65)
     steel = Solid(46.0, 7850.0, 470.0)
-    solve_thermal(contact, solids=(steel, steel), bulk_temperatures=(343.15, 343.15), tolerance=0.05)
+    warm = solve_thermal(contact, solids=(steel, steel), bulk_temperatures=(343.15, 343.15), tolerance=0.05)
+    film_response(warm, 1e4)
 
 
 def _pair() -> GearOscillator:

@@ -7,8 +7,9 @@ that may move; the rest is exact. With heat the oil follows, see :mod:`ehl.solvi
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -51,23 +52,12 @@ class Response(NamedTuple):
 
     def scaled(self, factor: float) -> Response:
         """Return the derivatives by another parameter, of which this one is a function of this slope."""
-        return Response(
-            factor * self.central,
-            factor * self.separation,
-            factor * self.flow,
-            factor * self.P,
-            factor * self.H0,
-        )
+        return Response._make(factor * value for value in self)
 
     def less(self, part: float, other: Response) -> Response:
         """Return the derivatives with another parameter following along by minus a part."""
-        return Response(
-            self.central - part * other.central,
-            self.separation - part * other.separation,
-            self.flow - part * other.flow,
-            self.P - part * other.P,
-            self.H0 - part * other.H0,
-        )
+        pairs: Iterator[tuple[Any, Any]] = zip(self, other, strict=True)
+        return Response._make(own - part * follows for own, follows in pairs)
 
 
 def slopes(level: Level, supply: Supply | None) -> Slopes:
