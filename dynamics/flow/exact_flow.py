@@ -68,7 +68,11 @@ class ExactFlow(PartedFlow):
         watch = Stopwatch()
         states, counts, frame = np.empty((periods, 2)), np.zeros((periods, 2), dtype=np.int64), np.eye(4, 2)
         at = np.array(state, dtype=np.float64)
-        flag = int(iterate(self.arrays, self.space(), at, skip, int(derivatives), frame, states, counts))
+        flag = int(
+            iterate(
+                self.arrays, self.space(), 0, self.cells, at, skip, int(derivatives), frame, states, counts
+            )
+        )
         jacobian = frame[:2]
         if flag:
             states[:], jacobian[:] = np.nan, np.nan
@@ -82,11 +86,13 @@ class ExactFlow(PartedFlow):
 
         All nan if the motion is lost.
         """
-        from dynamics.kernels.flow import partial
+        from dynamics.kernels.flow import iterate
 
         end, frame = np.array(state, dtype=np.float64), np.eye(4, 2)
-        if partial(self.arrays, self.space(), first, number, end, frame, counts) != 0:
+        last, met = np.empty((1, 2)), np.zeros((1, 2), dtype=np.int64)
+        if iterate(self.arrays, self.space(), first, number, end, 0, 1, frame, last, met):
             end[:] = np.nan
+        counts += met[0]
         return end, frame[:2], self._time(frame[3, 0])
 
     def damped(self, contact: float, periods: int) -> float:
@@ -128,7 +134,9 @@ class ExactFlow(PartedFlow):
             if size:
                 unseen = np.zeros((len(part), 2), dtype=np.int64)
                 flag = flag or int(
-                    iterate(self.arrays, self.space(), at, size - len(part), 2, frame, part, unseen)
+                    iterate(
+                        self.arrays, self.space(), 0, self.cells, at, size - len(part), 2, frame, part, unseen
+                    )
                 )
             row[:], damped[k] = frame[2], self.damped(self._time(frame[3, 0]), size)
             kept.append(part)
@@ -136,12 +144,22 @@ class ExactFlow(PartedFlow):
 
     def calm(self, state: Array, limit: int, longest: int) -> tuple[Array, int, str]:
         """State after `limit` periods or when the motion repeats to rounding, periods followed, message."""
-        from dynamics.kernels.searching import calm
+        from dynamics.kernels.flow import iterate
+        from dynamics.kernels.searching import repeats
 
-        room, tallies = np.empty((2 * longest, 2)), np.zeros((2 * longest, 2), dtype=np.int64)
-        at = np.array(state, dtype=np.float64)
-        waited = int(calm(self.arrays, self.space(), at, limit, room, tallies, 1e-13))
-        return at, abs(waited), REASONS.get(-waited, "")
+        states, counts = np.empty((2 * longest, 2)), np.zeros((2 * longest, 2), dtype=np.int64)
+        at, unseen, used = np.array(state, dtype=np.float64), np.eye(4, 2), 0
+        table, period = (self.arrays, self.space()), (0, self.cells)
+        while used + len(states) <= limit:
+            if flag := int(iterate(*table, *period, at, 0, 0, unseen, states, counts)):
+                return at, flag, REASONS[flag]
+            used += len(states)
+            if repeats(states, 1e-13):
+                return at, used, ""
+        flag = 0
+        if limit > used:
+            flag = int(iterate(*table, *period, at, limit - used, 0, unseen, states[:0], counts[:0]))
+        return at, flag or limit, REASONS.get(flag, "")
 
     def settle(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
         """Follow starts until they stay near known attractors."""

@@ -12,7 +12,6 @@ from dynamics.kernels.compiling import (
     FREQUENCY,
     HALF_BACKLASH,
     MAX_EVENTS,
-    ONE,
     SIDES,
     ZERO,
     ZETA,
@@ -252,21 +251,16 @@ def some_cells(
 
 @plain_kernel
 def iterate(
-    table: Table,
-    space: Space,
-    state: FloatArray,
-    skip: int,
-    want: int,
-    jac: FloatArray,
-    states: FloatArray,
-    counts: IntArray,
-) -> int:
-    """Carry `state` over `skip` periods, then fill `states` (periods, 2) and `counts` (periods, 2).
+    table: Table, space: Space, first: int, number: int, state: FloatArray, skip: int, want: int, jac: FloatArray,
+    states: FloatArray, counts: IntArray,
+) -> int:  # fmt: skip
+    """Carry `state` over `skip` rounds, then fill `states` (rounds, 2) and `counts` (rounds, 2).
 
-    Row i is the state after i + 1 further periods and the exits and entries during the last of them. `state`
-    ends at the last period. `want` 1: the rows 0 and 1 of `jac`, (4, 2), are multiplied by the derivative of the map;
-    2: its columns are made orthonormal on the way, and the logarithms of their stretch added to row 2. In both cases
-    jac[3, 0] takes the time in contact, in cells, where damping is another one out of it.
+    A round is `number` cells from cell `first`, a period if these are 0 and all. Row i is the state after i + 1 further
+    rounds and the exits and entries during the last of them. `state` ends at the last round; the region of a state on a
+    boundary is decided by its speed. `want` 1: the rows 0 and 1 of `jac`, (4, 2), are multiplied by the derivative of
+    the map; 2: its columns are made orthonormal on the way, and the logarithms of their stretch added to row 2. In both
+    cases jac[3, 0] takes the time in contact, in cells, where damping is another one out of it.
     """
     par, coef, edge = table
     cells = len(edge) // 2
@@ -280,13 +274,20 @@ def iterate(
         jac[1, 1] *= h
     for period in range(skip + len(states)):
         count[0] = count[1] = 0
-        region, y, w, flag = some_cells(
-            par, coef, edge, ZERO, cells, region, y, w, want, jac, work, choose, count
-        )
-        if flag != FINE:
-            return flag
-        if want > 0 and region != 0:
-            jac[3, 0] += cells
+        at, rest = first, number
+        while rest > 0:
+            last = min(cells, at + rest)
+            if want > 0 and region != 0:
+                jac[3, 0] -= at
+            region, y, w, flag = some_cells(
+                par, coef, edge, at, last, region, y, w, want, jac, work, choose, count
+            )
+            if flag != FINE:
+                return flag
+            if want > 0 and region != 0:
+                jac[3, 0] += last
+            rest -= last - at
+            at = ZERO
         if period >= skip:
             states[period - skip, 0] = y + region * par[HALF_BACKLASH]
             states[period - skip, 1] = w / h
@@ -302,42 +303,5 @@ def iterate(
 
 iterate_there = called(
     iterate,
-    f"i8({TABLE}, {SPACE}, f8[::1], i8, i8, f8[:, ::1], f8[:, ::1], i8[:, ::1])",
+    f"i8({TABLE}, {SPACE}, i8, i8, f8[::1], i8, i8, f8[:, ::1], f8[:, ::1], i8[:, ::1])",
 )
-
-
-@plain_kernel
-def partial(
-    table: Table, space: Space, first: int, number: int, state: FloatArray, jac: FloatArray, counts: IntArray
-) -> int:
-    """Carry `state` and the columns of `jac`, as of `iterate`, over some cells from cell `first`; adds to `counts` (2).
-
-    The state is taken in (X, V) at the start of the first cell. The region of a state on a boundary is decided by
-    its speed.
-    """
-    par, coef, edge = table
-    cells = len(edge) // 2
-    h = 2.0 * math.pi / par[FREQUENCY] / cells
-    work, choose, _, _ = space
-    region, y = start(state[0], state[1], par)
-    w = state[1] * h
-    jac[1, 0] *= h
-    jac[1, 1] *= h
-    while number > 0:
-        last = min(cells, first + number)
-        if region != 0:
-            jac[3, 0] -= first
-        region, y, w, flag = some_cells(
-            par, coef, edge, first, last, region, y, w, ONE, jac, work, choose, counts
-        )
-        if flag != FINE:
-            return flag
-        if region != 0:
-            jac[3, 0] += last
-        number -= last - first
-        first = ZERO
-    state[0] = y + region * par[HALF_BACKLASH]
-    state[1] = w / h
-    jac[1, 0] /= h
-    jac[1, 1] /= h
-    return FINE

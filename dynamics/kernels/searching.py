@@ -70,45 +70,20 @@ def settle(
 
 
 @plain_kernel
-def calm(
-    table: Table,
-    space: Space,
-    state: FloatArray,
-    limit: int,
-    states: FloatArray,
-    counts: IntArray,
-    tolerance: float,
-) -> int:
-    """Follow `state` for `limit` periods, or until it repeats to rounding; returns flag < 0 or periods used.
-
-    `states`, (2 n, 2), and `counts` are work space: the motion is looked at every 2 n periods and must repeat after
-    n periods or fewer, within `tolerance` of its size.
-    """
-    jac = space[2]
-    longest = len(states) // 2
-    used = 0
-    while used + len(states) <= limit:
-        flag = iterate_there(table, space, state, ZERO, ZERO, jac, states, counts)
-        if flag != FINE:
-            return -flag
-        used += len(states)
-        size = 1e-300
-        for k in range(len(states)):
-            size = max(size, abs(states[k, 0]), abs(states[k, 1]))
-        for n in range(1, longest + 1):
-            off = 0.0
-            for k in range(len(states) - n):
-                off = max(off, abs(states[k + n, 0] - states[k, 0]), abs(states[k + n, 1] - states[k, 1]))
-                if off > tolerance * size:
-                    break
-            if off <= tolerance * size:
-                return used
-    flag = (
-        iterate_there(table, space, state, limit - used, ZERO, jac, states[:0], counts[:0])
-        if limit > used
-        else FINE
-    )
-    return limit if flag == FINE else -flag
+def repeats(states: FloatArray, tolerance: float) -> bool:
+    """Whether a motion repeats, within `tolerance` of its size, after half as many periods as its states or fewer."""
+    size = 1e-300
+    for k in range(len(states)):
+        size = max(size, abs(states[k, 0]), abs(states[k, 1]))
+    for n in range(1, len(states) // 2 + 1):
+        off = 0.0
+        for k in range(len(states) - n):
+            off = max(off, abs(states[k + n, 0] - states[k, 0]), abs(states[k + n, 1] - states[k, 1]))
+            if off > tolerance * size:
+                break
+        if off <= tolerance * size:
+            return True
+    return False
 
 
 @plain_kernel
@@ -129,6 +104,7 @@ def hunt(
     step by 1/(1 - step . grad log of that factor). Returns the number of points and of periods used.
     """
     work, _, room, tally = space
+    cells = len(table[2]) // 2
     x, image, jac, counts = work[3], room[4:5], room, tally[1:]  # the other rows are what following takes
     used = 0
     for i in range(len(starts)):
@@ -139,7 +115,7 @@ def hunt(
             jac[0, 0] = jac[1, 1] = 1.0
             jac[0, 1] = jac[1, 0] = 0.0
             used += periods
-            if iterate_there(table, space, x, periods - 1, ONE, jac, image, counts) != FINE:
+            if iterate_there(table, space, ZERO, cells, x, periods - 1, ONE, jac, image, counts) != FINE:
                 break
             r0, r1 = x[0] - at0, x[1] - at1
             near = max(abs(r0), abs(r1))
@@ -180,6 +156,6 @@ def hunt(
             if not old:
                 points[known, 0], points[known, 1] = x[0], x[1]
                 known += 1
-            iterate_there(table, space, x, ZERO, ZERO, jac, image, counts)
+            iterate_there(table, space, ZERO, cells, x, ZERO, ZERO, jac, image, counts)
             used += 1
     return known, used
