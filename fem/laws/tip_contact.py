@@ -342,8 +342,10 @@ def strips_of(
 def _growing(force: Array, approach: Array) -> tuple[Array, Array, Array]:
     """Laws up to where force or approach first fall, straight from there on; and that force."""
     grow = (np.diff(force) > 0) & (np.diff(approach) > 0)
-    # near the corner, where the first strip is wider than the next, a fall is an artefact of unequal strips
-    grow[:, : force.shape[1] // 2] = True
+    # near the corner, where the first strip is wider than the next, a fall is an artefact of unequal strips;
+    # where strips would pull, the law has ended
+    half = force.shape[1] // 2
+    grow[:, :half] = force[:, 1 : half + 1] > 0.0
     last = np.logical_and.accumulate(grow, axis=1).sum(axis=1)[:, None]
     beyond = np.maximum(np.arange(force.shape[1]) - last, 0)
 
