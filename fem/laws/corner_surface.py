@@ -155,9 +155,12 @@ class _Corner:
         xi = np.linspace(low, 0.0, int(-low / STEP) + 2), np.linspace(0.0, high, int(high / STEP) + 2)
         within, beyond = (self.origin + unit * np.sinh(at) for at in xi)
         force, none = np.exp(self.log_force), np.zeros(len(within))
+        quotient, gap, largest = self.outside(beyond, force)
+        # farther out the flank turns away from the corner's path, where strips have no law
+        near = np.logical_and.accumulate(gap < pair.module)
         return (
             _Side(xi[0], self.inside(within, force), none, none),
-            _Side(xi[1], *self.outside(beyond, force)),
+            _Side(xi[1][near], quotient[near], gap[near], largest[near]),
         )
 
     def surface(self, side: _Side) -> CornerSurface:
