@@ -19,7 +19,7 @@ from gears.sharing.active_set import ContactForces, LoadShare, share_forces
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["moved_share"]
+__all__ = ["moved_share", "open_gaps"]
 
 
 class Rolling(ContactForces, Protocol):
@@ -112,7 +112,7 @@ def _on_rigid_shafts(contacts: Rolling, whole: Array, near: Array, approach: Arr
     share = _solved(contacts, whole, near, approach)
     if share is None:
         return None
-    return _Solved(share, _open(contacts, share, near.shape[-1] == 1), contacts.lever_losses(share))
+    return _Solved(share, open_gaps(contacts, share), contacts.lever_losses(share))
 
 
 def _on_shafts(side: MovedSide, contacts: MovingContacts, whole: Array, near: Array) -> _Solved | None:
@@ -129,7 +129,7 @@ def _on_shafts(side: MovedSide, contacts: MovingContacts, whole: Array, near: Ar
     if share is None:
         return None
     turn = share.transmission_error
-    open_ = _open(yielding, share)
+    open_ = open_gaps(yielding, share)
     at = contacts.linearised(share.forces, turn, contacts.all_bent(share.forces))
     by_tilt = np.zeros_like(share.forces) + shafts.levers(lever_ratios)
     bears, wanted = share.forces > 0.0, np.ones(turn.shape, dtype=bool)
@@ -142,11 +142,11 @@ def _on_shafts(side: MovedSide, contacts: MovingContacts, whole: Array, near: Ar
     return _Solved(share, open_, lost, brought)
 
 
-def _open(contacts: Rolling, share: LoadShare, even: bool = False) -> Array:
-    """Gaps that a share leaves to cells that do not bear (..., n) [m]."""
+def open_gaps(contacts: Rolling, share: LoadShare) -> Array:
+    """Gaps that a share leaves to contacts that do not bear (..., n) [m]; inf where nothing can touch."""
     bent = contacts.all_bent(share.forces)
     gaps = contacts.unloaded(share.forces, share.transmission_error, bent)
-    return np.where(contacts.touchable | even, gaps, np.inf)
+    return np.where(contacts.touchable, gaps, np.inf)
 
 
 def _solved(contacts: Rolling, whole: Array, near: Array, approach: Array | None) -> LoadShare | None:

@@ -27,7 +27,7 @@ from fem.contact.contact_sides import between, both_sides
 from fem.contact.contact_state import ContactState, contact_state
 from fem.contact.cross_coupling import CellCross, CrossCoupling, DenseCross
 from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
-from fem.contact.moved_share import moved_share
+from fem.contact.moved_share import moved_share, open_gaps
 from fem.contact.moved_side import MovedSide, moved_side
 from fem.contact.moving_contacts import MovingContacts
 from fem.contact.opposite_flanks import at_rest, beside_nothing, nothing_overlaps
@@ -137,10 +137,6 @@ class MovingSides:
         here = self.front.unloaded(front, approach, front_bent)
         there = self.back.unloaded(back, self.behind(approach), back_bent)
         return np.concatenate([here, there], axis=-1) + self._pressed(approach, bent)
-
-    def open(self, share: LoadShare) -> Array:
-        """Gaps that a share leaves where nothing bears (..., n) [m]."""
-        return self.unloaded(share.forces, share.transmission_error, self.all_bent(share.forces))
 
     def of_sides(self, share: LoadShare) -> tuple[LoadShare, LoadShare]:
         """Share of either side, by the turn that closes its gaps."""
@@ -276,5 +272,5 @@ def _rolled(sides: MovedSides, bodies: PairCompliance, kept: SharedContacts) -> 
     """A loaded side with the gaps of the other where both have rolled on; those of cells unchanged."""
     if not sides.front.setup.face.even_load:
         return kept
-    gaps = sides.contacts(bodies, kept.rise).open(kept.share)
+    gaps = open_gaps(sides.contacts(bodies, kept.rise), kept.share)
     return replace(kept, remaining_gaps=gaps[..., None])
