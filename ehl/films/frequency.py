@@ -121,7 +121,7 @@ def film_response(film: Film | RoughFilm, frequency: ArrayLike) -> FilmResponse:
 
     Examples
     --------
-    >>> from ehl import solve
+    >>> from ehl import LineContact, solve
     >>> film = solve(LineContact.from_moes(M=20.0, L=10.0))
     >>> contact = film.contact
     >>> answer = film_response(film, [0.0, 0.5 * contact.entrainment / contact.half_width])

@@ -14,7 +14,7 @@ from fem.laws.corner_law import CornerSurface
 from fem.laws.cut_off import FAR, FIRST, along, cut_off
 from fem.laws.local_law import Table
 from fem.laws.relieved_flanks import ends_of_flanks, gentle, plain_touch, touch
-from fem.laws.tip_contact import edge_laws, rounded_law
+from fem.laws.tip_contact import edge_laws, nearest_gap, rounded_law
 
 if TYPE_CHECKING:
     from fem.laws.mesh_setup import MeshSetup
@@ -24,6 +24,9 @@ __all__ = ["corner_surfaces", "rolling_surface", "slid", "up_to"]
 
 NEAR, STEP = 0.005, 0.1
 """Distance from the end [modules] below which places are even, and the step of asinh of the distance over it."""
+
+OPEN = 0.5
+"""Gap [modules] of a corner to the other flank up to which places have laws; farther ones have the last."""
 
 ROUND = 0.1
 """Distance [modules of rho] from the end of a flank's fit within which places beyond it are rounded off to it."""
@@ -97,6 +100,11 @@ class _Corner:
         own = (gear.own(near.rho[corner]) - gear.hub_windup) / setup.pair.face_width
         return np.asarray(more + ((own - self.own(near.rho[corner])) / near.lever[0] ** 2)[:, None])
 
+    def open(self, z: Array) -> Array:
+        """Gaps between the corner and the other flank at places [m]."""
+        pair, rounding = self.setup.pair, self.setup.rounds[self.corner]
+        return nearest_gap(pair, self.corner, self.place(self.end + z), rounding)
+
     def edges(self, z: Array, force: Array) -> tuple[Array, Array, Array]:
         """Contacts of the tip edge: approach over the force (n, k) [m/N], gaps [m], and the largest forces [N]."""
         setup, corner, rounding = self.setup, self.corner, self.setup.rounds[self.corner]
@@ -154,13 +162,15 @@ class _Corner:
         low, high = -np.arcsinh(deep / unit), np.arcsinh(far * pair.base_pitch / unit)
         xi = np.linspace(low, 0.0, int(-low / STEP) + 2), np.linspace(0.0, high, int(high / STEP) + 2)
         within, beyond = (self.origin + unit * np.sinh(at) for at in xi)
+        # farther out the touched flank turns away from the corner, where strips have no law
+        gap = self.open(beyond)
+        near = np.logical_and.accumulate((gap < OPEN * pair.module) & (np.diff(gap, prepend=-np.inf) > 0.0))
         force, none = np.exp(self.log_force), np.zeros(len(within))
-        quotient, gap, largest = self.outside(beyond, force)
-        # farther out the flank turns away from the corner's path, where strips have no law
-        near = np.logical_and.accumulate(gap < pair.module)
+        quotient, gap, largest = self.outside(beyond[near], force)
+        known = np.logical_and.accumulate(np.isfinite(quotient).all(axis=1))
         return (
             _Side(xi[0], self.inside(within, force), none, none),
-            _Side(xi[1][near], quotient[near], gap[near], largest[near]),
+            _Side(xi[1][near][known], quotient[known], gap[known], largest[known]),
         )
 
     def surface(self, side: _Side) -> CornerSurface:

@@ -107,7 +107,9 @@ def cut_off(
     if removed is not None:
         # whose gap may have its minimum a little inside the corner, where few strips would pull
         least = np.maximum(least, (0.4 * tips[1].distance[FIRST] / of_one) ** 2)
-    last = np.nanmax(points, axis=1)
+    # flanks so far apart at the corner that all strips would pull keep their own law
+    reached = (points > 0.0).sum(axis=1) >= 2
+    last = np.where(reached, np.nanmax(points, axis=1), 1.0)
     comes = np.clip((JOIN * distance / of_one) ** 2, least, LAST * last)[:, None]
     flank = bodies.hertz(rho1, touched.curvature, lever_ratios)
     own = (gear.own(rho) - gear.hub_windup) / (width * lever_ratios**2)
@@ -127,7 +129,8 @@ def cut_off(
     whole = np.where(force < comes, below, away[:, 1:]) + 3 * slid * force
     apart = np.sqrt(comes / force) / JOIN  # distance over half-width
     whole = whole * (1 - _rise(apart, *FADE)) + further[:, None]
-    return np.asarray((1.0 - _rise(distance / pair.module, *FAR))[:, None] * whole)
+    near = np.where(reached, 1.0 - _rise(distance / pair.module, *FAR), 0.0)
+    return np.asarray(near[:, None] * whole)
 
 
 def _leaning(bodies: PairCompliance, corner: int, distance: Array, rho: Array, lean: Array) -> Array:
@@ -176,15 +179,19 @@ def _between(force: Array, approach: Array, asked: Array) -> tuple[Array, Array]
 
 
 def along(force: Array, approach: Array, asked: Array) -> tuple[Array, Array]:
-    """As ``_between`` for laws that begin and end with different strips, nan before and after; straight beyond."""
+    """As ``_between`` for laws that begin and end with different strips, nan before and after; straight beyond.
+
+    No law goes through fewer than two points: nan.
+    """
     from scipy.interpolate import CubicSpline
 
-    value, slope = np.empty_like(asked), np.empty_like(asked)
+    value, slope = np.full_like(asked, np.nan), np.full_like(asked, np.nan)
     last = np.nanmax(force, axis=1)[:, None]
     root = np.sqrt(np.minimum(asked, last))
     for k, known in enumerate(np.isfinite(force)):
-        spline = CubicSpline(np.sqrt(force[k, known]), approach[k, known])
-        value[k], slope[k] = spline(root[k]), spline(root[k], 1)
+        if known.sum() >= 2:
+            spline = CubicSpline(np.sqrt(force[k, known]), approach[k, known])
+            value[k], slope[k] = spline(root[k]), spline(root[k], 1)
     slope *= 0.5 / root
     return (value + slope * np.maximum(asked - last, 0.0)) / asked, slope
 

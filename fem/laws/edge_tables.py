@@ -37,7 +37,7 @@ class EdgeTables:
 
     def __init__(self, setup: MeshSetup, bodies: PairCompliance) -> None:
         self.setup, self.bodies = setup, bodies
-        self._kept: dict[tuple[int, float, bool], tuple[CornerSurface, CornerSurface]] = {}
+        self._kept: dict[tuple[int, bool], tuple[CornerSurface, CornerSurface]] = {}
         self._other: EdgeTables | None = None
 
     def serving(self, bodies: PairCompliance) -> EdgeTables:
@@ -67,10 +67,7 @@ class EdgeTables:
             gear, line = (bodies.pinion, bodies.wheel)[corner], pair.line_of_action
             end = self.setup.rounds[corner].rho
             nominal = candidates.place if corner == 0 else line - candidates.place
-            farthest = np.max(nominal[edges] - end, initial=0.0)
-            inside, outside = self._surfaces(
-                corner, REACHES[int(farthest > REACHES[0] * pair.base_pitch)], moving
-            )
+            inside, outside = self._surfaces(corner, moving)
             near = candidates.touchable & ~edge & (nominal - end > inside.first)
             rounded = up_to(candidates.rho[corner][near], gear.rho_range[1], pair.module)[0]
             more = (gear.own(rounded) - gear.own(candidates.rho[corner][near])) / lever_ratios[near] ** 2
@@ -98,11 +95,11 @@ class EdgeTables:
         )
         return first, second
 
-    def _surfaces(self, corner: int, far: float, moving: bool) -> tuple[CornerSurface, CornerSurface]:
-        key = corner, far, moving
+    def _surfaces(self, corner: int, moving: bool) -> tuple[CornerSurface, CornerSurface]:
+        key = corner, moving
         if key not in self._kept:
             given_back = self.slid[corner] if moving else 0.0
-            self._kept[key] = corner_surfaces(self.setup, self.bodies, corner, far, given_back)
+            self._kept[key] = corner_surfaces(self.setup, self.bodies, corner, REACHES[-1], given_back)
         return self._kept[key]
 
 

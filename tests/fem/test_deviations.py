@@ -279,9 +279,10 @@ def test_wear_as_deep_as_linear_relief_is_that_relief():
     bodies = fem.compliance(plain)
     one = fem.mesh_cycle(plain, 400.0, 20, bodies, deviations=wear)
     two = fem.mesh_cycle(eased, 400.0, 20, fem.compliance(eased))
+    # places of kinks are found within 1e-12 modules, and corners' laws through strips of .01 modules enlarge that
     for name in ("transmission_error", "stiffness", "load_share", "gaps"):
         np.testing.assert_allclose(
-            getattr(one, name), getattr(two, name), rtol=1e-10, atol=1e-18, err_msg=name
+            getattr(one, name), getattr(two, name), rtol=1e-7, atol=1e-18, err_msg=name
         )
     assert one.transmission_error_range == pytest.approx(two.transmission_error_range, rel=1e-8)
 
