@@ -122,7 +122,7 @@ class _Corner:
         asked = np.repeat(force[None], len(z), axis=0)
         if rounding.radius > 0.0:
             points, approach = rounded_law(*tips)
-            gap = np.nanmin(approach, axis=1)
+            gap = np.where(np.isnan(approach), np.inf, approach).min(axis=1)
             # where strips farther in recede, those that bear go on bearing
             largest = np.where(np.isfinite(points[:, -1]), points[:, -1], np.inf)
             # contacts of a few strips are Hertz's on the arc
@@ -166,12 +166,24 @@ class _Corner:
         gap = self.open(beyond)
         near = np.logical_and.accumulate((gap < OPEN * pair.module) & (np.diff(gap, prepend=-np.inf) > 0.0))
         force, none = np.exp(self.log_force), np.zeros(len(within))
-        quotient, gap, largest = self.outside(beyond[near], force)
-        known = np.logical_and.accumulate(np.isfinite(quotient).all(axis=1))
+        near[:4] = True  # as many as a spline needs
         return (
             _Side(xi[0], self.inside(within, force), none, none),
-            _Side(xi[1][near][known], quotient[known], gap[known], largest[known]),
+            self.filled(_Side(xi[1][near], *self.outside(beyond[near], force)), gap[near]),
         )
+
+    def filled(self, side: _Side, gap: Array) -> _Side:
+        """Places where strips have no law: the law of the nearest that have one, for no force at all."""
+        known = np.isfinite(side.quotient).all(axis=1)
+        if known.all():
+            return side
+        rows = np.flatnonzero(known)
+        quotient = np.zeros_like(side.quotient)
+        if rows.size:
+            nearest = np.abs(np.arange(len(known))[:, None] - rows).argmin(axis=1)
+            quotient = side.quotient[rows[nearest]]
+        gap = np.where(known, side.gap, gap)
+        return _Side(side.xi, quotient, gap, np.where(known, side.largest, 0.0))
 
     def surface(self, side: _Side) -> CornerSurface:
         """Splines through the laws at places."""

@@ -102,14 +102,15 @@ def cut_off(
         least, law = points[:, FIRST], partial(_between, points, approach - touched.gap[:, None])
     else:
         points, approach = rounded_law(*tips, rounding, removed, turned)
-        least = np.nanmin(np.where(points > 0.0, points, np.nan), axis=1)
+        least = np.where(points > 0.0, points, np.inf).min(axis=1)
         law = partial(along, points, approach - touched.gap[:, None])
     if removed is not None:
         # whose gap may have its minimum a little inside the corner, where few strips would pull
         least = np.maximum(least, (0.4 * tips[1].distance[FIRST] / of_one) ** 2)
     # flanks so far apart at the corner that all strips would pull keep their own law
     reached = (points > 0.0).sum(axis=1) >= 2
-    last = np.where(reached, np.nanmax(points, axis=1), 1.0)
+    least = np.where(reached, least, LAST)
+    last = np.where(reached, np.where(np.isnan(points), 0.0, points).max(axis=1), 1.0)
     comes = np.clip((JOIN * distance / of_one) ** 2, least, LAST * last)[:, None]
     flank = bodies.hertz(rho1, touched.curvature, lever_ratios)
     own = (gear.own(rho) - gear.hub_windup) / (width * lever_ratios**2)
@@ -129,8 +130,8 @@ def cut_off(
     whole = np.where(force < comes, below, away[:, 1:]) + 3 * slid * force
     apart = np.sqrt(comes / force) / JOIN  # distance over half-width
     whole = whole * (1 - _rise(apart, *FADE)) + further[:, None]
-    near = np.where(reached, 1.0 - _rise(distance / pair.module, *FAR), 0.0)
-    return np.asarray(near[:, None] * whole)
+    near = 1.0 - _rise(distance / pair.module, *FAR)
+    return np.where(reached[:, None], near[:, None] * whole, 0.0)
 
 
 def _leaning(bodies: PairCompliance, corner: int, distance: Array, rho: Array, lean: Array) -> Array:
@@ -186,7 +187,8 @@ def along(force: Array, approach: Array, asked: Array) -> tuple[Array, Array]:
     from scipy.interpolate import CubicSpline
 
     value, slope = np.full_like(asked, np.nan), np.full_like(asked, np.nan)
-    last = np.nanmax(force, axis=1)[:, None]
+    last = np.where(np.isnan(force), 0.0, force).max(axis=1)[:, None]
+    last = np.where(last > 0.0, last, np.inf)
     root = np.sqrt(np.minimum(asked, last))
     for k, known in enumerate(np.isfinite(force)):
         if known.sum() >= 2:
