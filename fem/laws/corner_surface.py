@@ -174,7 +174,7 @@ class _Corner:
 
     def filled(self, side: _Side, gap: Array) -> _Side:
         """Places where strips have no law: the law of the nearest that have one, for no force at all."""
-        known = np.isfinite(side.quotient).all(axis=1)
+        known = np.asarray(np.isfinite(side.quotient).all(axis=1))
         if known.all():
             return side
         rows = np.flatnonzero(known)
