@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from fem.influence.gear_compliance import GearCompliance
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["FlanksInPlace", "LoadedFlanks", "flanks_in_place", "greatest_force", "hub_lever", "loaded_flanks"]
+__all__ = ["FlanksInPlace", "LoadedFlanks", "flanks_in_place", "hub_lever", "loaded_flanks"]
 
 
 @record
@@ -92,7 +92,6 @@ def loaded_flanks(
     bodies: PairCompliance,
     film: Film | None,
     reach: float,
-    force: float,
     tables: EdgeTables,
 ) -> LoadedFlanks:
     """Put together what the flanks yield that bear in a setting.
@@ -104,8 +103,6 @@ def loaded_flanks(
     film : Film or None
     reach : float
         Base pitches outside the path within which tip edges are looked for.
-    force : float
-        Maximum force by a torque [N].
     tables : EdgeTables
         Laws of the tip edges.
     """
@@ -119,13 +116,6 @@ def loaded_flanks(
     return LoadedFlanks(
         candidates, lever_ratios, placed.oil, placed.tilted_lever_ratios, matrix, laws, largest
     )
-
-
-def greatest_force(bodies: PairCompliance, candidates: ContactCandidates, force: float) -> float:
-    """Maximum force on a pair by a torque's force [N]: teeth that overlap are pressed on both sides without one."""
-    overlap, points = -float(np.min(candidates.back_gap)), bodies.pair.points
-    middle = np.array([0.5 * float(points.A + points.E)])
-    return force + (overlap / float(bodies.own(middle)[0]) if overlap > 0.0 else 0.0)
 
 
 def _tilted_lever_ratios(setup: MeshSetup, candidates: ContactCandidates) -> Array:

@@ -11,7 +11,7 @@ from base import Array, record
 from fem.contact.cell_contact import along_cells
 from fem.contact.cell_laws import CellLaws
 from fem.contact.cell_matrix import cell_coupling
-from fem.contact.loaded_flanks import LoadedFlanks, greatest_force
+from fem.contact.loaded_flanks import LoadedFlanks
 from fem.contact.moving_contact import ContactMoves, contact_moves, moved_places
 from fem.contact.moving_contacts import MovingContacts
 from fem.contact.moving_corners import MovedFlanks, moved_flanks
@@ -149,10 +149,10 @@ class MovedSide:
 
 
 def moved_side(
-    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
+    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, tables: EdgeTables
 ) -> MovedSide:
     """Flanks of one side with contacts that move; arguments as for ``loaded_flanks``."""
     own = None
     if setup.beyond_path:
-        own = moved_flanks(setup, bodies, flanks, greatest_force(bodies, flanks.candidates, force), tables)
+        own = moved_flanks(setup, bodies, flanks, tables)
     return MovedSide(setup, flanks, contact_moves(bodies, flanks.candidates, setup.beyond_path), own)

@@ -151,7 +151,7 @@ class MovedFlanks:
 
 
 def moved_flanks(
-    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, force: float, tables: EdgeTables
+    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, tables: EdgeTables
 ) -> MovedFlanks:
     """Laws for contacts that move, from those for contacts that stay; arguments as for ``loaded_flanks``.
 

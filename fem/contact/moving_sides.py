@@ -227,12 +227,11 @@ def both_moved(
     alone : ContactState or None
         The loaded side by itself, solved; None without a torque.
     """
-    most = float(np.max(force))
-    other = loaded_flanks(setup.opposite, bodies, film, reach, most, tables)
+    other = loaded_flanks(setup.opposite, bodies, film, reach, tables)
     staying = both_sides(setup, bodies, flanks, other)
     known = None if alone is None else alone.side
-    front = known or moved_side(setup, bodies, flanks, most, tables)
-    sides = MovedSides(front, moved_side(setup.opposite, bodies, other, most, tables))
+    front = known or moved_side(setup, bodies, flanks, tables)
+    sides = MovedSides(front, moved_side(setup.opposite, bodies, other, tables))
     asked = np.where(apart, np.min(force, where=~apart, initial=np.inf), force)[:, None, None]
     clear, kept, rolled = np.zeros((len(force), 1, 1), dtype=bool), None, None
     if alone is not None:

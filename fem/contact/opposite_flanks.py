@@ -85,7 +85,7 @@ def share_with_opposite(
     apart : (torques,) boolean array
         Torques for which it is kept whatever it lets overlap.
     """
-    other = loaded_flanks(setup.opposite, bodies, film, reach, float(np.max(force)), tables)
+    other = loaded_flanks(setup.opposite, bodies, film, reach, tables)
     sides, refused = both_sides(setup, bodies, flanks, other), setup.face.on_shafts
 
     def solve(whole: Array) -> SharedContacts:

@@ -50,11 +50,11 @@ def solve_contact(
     tables : EdgeTables, optional
         Laws of the tip edges of gears that are set up likewise, to be used again.
     """
-    tables, most = tables or EdgeTables(setup, bodies), float(np.max(force))
+    tables = tables or EdgeTables(setup, bodies)
     state: ContactState | None = None
     # without a torque overlap alone says how far contacts reach
     for reach in REACHES if np.all(force) else REACHES[-1:]:
-        flanks = loaded_flanks(setup, bodies, film, reach, most, tables)
+        flanks = loaded_flanks(setup, bodies, film, reach, tables)
         state = solve_one_side(setup, bodies, force, flanks, tables) if np.all(force) else None
         if state is None or np.max(state.closing + state.touch) <= flanks.candidates.reach_gap:
             break
@@ -86,7 +86,7 @@ def solve_one_side(
     stays = share_staying(bodies, whole, sides)
     if not setup.moving_contact:
         return contact_state(bodies, force, sides, stays)
-    side = moved_side(setup, bodies, flanks, float(np.max(force)), tables)
+    side = moved_side(setup, bodies, flanks, tables)
     moved = moved_share(side, bodies, whole, stays)
     return contact_state(bodies, force, sides, moved or stays, (side,), settled=moved is not None)
 

@@ -94,7 +94,7 @@ class LoadedContacts:
             if both_sides:
                 solution = solve_contact(setup, self.bodies, force, None, tables)
             else:
-                flanks = loaded_flanks(setup, self.bodies, None, REACHES[0], float(force[0]), tables)
+                flanks = loaded_flanks(setup, self.bodies, None, REACHES[0], tables)
                 solution = solve_one_side(setup, self.bodies, force, flanks, tables)
             if not solution.settled:
                 return 1.0

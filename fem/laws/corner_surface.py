@@ -126,7 +126,8 @@ class _Corner:
             # where strips farther in recede, those that bear go on bearing
             largest = np.where(np.isfinite(points[:, -1]), points[:, -1], np.inf)
             # contacts of a few strips are Hertz's on the arc
-            size = np.maximum(asked, np.sort(points, axis=1)[:, FIRST : FIRST + 1])
+            few = np.clip(np.isfinite(points).sum(axis=1, keepdims=True) - 1, 0, FIRST)
+            size = np.maximum(asked, np.take_along_axis(np.sort(points, axis=1), few, axis=1))
             by_strips = along(points, approach - gap[:, None], size)[0]
             per_log = self.bodies.hertz(place[:1]).per_log
             return by_strips - per_log * np.log(asked / size), gap, largest
@@ -165,8 +166,8 @@ class _Corner:
         # farther out the touched flank turns away from the corner, where strips have no law
         gap = self.open(beyond)
         near = np.logical_and.accumulate((gap < OPEN * pair.module) & (np.diff(gap, prepend=-np.inf) > 0.0))
-        force, none = np.exp(self.log_force), np.zeros(len(within))
         near[:4] = True  # as many as a spline needs
+        force, none = np.exp(self.log_force), np.zeros(len(within))
         return (
             _Side(xi[0], self.inside(within, force), none, none),
             self.filled(_Side(xi[1][near], *self.outside(beyond[near], force)), gap[near]),

@@ -9,6 +9,7 @@ import numpy as np
 
 from base import Array
 from fem.influence.memo import Memo
+from fem.laws.contact_candidates import REACHES
 from fem.laws.corner_law import CornerSurface
 from fem.laws.corner_surface import corner_surfaces, rolling_surface, slid, up_to
 from fem.laws.local_law import PairLaws
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["EdgeTables", "edge_tables", "forget_laws"]
-
-REACHES = (0.6, 1.0)
-"""Base pitches beyond the ends of the path for which there are laws; the second where the first is not enough."""
 
 
 class EdgeTables:

@@ -141,7 +141,7 @@ def test_large_backlash_costs_nothing_and_changes_nothing(loose):
     bodies = fem.compliance(close, tolerance=0.005)
     given = MeshSetup(close, 10)
     force = np.array([600.0 / close.base_radii[0]])
-    flanks = loaded_flanks(given, bodies, None, 0.6, float(force[0]), EdgeTables(given, bodies))
+    flanks = loaded_flanks(given, bodies, None, 0.6, EdgeTables(given, bodies))
     alone = solve_one_side(given, bodies, force, flanks, EdgeTables(given, bodies))
     cycle = fem.mesh_cycle(close, 600.0, 10, bodies)
     assert np.array_equal(cycle.forces, (alone.share.forces / alone.lever_ratios).reshape(cycle.forces.shape))
@@ -155,7 +155,7 @@ def test_flanks_that_stay_clear_are_known_without_their_laws(teeth):
     bodies = fem.compliance(pair, tolerance=0.005)
     given, force = MeshSetup(pair, 12), np.array([50.0, 600.0]) / pair.base_radii[0]
     tables = EdgeTables(given, bodies)
-    flanks = loaded_flanks(given, bodies, None, 0.6, float(force[1]), tables)
+    flanks = loaded_flanks(given, bodies, None, 0.6, tables)
     alone = solve_one_side(given, bodies, force, flanks, tables)
     apart = np.zeros(2, dtype=bool)
     clear = stays_clear(given, bodies, force, None, flanks, alone, apart, 0.6)
@@ -184,7 +184,7 @@ def test_gaps_of_flanks_that_stay_clear_hold_what_free_ends_add():
     bodies, force = fem.compliance(pair, tolerance=0.02), np.array([60.0 / pair.base_radii[0]])
     setup, apart = MeshSetup(pair, 6, face=face_setting(pair, None, 8, "free-ends")), np.zeros(1, dtype=bool)
     tables = EdgeTables(setup, bodies)
-    flanks = loaded_flanks(setup, bodies, None, 0.6, float(force[0]), tables)
+    flanks = loaded_flanks(setup, bodies, None, 0.6, tables)
     alone = solve_one_side(setup, bodies, force, flanks, tables)
     clear = stays_clear(setup, bodies, force, None, flanks, alone, apart, 0.6)
     true = share_with_opposite(setup, bodies, force, None, flanks, alone, apart, 0.6, tables).opposite
@@ -248,7 +248,7 @@ def test_forces_are_those_of_a_convex_program(tight):
     pair, bodies = tight
     given, force = MeshSetup(pair, 3), 100.0 / pair.base_radii[0]
     tables = EdgeTables(given, bodies)
-    flanks, other = (loaded_flanks(one, bodies, None, 0.6, force, tables) for one in (given, given.opposite))
+    flanks, other = (loaded_flanks(one, bodies, None, 0.6, tables) for one in (given, given.opposite))
     both = both_sides(given, bodies, flanks, other)
     found = solve_contact(given, bodies, np.array([force]), None)
     forces = np.concatenate([found.share.forces, found.opposite.share.forces], axis=-1)[0, 0]

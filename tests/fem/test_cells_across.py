@@ -47,7 +47,7 @@ def _sides(bodies: PairCompliance, position: Array | None = None) -> _Sides:
     setup = MeshSetup(bodies.pair, 5)
     setup = setup if position is None else setup.at(position)
     tables = EdgeTables(setup, bodies)
-    front, back = (loaded_flanks(side, bodies, None, 0.6, 2e3, tables) for side in (setup, setup.opposite))
+    front, back = (loaded_flanks(side, bodies, None, 0.6, tables) for side in (setup, setup.opposite))
     return _Sides(setup, bodies, front, back)
 
 

@@ -44,11 +44,11 @@ def tight(request):
 
 def problem(bodies, beyond, positions=5):
     given = MeshSetup(bodies.pair, positions, beyond, moving_contact=True)
-    tables, force = EdgeTables(given, bodies), 500.0
+    tables = EdgeTables(given, bodies)
     sides = []
     for setting in (given, given.opposite):
-        flanks = loaded_flanks(setting, bodies, None, REACHES[0], force, tables)
-        sides.append(moved_side(setting, bodies, flanks, force, tables))
+        flanks = loaded_flanks(setting, bodies, None, REACHES[0], tables)
+        sides.append(moved_side(setting, bodies, flanks, tables))
     pairs = sum(len(side.flanks.candidates.offset) for side in sides)
     return MovedSides(*sides).contacts(bodies, np.zeros((1, 1, positions, pairs, 1)))
 

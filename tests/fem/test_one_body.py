@@ -30,7 +30,7 @@ def energy_over_loads(pair: GearPair, reach: float) -> np.ndarray:
     """Smallest eigenvalue over the mean diagonal of what the contacts yield at a force, at every position."""
     bodies, given = fem.compliance(pair, 0.01), MeshSetup(pair, 12)
     tables = EdgeTables(given, bodies)
-    front, back = (loaded_flanks(one, bodies, None, reach, FORCE, tables) for one in (given, given.opposite))
+    front, back = (loaded_flanks(one, bodies, None, reach, tables) for one in (given, given.opposite))
     both = both_sides(given, bodies, front, back)
     np.testing.assert_array_equal(both.matrix, np.swapaxes(both.matrix, 1, 2))
     secant = both.laws.approach(np.full(both.gaps.shape, FORCE))[0] / FORCE
@@ -68,7 +68,7 @@ def test_far_teeth_feel_the_hub_alone():
     bodies = fem.compliance(pair, 0.01)
     given = MeshSetup(pair, 2)
     tables = EdgeTables(given, bodies)
-    front, back = (loaded_flanks(one, bodies, None, 0.6, FORCE, tables) for one in (given, given.opposite))
+    front, back = (loaded_flanks(one, bodies, None, 0.6, tables) for one in (given, given.opposite))
     near = both_sides(given, bodies, front, back).matrix
     reached = bodies.back_flanks
     few = tuple(replace(one, series={0: one.series[0]}) for one in reached)

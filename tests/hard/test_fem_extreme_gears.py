@@ -236,6 +236,25 @@ def test_relief_larger_than_the_deflection_takes_the_ends_out_of_contact():
     np.testing.assert_allclose(np.delete(cycle.load_share.max(axis=1), shared), 1.0)
 
 
+@pytest.mark.parametrize(
+    ("teeth", "shifts", "relief", "rounding"),
+    [((26, 17), (0.222, 0.445), (0.076, 0.993), 0.022), ((107, 68), (0.518, 0.278), (0.121, 0.494), 0.008)],
+)
+def test_rounded_corners_of_deep_reliefs_have_laws(teeth, shifts, relief, rounding):
+    """Where strips at the corner would all pull, or few bear; lengths in modules."""
+    module = 2e-3
+    second = Gear(teeth[1], shifts[1], tip_relief=TipRelief(relief[0] * module, relief[1] * module))
+    pair = GearPair(Gear(teeth[0], shifts[0]), second, module, 10 * module).with_backlash(0.2 * module)
+    bodies = fem.compliance(pair, 0.02)
+    for factor in (0.1, 1.0, 3.0):
+        torque = factor * pair.base_radii[0] * 4e5 * pair.face_width
+        cycle = fem.mesh_cycle(pair, torque, 12, bodies, tip_rounding=rounding * module)
+        assert cycle.converged, cycle.message
+        assert np.all(cycle.forces >= 0.0)
+        assert np.all(cycle.stiffness > 0.0)
+        assert abs(cycle.wheel_torque.mean() / (torque * pair.ratio) - 1.0) < 2e-3
+
+
 @pytest.mark.slow
 def test_random_gears_mesh():
     rng = np.random.default_rng(0)
