@@ -21,8 +21,8 @@ from .branches.continuation import continue_branch as continue_branch
 from .branches.continuation import doubled_orbit as doubled_orbit
 from .branches.grazing import contact_grazing as contact_grazing
 from .branches.loci import continue_locus as continue_locus
-from .branches.moved_special_point import carried_point as carried_point
-from .branches.special_point_derivatives import special_sensitivities as special_sensitivities
+from .branches.moved_special_points import carried_point as carried_point
+from .branches.moved_special_points import special_sensitivities as special_sensitivities
 from .flow.motions import Trajectory as Trajectory
 from .flow.motions import period_map as period_map
 from .flow.motions import trajectory as trajectory

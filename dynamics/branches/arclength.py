@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, InputError, Stopwatch
-from dynamics.branches.branch import ENDLESS, GOOD_ENDS, LARGE, MEETS, SMALL, UNBOUNDED, Branch, SpecialPoint
-from dynamics.branches.branch_problem import BranchProblem, Heading, MapPoint, Sizes, Steps
-from dynamics.branches.crossings import find_crossings
+from dynamics.branches.branch import GOOD_ENDS, MEETS, UNBOUNDED, Branch, SpecialPoint
+from dynamics.branches.branch_problem import BranchProblem, Heading, MapPoint, Steps
+from dynamics.branches.crossings import find_crossings, rejoining_point
 from dynamics.branches.locus_predictor import Tracer, both_ways, joined
-from dynamics.branches.rejoining import rejoining_point
+from dynamics.branches.sizes import ENDLESS, LARGE, SMALL, Sizes
 from dynamics.branches.step_rules import (
     ASTRAY,
     CORNER,

@@ -16,10 +16,6 @@ from dynamics.model.arrays import AsArray
 MEETS = "meets the branch of half the period"
 UNBOUNDED = "the motion grows without bound"
 GOOD_ENDS = ("bound", "closed", MEETS, UNBOUNDED)
-WIDTH = 4.0  # times its largest distance from the state at rest: the largest scale of a motion within the backlash
-LARGE = 4.0  # times the size of the motion: where a growing motion is measured by a larger one
-SMALL = 1.0 / 32.0  # times the size of the motion: where a shrinking motion is measured by a smaller one
-ENDLESS = 1e4  # times its first size: a motion that grows without bound
 KINDS = ("saddle-node", "period-doubling", "grazing")
 NEIMARK_SACKER = "neimark-sacker"
 """Kind of special point that branches of several freedoms, or of damping by the motion, have besides."""

@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Faults
-from dynamics.branches.branch import WIDTH, SpecialPoint
+from dynamics.branches.branch import SpecialPoint
+from dynamics.branches.sizes import WIDTH, Sizes
 from dynamics.branches.step_rules import NEAR
 from dynamics.model.limits import MAX_POINTS, STEP, ordered
 from dynamics.orbits.shooting import floquet_multipliers
@@ -267,19 +268,6 @@ class BranchProblem(ABC):
     def magnified(self, factor: float) -> Self:
         """The same with a larger scale."""
         return replace(self, scale=factor * self.scale)
-
-
-class Sizes(NamedTuple):
-    """Sizes of motions, as of `BranchProblem.size_of`, between which the scale stands.
-
-    Attributes
-    ----------
-    least, most : float
-        Over the scale.
-    """
-
-    least: float
-    most: float
 
 
 class Heading(NamedTuple):

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from base import Array, Integers
-from dynamics.branches.branch import WIDTH
-from dynamics.branches.branch_problem import Heading, Sizes, Steps
+from dynamics.branches.branch_problem import Heading, Steps
 from dynamics.branches.corrector import LIMIT, ROOM, OrbitProblem, Point
+from dynamics.branches.sizes import WIDTH, Sizes
 from dynamics.branches.step_rules import (
     ASTRAY,
     CORNER,

@@ -1,4 +1,7 @@
-"""Special points between two neighbours on a branch: found by signs, located by Newton's method or by bracketing."""
+"""Special points between two neighbours on a branch: found by signs, located by Newton's method or by bracketing.
+
+Likewise the period doubling of the branch of half the period that a doubled branch meets.
+"""
 
 from __future__ import annotations
 
@@ -9,17 +12,22 @@ from typing import TypeVar
 
 import numpy as np
 
+from base import Array
 from dynamics.branches.branch import SpecialPoint
-from dynamics.branches.branch_problem import BranchProblem, Heading, MapPoint, Sizes, Steps, match_extrema
+from dynamics.branches.branch_problem import BranchProblem, Heading, MapPoint, Steps, match_extrema
 from dynamics.branches.compiled_steps import March, march
 from dynamics.branches.corrector import OrbitProblem, Point
 from dynamics.branches.roots import along_chord
+from dynamics.branches.sizes import Sizes
 from dynamics.branches.special_orbits import PRODUCTS, Condition, special_orbit
 from dynamics.model.protocol import EPS
 from dynamics.orbits.shooting import is_stable, motion_label
 
 P = TypeVar("P", bound=MapPoint)
 Crossing = tuple[Condition, Condition]  # as it is at the one and at the other of two neighbours
+FIRST, LAST = 1e-11, 1e-2  # of the range: from the last doubled orbit to where the parent is looked at
+WIDER = 10.0
+DOUBLING = (Condition("period-doubling"),) * 2
 
 
 def find_crossings(a: MapPoint, b: MapPoint) -> tuple[list[Crossing], bool]:
@@ -126,3 +134,51 @@ class ExactBranch(OrbitProblem):
             return math.inf
         off = abs(condition.measure(self, there) - condition.measure(self, point)) / slope
         return float(self.high[0] - self.low[0]) * off
+
+
+def rejoining_point(problem: BranchProblem, last: MapPoint) -> SpecialPoint | None:
+    """Period doubling of the branch of half the period beside a doubled orbit; None if none is found.
+
+    The parent's orbit is looked at on both sides of the doubled one, ever farther away, until the product of
+    (1 + multiplier) changes its sign; a doubling behind a grazing, where the product has a corner, is bracketed too.
+
+    Parameters
+    ----------
+    problem : BranchProblem
+        Of the doubled orbits.
+    last : MapPoint
+        The doubled orbit next to the meeting.
+    """
+    parent = replace(problem, periods=problem.periods // 2)
+    guess = last.u.copy()
+    guess[: last.size] += 0.5 * (problem.half_way(last) - last.u[: last.size])
+    start = parent.correct(guess, parent.flat)
+    if start is None:
+        return None
+    before: dict[float, MapPoint] = {1.0: start, -1.0: start}
+    off = FIRST
+    while off < LAST and before:  # the nearest doubling, whichever side it is on
+        for way, near in list(before.items()):
+            there = _beside(parent, start, near, way * off)
+            if there is None:
+                del before[way]
+                continue
+            if near.flip * there.flip <= 0.0:
+                doubling, arrived = parent.locate(near, there, DOUBLING)
+                if doubling is not None and arrived:
+                    return doubling
+                del before[way]
+                continue
+            before[way] = there
+        off *= WIDER
+    return None
+
+
+def _beside(parent: BranchProblem, start: MapPoint, before: MapPoint, off: float) -> MapPoint | None:
+    """Orbit of the parent's branch a distance of the parameter away from the start."""
+    along: Array = before.tangent(parent.flat)
+    step = start.u[-1] + off - before.u[-1]
+    guess = before.u + (step / along[-1] if along[-1] else 0.0) * along
+    guess[-1] = start.u[-1] + off
+    orbit: MapPoint | None = parent.correct(guess, parent.flat)
+    return orbit

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from base import Array, quantity, record
-from dynamics.branches.branch import ENDLESS, LARGE, UNBOUNDED
+from dynamics.branches.branch import UNBOUNDED
 from dynamics.branches.branch_problem import MapPoint, Steps, match_extrema
 from dynamics.branches.locus_predictor import Tracer
 from dynamics.branches.roots import bracketed
+from dynamics.branches.sizes import ENDLESS, LARGE
 from dynamics.branches.special_orbits import Condition, special_orbit
 from dynamics.model.protocol import EPS
 

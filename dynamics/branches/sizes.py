@@ -1,18 +1,35 @@
-"""How large a motion is, however large its backlash."""
+"""How large a motion is, however large its backlash, and sizes at which it is measured by another scale."""
 
 from __future__ import annotations
 
 from contextlib import suppress
+from typing import NamedTuple
 
 import numpy as np
 
 from base import Array, InputError
-from dynamics.branches.branch import WIDTH
 from dynamics.flow.flows import flow_of
 from dynamics.model.protocol import Oscillator
 from dynamics.model.states import scale_of
 
 SAMPLES = 32  # of a period
+WIDTH = 4.0  # times its largest distance from the state at rest: the largest scale of a motion within the backlash
+LARGE = 4.0  # times the size of the motion: where a growing motion is measured by a larger one
+SMALL = 1.0 / 32.0  # times the size of the motion: where a shrinking motion is measured by a smaller one
+ENDLESS = 1e4  # times its first size: a motion that grows without bound
+
+
+class Sizes(NamedTuple):
+    """Sizes of motions, as of `BranchProblem.size_of`, between which the scale stands.
+
+    Attributes
+    ----------
+    least, most : float
+        Over the scale.
+    """
+
+    least: float
+    most: float
 
 
 def size_of(

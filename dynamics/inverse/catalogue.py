@@ -11,7 +11,7 @@ import numpy as np
 from dynamics.attraction.branch_tree import BranchTree, Origin
 from dynamics.branches.branch import SpecialPoint
 from dynamics.branches.continuation import continue_branch
-from dynamics.branches.special_point_derivatives import marked
+from dynamics.branches.moved_special_points import marked
 from dynamics.flow.motions import period_map
 from dynamics.inverse.events import Event, Problem
 from dynamics.inverse.matching import Line, match

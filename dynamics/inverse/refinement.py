@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from base import Array
-from dynamics.branches.special_point_derivatives import Mark
+from dynamics.branches.moved_special_points import Mark
 from dynamics.inverse.events import Problem
 from dynamics.model.oscillator import GearOscillator
 

@@ -12,7 +12,7 @@ import pytest
 
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit, find_orbits
-from dynamics.branches.special_point_derivatives import marked
+from dynamics.branches.moved_special_points import marked
 from dynamics.inverse import Event, OneOf, Ranged, identify
 from dynamics.inverse.catalogue import CONTACT, DOUBLED, EVERY, Catalogue, Tally
 from dynamics.inverse.events import MAX_TRIALS, Problem, checked
