@@ -8,6 +8,7 @@ from base import Array, InputError
 from dynamics.attraction.escapes import STRETCH, Cover
 from dynamics.attraction.manifolds import is_direct_saddle
 from dynamics.flow.protocol import Flow
+from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import Oscillator
 from dynamics.model.states import apart
 from dynamics.motion.sweeps import long_flow
@@ -108,7 +109,8 @@ def _saddles(oscillator: Oscillator, states: Array, size: float, longest: int, m
             if not near or not is_direct_saddle(orbit.multipliers):
                 continue
             known = any(
-                saddle.periods == orbit.periods and apart(orbit.state, saddle.points) < 1e-7 * size
+                saddle.periods == orbit.periods
+                and apart(orbit.state, saddle.points) < OPTIONS.same_orbit * size
                 for saddle in met
             )
             if not known:

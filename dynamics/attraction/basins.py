@@ -12,6 +12,7 @@ from dynamics.attraction.known_attractors import KnownAttractors
 from dynamics.flow.protocol import Flow
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import LONGEST_PERIOD, PATIENT, RADIUS, checked_axis
+from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import Oscillator, settling_periods
 from dynamics.model.states import apart, checked_state
 from dynamics.motion.exponents import stretch_rate
@@ -19,10 +20,7 @@ from dynamics.motion.sweeps import APERIODIC, creeping, long_flow, orbit_toleran
 from dynamics.orbits.shooting import Orbit, find_orbit
 
 UNDECIDED, UNBOUNDED, UNSETTLED = -1, -2, -3
-SEEDS = 48  # starts that are followed to the end first, so that the rest need not be
-PATIENCE = 20  # times the limit that a motion which does not repeat is followed on
 SOME = 5  # part of that after which a motion of a train that did not creep to an orbit is looked at again
-TRIALS = 3  # motions followed so far to distinguish chaos from a long transient
 SIEVE = 64  # cells along each side of the sieve that holds a chaotic attractor
 
 
@@ -137,7 +135,7 @@ def basins(
     )
     labels = np.full(len(starts), UNDECIDED, dtype=np.int64)
     search = _Found(oscillator, flow, longest, near, wait)
-    sample = np.unique(np.linspace(0, len(starts) - 1, min(len(starts), SEEDS)).astype(np.int64))
+    sample = np.unique(np.linspace(0, len(starts) - 1, min(len(starts), OPTIONS.seeds)).astype(np.int64))
     for i in sample:
         labels[i] = search.follow(starts[i], wait)
         if progress is not None:
@@ -150,14 +148,14 @@ def basins(
         for i in np.flatnonzero(mine == UNDECIDED):
             mine[i] = search.follow(there[i], 0)
         if any(orbit is not None for orbit in search.orbits):
-            search.settle(there, PATIENCE * wait, mine, UNSETTLED)
+            search.settle(there, OPTIONS.patience * wait, mine, UNSETTLED)
         labels[chunk] = mine
         if progress is not None:
             progress(int(chunk[-1]) + 1, len(labels))
     last = labels == UNSETTLED  # of the first starts: there were fewer known attractors
     if np.any(last) and any(orbit is not None for orbit in search.orbits):
         mine, there = labels[last], starts[last]
-        search.settle(there, (PATIENCE + 1) * wait, mine, UNSETTLED)
+        search.settle(there, (OPTIONS.patience + 1) * wait, mine, UNSETTLED)
         labels[last] = mine
     labels[labels == UNSETTLED] = UNDECIDED
     attractors = search.attractors(labels)
@@ -214,7 +212,7 @@ class _Found:
         self.orbits: list[Orbit | None] = []
         self.points: list[Array] = []
         self.periods = self.iterations = self.trials = 0
-        self.patience = PATIENCE * limit
+        self.patience = OPTIONS.patience * limit
         self.sieves: list[_Sieve] = []
 
     def follow(self, state: Array, wait: int) -> int:
@@ -234,7 +232,7 @@ class _Found:
         several = self.oscillator.dimension > 2
         if several and (label := self.creep(states)) >= 0:
             return label
-        if self.trials == TRIALS:
+        if self.trials == OPTIONS.chaos_trials:
             return UNSETTLED
         if several and (label := self.creep(self.later(states))) >= 0:
             return label
@@ -247,7 +245,7 @@ class _Found:
         n = repeat_after(end, self.longest, self.flow.tolerance)
         if n:
             return self.polish(end, n)
-        if exponent > 3.0 * error:
+        if exponent > OPTIONS.sure * error:
             self.sieves.append(_Sieve(motion))
             return self.note(None, states)
         n, _, more = creeping(self.oscillator, self.flow, end, self.longest)
@@ -277,7 +275,7 @@ class _Found:
         self.periods += orbit.cost.periods
         self.iterations += orbit.cost.iterations
         size = max(float(np.max(np.abs(states))), 1e-300)
-        if not (orbit.converged and orbit.stable and apart(orbit.state, states) < 1e-3 * size):
+        if not (orbit.converged and orbit.stable and apart(orbit.state, states) < OPTIONS.same_motion * size):
             return UNSETTLED
         return self.note(orbit, self.flow.follow(orbit.state, orbit.periods, derivatives=False).states)
 

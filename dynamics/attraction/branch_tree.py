@@ -10,6 +10,7 @@ import numpy as np
 
 from dynamics.branches.branch import MEETS, Branch
 from dynamics.branches.continuation import continue_branch, doubled_orbit, orbits_over
+from dynamics.model.options import OPTIONS
 from dynamics.model.states import apart
 from dynamics.orbits.shooting import Orbit
 
@@ -155,6 +156,6 @@ def lies_on(branch: Branch, orbit: Orbit, bounds: tuple[float, float]) -> bool:
         if apart(guess, points) > 2.0 * float(np.max(np.abs(chord))) + 1e-3 * scale:
             continue
         there = problem.correct(problem.unknowns(guess, value), problem.flat)
-        if there is not None and apart(there.u[: problem.size] * scale, points) < 1e-7 * scale:
+        if there is not None and apart(there.u[: problem.size] * scale, points) < OPTIONS.same_orbit * scale:
             return True
     return False

@@ -16,10 +16,10 @@ from dynamics.attraction.manifolds import is_direct_saddle
 from dynamics.branches.branch import Branch
 from dynamics.branches.continuation import continue_branch
 from dynamics.model.limits import ordered
+from dynamics.model.options import OPTIONS
 from dynamics.motion.sweeps import sweep
 from dynamics.orbits.shooting import Orbit
 
-SMOOTH = 1e-3  # of the size of the saddle: jump of the overshoot above which a change of sign is no tangency
 SETTLED = 20_000  # periods after which the motion beside the saddle is named
 OTHER_PHASE = 0.17  # of the points by which a tangency is confirmed, over their distance
 LEAST = 9  # values looked at on a saddle's range, however narrow
@@ -241,9 +241,9 @@ def _closed_in(
     before, after = _motion(search, closed, side), _motion(search, opened, side)
     at = search.saddle(root)
     message = f"{at.label} and the {before} motion beside it meet at {search.parameter} = {root:.10g}"
-    if jump > SMOOTH:
+    if jump > OPTIONS.tangency_jump:
         message = f"no crisis of this saddle: near {search.parameter} = {root:.10g} the overshoot jumps by {jump:.2g}"
-    good = abs(b - a) <= 1e-9 * abs(root) and jump <= SMOOTH
+    good = abs(b - a) <= 1e-9 * abs(root) and jump <= OPTIONS.tangency_jump
     cost = Cost(watch.seconds, 2, steps, search.periods)
     return Crisis(at, cost, message, root, side, ends, before, after, abs(b - a) / abs(root), good)
 

@@ -10,6 +10,7 @@ from dynamics.attraction.basins import Attractor
 from dynamics.attraction.known_attractors import KnownAttractors
 from dynamics.attraction.manifolds import is_direct_saddle
 from dynamics.flow.motions import period_map
+from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import Oscillator
 from dynamics.model.states import apart
 from dynamics.motion.sweeps import long_flow
@@ -141,4 +142,4 @@ def _saddle(oscillator: Oscillator, homes: KnownAttractors, edge: Array, longest
 
 def _same(a: Orbit, b: Orbit, size: float) -> bool:
     """Whether two orbits are one, perhaps from another period on."""
-    return a.periods == b.periods and apart(b.state, a.points) < 1e-7 * size
+    return a.periods == b.periods and apart(b.state, a.points) < OPTIONS.same_orbit * size

@@ -18,17 +18,13 @@ from base import Array, Booleans, Cost, Faults, InputError, Stopwatch, part, qua
 from base.results import EXACT
 from dynamics.attraction.basins import Attractor
 from dynamics.model.limits import PERIODS, STARTS, ordered
+from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import Oscillator, settling_periods
 from dynamics.model.states import checked_state
 from dynamics.motion.sweeps import APERIODIC, long_flow
 
-SIDE = 128  # cells along each side of the grid that covers the attractor
-MARGIN = 4  # cells around it that still count as on it: it moves and grows a little with the parameter
-COVERED = 400_000  # periods that the cover is made of
 STRETCH = 2048  # periods between two looks at a motion
 AFTER = 512  # periods that a motion is followed on outside
-AWAY = 0.2  # share of these that lie outside where it has left, and not only grown
-STAYS = 3.0  # mean lives without an escape after which it would have shown in 95 of 100
 
 
 @record
@@ -78,15 +74,16 @@ class Cover:
     def of(cls, states: Array) -> Cover:
         """Cover of states (n, 2)."""
         low, high = states.min(axis=0), states.max(axis=0)
-        size = np.maximum(high - low, 1e-12) / SIDE
-        marked = np.zeros((SIDE + 2 * MARGIN + 1,) * 2, dtype=bool)
-        at = np.minimum(((states - low) / size).astype(int), SIDE - 1) + MARGIN
+        side, margin = OPTIONS.cover_cells, OPTIONS.cover_margin
+        size = np.maximum(high - low, 1e-12) / side
+        marked = np.zeros((side + 2 * margin + 1,) * 2, dtype=bool)
+        at = np.minimum(((states - low) / size).astype(int), side - 1) + margin
         marked[at[:, 0], at[:, 1]] = True
         grown = np.zeros_like(marked)
-        for i in range(-MARGIN, MARGIN + 1):
-            for j in range(-MARGIN, MARGIN + 1):
+        for i in range(-margin, margin + 1):
+            for j in range(-margin, margin + 1):
                 grown |= np.roll(marked, (i, j), axis=(0, 1))
-        return cls(low - MARGIN * size, size, grown)
+        return cls(low - margin * size, size, grown)
 
     def outside(self, states: Array) -> Booleans:
         """Which of the states (n, 2) lie in no cell."""
@@ -151,7 +148,9 @@ def chaos_end(
     here = oscillator.with_parameter(parameter, float(bounds[0]))
     flow = long_flow(here, None)
     wait = settling_periods(here)
-    motion = flow.follow(checked_state(state, size=here.dimension), COVERED, wait, derivatives=False)
+    motion = flow.follow(
+        checked_state(state, size=here.dimension), OPTIONS.cover_periods, wait, derivatives=False
+    )
     if motion.message:
         raise InputError.at(
             "state", motion.message, "must lead to a bounded motion", "take one of the attractor's"
@@ -160,7 +159,7 @@ def chaos_end(
     if len(np.unique(np.round(motion.states[-256:], 9), axis=0)) < 256:
         allowed = f"must lead to chaos at {parameter} = {bounds[0]:g}, where it repeats"
         raise InputError.at("state", state, allowed, "begin the bounds where the attractor is chaotic")
-    at = motion.states[:: max(1, COVERED // number)][:number]
+    at = motion.states[:: max(1, OPTIONS.cover_periods // number)][:number]
     looked: list[tuple[float, int, int]] = []
 
     def leaves(value: float) -> bool:
@@ -181,7 +180,7 @@ def chaos_end(
     looked.sort(key=lambda row: row[0], reverse=bounds[1] < bounds[0])
     values, escapes, followed = (np.array(column, dtype=np.float64) for column in zip(*looked, strict=True))
     needed = _needed(looked, stays, gone) if good else math.nan
-    used = int(followed.sum()) + COVERED + wait
+    used = int(followed.sum()) + OPTIONS.cover_periods + wait
     said = (
         f"no motion left in {budget} periods at {stays:.10g}, at {gone:.10g} they leave; half the width needs about "
         f"{needed:.1g} periods a value"
@@ -212,7 +211,7 @@ def _escapes(oscillator: Oscillator, starts: Array, cover: Cover, budget: int) -
                 after = flow.follow(motion.states[out[0]], AFTER, derivatives=False)
                 gone = (
                     bool(after.message)
-                    or float(np.mean(cover.outside(oscillator.in_plane(after.states)))) > AWAY
+                    or float(np.mean(cover.outside(oscillator.in_plane(after.states)))) > OPTIONS.escape_share
                 )
             used += (int(out[0]) + 1) if gone else STRETCH
             if gone:
@@ -231,7 +230,8 @@ def _needed(looked: list[tuple[float, int, int]], stays: float, gone: float) -> 
     """Periods at the middle of the bracket until an escape would have shown, by the rate at its end."""
     rate = max((escaped / max(used, 1) for value, escaped, used in looked if value == gone), default=math.nan)
     gamma = _exponent(looked, 0.5 * (stays + gone))
-    return STAYS / rate * 2.0 ** max(0.5, gamma if math.isfinite(gamma) else 1.0) if rate > 0.0 else math.inf
+    more = 2.0 ** max(0.5, gamma if math.isfinite(gamma) else 1.0)
+    return OPTIONS.escape_lives / rate * more if rate > 0.0 else math.inf
 
 
 def _exponent(looked: list[tuple[float, int, int]], end: float) -> float:

@@ -11,14 +11,13 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.attraction.basins import basins
 from dynamics.model.limits import checked_grid
+from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import PeriodicOscillator, periodic_only
 from dynamics.model.states import apart, scale_of
 from dynamics.motion.sweeps import APERIODIC, DIVERGED, SweepResult, sweep
 from dynamics.orbits.starting import reach
 
 CHUNK = 16  # values swept before it is looked whether the motions are known
-ENDLESS = 1e4  # times D and the deflection at rest: a motion that large grows without bound
-SHARED = 0.5  # of the union of their boxes: from there on two aperiodic motions are taken for one
 
 
 @record
@@ -213,7 +212,7 @@ class _Met:
 
 def _bounded(states: Array, size: float) -> bool:
     """Whether states are finite and of no size that only unlimited growth leads to."""
-    return bool(np.max(np.abs(states)) <= ENDLESS * size)  # False for nan
+    return bool(np.max(np.abs(states)) <= OPTIONS.unbounded * size)  # False for nan
 
 
 def _same(motion: Motion, label: str, states: Array) -> bool:
@@ -221,8 +220,8 @@ def _same(motion: Motion, label: str, states: Array) -> bool:
     if motion.label != label or label == DIVERGED:
         return motion.label == label
     if label == APERIODIC:
-        return _overlap(motion.states, states) > SHARED
-    return bool(apart(states[-1], motion.states) < 1e-3 * np.max(np.abs(motion.states)))
+        return _overlap(motion.states, states) > OPTIONS.shared_box
+    return bool(apart(states[-1], motion.states) < OPTIONS.same_motion * np.max(np.abs(motion.states)))
 
 
 def _overlap(a: Array, b: Array) -> float:

@@ -15,20 +15,19 @@ from dynamics.branches.branch import GOOD_ENDS, MEETS, UNBOUNDED, Branch, Specia
 from dynamics.branches.branch_problem import BranchProblem, Heading, MapPoint, Steps
 from dynamics.branches.crossings import find_crossings, rejoining_point
 from dynamics.branches.locus_predictor import Tracer, both_ways, joined
-from dynamics.branches.sizes import ENDLESS, LARGE, SMALL, Sizes
+from dynamics.branches.sizes import LARGE, SMALL, Sizes
 from dynamics.branches.step_rules import (
     ASTRAY,
-    CORNER,
     EASY,
     FALLEN,
     ITERATIONS,
-    JUMP,
     LONGER,
     PATIENT,
     ROUND,
     STRAIGHT,
     hides,
 )
+from dynamics.model.options import OPTIONS
 from dynamics.orbits.shooting import floquet_multipliers, is_stable, motion_label
 
 MET = 1e-5  # of the size of the motion: distance of two halves of an orbit at which its branch meets that of the half
@@ -121,12 +120,12 @@ class _Walker(Tracer):
     def sizes(self) -> Sizes:
         """Sizes of motions that the scale serves."""
         least = SMALL if self.problem.driven < SMALL else 0.0
-        return Sizes(least, min(LARGE, ENDLESS * self.size / self.problem.scale))
+        return Sizes(least, min(LARGE, OPTIONS.unbounded * self.size / self.problem.scale))
 
     def attempt(self, last: MapPoint) -> _Step | None:
         """Next point with what lies before it; at a bound, the point on it."""
         size = self.problem.size_of(last.u)
-        if size * self.problem.scale > ENDLESS * self.size:
+        if size * self.problem.scale > OPTIONS.unbounded * self.size:
             self.ended = UNBOUNDED
             return None
         if not self.sizes.least <= size <= self.sizes.most:
@@ -148,10 +147,10 @@ class _Walker(Tracer):
             return None
         tangent = new.tangent(chord if ahead is None else ahead)
         self.refused = "the branch has a corner"
-        if tangent @ self.tangent < CORNER and patient:
+        if tangent @ self.tangent < OPTIONS.corner and patient:
             return None
         self.refused = "the multipliers jump"
-        if abs(new.trace - last.trace) > JUMP * max(1.0, abs(last.trace)) and patient:
+        if abs(new.trace - last.trace) > OPTIONS.multiplier_jump * max(1.0, abs(last.trace)) and patient:
             return None
         self.refused = "special points lie close together"
         half = self._half(new)

@@ -14,12 +14,10 @@ from dynamics.branches.corrector import LIMIT, ROOM, OrbitProblem, Point
 from dynamics.branches.sizes import WIDTH, Sizes
 from dynamics.branches.step_rules import (
     ASTRAY,
-    CORNER,
     EASY,
     FALLEN,
     FAR,
     ITERATIONS,
-    JUMP,
     LONGER,
     NEAR,
     PATIENT,
@@ -29,6 +27,7 @@ from dynamics.branches.step_rules import (
     touches_twice,
 )
 from dynamics.flow.exact_flow import ExactFlow
+from dynamics.model.options import OPTIONS
 
 BLOCK = 64  # steps after which it is said how far a branch is
 Rows = list[list[float]]
@@ -179,9 +178,12 @@ class _Course:
         if n0 * s0 + n1 * s1 + n2 * s2 < 0.0:  # on the side of the step
             size = -size
         tangent = [n0 / size, n1 / size, n2 / size]
-        if math.sqrt(square) > ASTRAY * step or tangent[0] * t0 + tangent[1] * t1 + tangent[2] * t2 < CORNER:
+        if (
+            math.sqrt(square) > ASTRAY * step
+            or tangent[0] * t0 + tangent[1] * t1 + tangent[2] * t2 < OPTIONS.corner
+        ):
             return SHORTEN
-        if abs(trace - self.trace) > JUMP * max(1.0, abs(self.trace)):
+        if abs(trace - self.trace) > OPTIONS.multiplier_jump * max(1.0, abs(self.trace)):
             return SHORTEN
         turning = shrinking = 0.0
         for along, ((aa, ab), (ba, bb)) in zip(tangent, room.bend.tolist(), strict=True):

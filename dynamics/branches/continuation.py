@@ -16,8 +16,8 @@ from dynamics.branches.drive_problem import DriveProblem
 from dynamics.branches.sizes import size_of
 from dynamics.branches.stepwise_problem import FlowProblem
 from dynamics.flow.flows import flow_of, unserved
-from dynamics.flow.stepwise_flow import TOLERANCE
 from dynamics.model.drive_oscillator import DriveOscillator
+from dynamics.model.options import OPTIONS
 from dynamics.model.oscillator import GearOscillator
 from dynamics.model.protocol import Oscillator
 from dynamics.model.smooth_oscillator import SmoothOscillator
@@ -148,7 +148,7 @@ def _stepwise(
     oscillator: SmoothOscillator, parameter: str, periods: int, bounds: tuple[float, float], scale: float,
     tolerance: float | None = None,
 ) -> FlowProblem:  # fmt: skip
-    step_tolerance = TOLERANCE if tolerance is None else tolerance
+    step_tolerance = OPTIONS.step_tolerance if tolerance is None else tolerance
     return FlowProblem(oscillator, (parameter,), periods, *_ends(bounds), scale, step_tolerance)
 
 

@@ -14,8 +14,9 @@ from dynamics.branches.branch import UNBOUNDED
 from dynamics.branches.branch_problem import MapPoint, Steps, match_extrema
 from dynamics.branches.locus_predictor import Tracer
 from dynamics.branches.roots import bracketed
-from dynamics.branches.sizes import ENDLESS, LARGE
+from dynamics.branches.sizes import LARGE
 from dynamics.branches.special_orbits import Condition, special_orbit
+from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import EPS
 
 
@@ -62,7 +63,7 @@ class LocusTracer(Tracer):
     def attempt(self, last: MapPoint) -> MapPoint | None:
         """Next point; at a bound, the point on it."""
         size = self.problem.size_of(last.u)
-        if size * self.problem.scale > ENDLESS * self.size:
+        if size * self.problem.scale > OPTIONS.unbounded * self.size:
             self.ended = UNBOUNDED
             return None
         if size > LARGE:

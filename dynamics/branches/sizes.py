@@ -16,7 +16,6 @@ SAMPLES = 32  # of a period
 WIDTH = 4.0  # times its largest distance from the state at rest: the largest scale of a motion within the backlash
 LARGE = 4.0  # times the size of the motion: where a growing motion is measured by a larger one
 SMALL = 1.0 / 32.0  # times the size of the motion: where a shrinking motion is measured by a smaller one
-ENDLESS = 1e4  # times its first size: a motion that grows without bound
 
 
 class Sizes(NamedTuple):

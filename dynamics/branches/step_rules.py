@@ -2,19 +2,19 @@
 
 import math
 
+from dynamics.model.options import OPTIONS
+
 ITERATIONS = 8  # of Newton's method, at most
 EASY = 4  # iterations after which the next step may be longer
 LONGER = 1.4  # by how much
 ASTRAY = 2.0  # steps from the last point at most
 ROUND = 50.0  # the same of the shortest steps, which go round corners
-CORNER = 0.9  # minimum cosine between tangents of neighbours
-JUMP = 0.3  # change of the trace at most, over its size or 1
 PATIENT = 16.0  # minimum steps down to which corners and jumps make a step shorter
 STRAIGHT = 1e-5  # between neighbours: from there on the difference of their tangents is more than rounding
 NEAR = 0.05  # of the orbit's period: how far an extremum may move between neighbours
 FALLEN = 1e-3  # of the halves' distance at the last point: Newton's method has reached the orbit of half the period
-HIDDEN = 0.25  # of a dip's depth: how near to zero it may come between neighbours without a closer look
-SWAY = (1.0 + HIDDEN) * 4.0 / 27.0  # a cubic leaves the chord of its values by 4/27 of its slopes at most
+# a cubic leaves the chord of its values by 4/27 of its slopes at most
+SWAY = (1.0 + OPTIONS.hidden_dip) * 4.0 / 27.0
 FAR = 1.02  # squared steps from a place: too far to pass it
 
 
@@ -80,4 +80,4 @@ def hides(before: float, rise: float, after: float, climb: float, length: float)
     if not same:
         return len(turns) == 2 and before * turns[0] <= 0.0 and before * turns[1] >= 0.0
     side, nearest = math.copysign(1.0, before), min(abs(before), abs(after))
-    return any(side * value < HIDDEN * (nearest - side * value) for value in turns)
+    return any(side * value < OPTIONS.hidden_dip * (nearest - side * value) for value in turns)

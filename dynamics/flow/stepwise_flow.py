@@ -12,9 +12,9 @@ import numpy as np
 from base import Array, Cost, Faults, Integers, Stopwatch
 from dynamics.flow.protocol import Flow, MapResult, Stretches, lost_motion
 from dynamics.model.limits import STEP_TOLERANCE
+from dynamics.model.options import OPTIONS
 from dynamics.model.smooth_oscillator import SmoothOscillator
 
-TOLERANCE = 1e-12
 NOISE = 50.0  # residual over tolerance and stretch of the map that the choice of steps leaves
 TURNING = np.array([[0.0, 1.0, 0.0, -1.0]])  # the surface V = 0
 REASONS = {
@@ -56,7 +56,7 @@ class StepwiseFlow(Flow):
         with Faults() as faults:
             self.oscillator, self.extrema = oscillator, extrema
             self.tolerance = faults.number(
-                "tolerance", TOLERANCE if tolerance is None else tolerance, STEP_TOLERANCE
+                "tolerance", OPTIONS.step_tolerance if tolerance is None else tolerance, STEP_TOLERANCE
             )
         self.noise = NOISE * self.tolerance
         self.model = oscillator.model(parameters)

@@ -16,12 +16,12 @@ from dynamics.flow.motions import period_map
 from dynamics.inverse.events import Event, Problem
 from dynamics.inverse.matching import Line, match
 from dynamics.inverse.refinement import Fit
+from dynamics.model.options import OPTIONS
 from dynamics.model.oscillator import GearOscillator
 from dynamics.orbits.finding import find_orbits
 from dynamics.orbits.shooting import Orbit, find_orbit
 
 SETTLED = 2000  # periods in which the motion at the upper bound is taken to have settled
-THERE = 1e-3  # of its size: a motion so near to an orbit has settled on it
 STEP, MAX_POINTS, MOST = 0.05, 1500, 10**6  # largest step along a branch, its points, and branches at most
 CAPTURE = 0.02  # of the range: a point of the kind and label so near makes a search around the event needless
 BESIDE = (0.002, 0.015)  # of the range: how far beside an event its orbit is searched for
@@ -134,7 +134,7 @@ class Catalogue:
         motion = period_map(there, there.rest_state(), skip=SETTLED)
         if not motion.message:
             orbit = find_orbit(there, motion.state)
-            near = THERE * float(np.max(np.abs(motion.state)))
+            near = OPTIONS.same_motion * float(np.max(np.abs(motion.state)))
             if orbit.converged and float(np.max(np.abs(orbit.state - motion.state))) <= near:
                 return [orbit]
         orbit_set = find_orbits(there, (1,))

@@ -13,12 +13,11 @@ import numpy as np
 from base import Array
 from dynamics.branches.moved_special_points import Mark
 from dynamics.inverse.events import Problem
+from dynamics.model.options import OPTIONS
 from dynamics.model.oscillator import GearOscillator
 
 LEFT_OUT = 2  # events that are left out together when a fit of all is no good
 TRIED = 6  # such choices that are followed up
-CLOSE = 10.0  # units of the last decimal within which an event is met
-OUTLIER = 0.1  # weight below which an event counts as an outlier: three times the scale of the differences
 LONGEST = 0.3  # largest step, over the size of each parameter
 
 
@@ -73,7 +72,7 @@ class Fit:
 
     def meets(self, rows: Sequence[int]) -> bool:
         """Whether these events are met."""
-        return bool(np.all(np.abs(self.off[list(rows)]) <= CLOSE))
+        return bool(np.all(np.abs(self.off[list(rows)]) <= OPTIONS.event_units))
 
     def shifted(self, names: Sequence[str], values: Array, slopes: Sequence[Array | None]) -> Fit:
         """The same points at other values of parameters; None in the place of those that are lost."""
@@ -90,9 +89,9 @@ def fit(start: Fit, names: Sequence[str]) -> Fit:
     r"""Fit parameters to the fitted events that have a mark.
 
     Least squares of the differences in units of the last decimal by Gauss and Newton, then reweighted (`refit`). If
-    more than `CLOSE` units are left anywhere, it is repeated without one event or two, as long as one event more than
-    unknowns is left; those first without which the linearised equations of the first fit have the smallest misfit. The
-    smallest misfit of all events wins.
+    more than `OPTIONS.event_units` are left anywhere, it is repeated without one event or two, as long as one event
+    more than unknowns is left; those first without which the linearised equations of the first fit have the smallest
+    misfit. The smallest misfit of all events wins.
 
     Parameters
     ----------

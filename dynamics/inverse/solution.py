@@ -11,13 +11,13 @@ import numpy as np
 from base import Cost
 from dynamics.inverse.catalogue import EVERY, Catalogue
 from dynamics.inverse.events import Problem
-from dynamics.inverse.refinement import OUTLIER, Fit, agreement
+from dynamics.inverse.refinement import Fit, agreement
 from dynamics.inverse.report import Candidate, Identification
 from dynamics.inverse.rounding import Rounding, rounded
 from dynamics.inverse.scoring import by_chance, directions, left_out, probabilities, spread, unseen
+from dynamics.model.options import OPTIONS
 from dynamics.model.oscillator import GearOscillator
 
-RARE = 0.01  # probability below which a match, or all of them together, is not put down to chance
 ALIKE = 1e-3  # relative difference below which two oscillators are the same candidate
 
 
@@ -51,7 +51,7 @@ class Solution:
         scored = [i for i in self.candidate.matched if not self.fit.problem.events[i].fitted]
         unknowns = len(self.candidate.values)
         enough = len(self.rows) >= unknowns and len(self.rows) + len(scored) > unknowns
-        return enough and self.candidate.by_chance < RARE
+        return enough and self.candidate.by_chance < OPTIONS.chance
 
 
 def solution(catalogue: Catalogue, here: GearOscillator, trials: int) -> Solution:
@@ -62,8 +62,8 @@ def solution(catalogue: Catalogue, here: GearOscillator, trials: int) -> Solutio
     there = [i for i in problem.fitted if fit.marks[i] is not None]
     weights = agreement(fit, there)
     chance = probabilities(problem, lines, fit.off)
-    matched = tuple(i for i, p in enumerate(chance) if p < RARE)
-    rows = [i for i in there if i in matched and weights[i] >= OUTLIER]
+    matched = tuple(i for i, p in enumerate(chance) if p < OPTIONS.chance)
+    rows = [i for i in there if i in matched and weights[i] >= OPTIONS.outlier_weight]
     candidate = Candidate(
         oscillator=here,
         values={n: here.get(n) for n in names},
@@ -73,7 +73,7 @@ def solution(catalogue: Catalogue, here: GearOscillator, trials: int) -> Solutio
         weights=tuple(weights.tolist()),
         left_out=left_out(fit, names, rows),
         matched=matched,
-        outliers=tuple(i for i in problem.fitted if weights[i] < OUTLIER),
+        outliers=tuple(i for i in problem.fitted if weights[i] < OPTIONS.outlier_weight),
         misfit=fit.misfit,
         by_chance=by_chance(problem, chance, len(names), trials),
     )

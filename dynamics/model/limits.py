@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Faults, Limit
+from dynamics.model.options import OPTIONS
 
-BATCHES = 20  # parts of a motion that a standard error is estimated from
 NUMBER = Limit(remedy="give a finite number")
 POSITIVE = Limit(0.0, low_open=True, remedy="give a positive number")
 
@@ -45,7 +45,7 @@ PERIODS = Whole(1, 10**9, "give a positive number of periods")
 ORBIT_PERIODS = Whole(1, 100_000, "give the number of excitation periods")
 SEARCHED = Whole(1, 1000, "give excitation periods")
 """Periods of orbits that are searched for."""
-AVERAGED = Whole(BATCHES, 10**9, "10 000 gives two digits in chaos")
+AVERAGED = Whole(OPTIONS.batches, 10**9, "10 000 gives two digits in chaos")
 TRANSIENT = Whole(0, 10**9, "give 0 or more")
 PATIENT = Whole(1, 10**7, "give more")
 """Periods that a start is followed for."""

@@ -18,6 +18,7 @@ import numpy.typing as npt
 from base import Array, InputError
 from dynamics.model.excitation import Harmonics, as_series, largest
 from dynamics.model.naming import natural_size, unknown, value_at, with_value
+from dynamics.model.options import OPTIONS
 from dynamics.model.stiffness import FourierStiffness
 
 EPS = float(np.finfo(np.float64).eps)
@@ -216,10 +217,12 @@ class PlanarOscillator(Oscillator):
         return np.eye(2), np.zeros(2)
 
 
-def settling_periods(oscillator: Oscillator, low: int = 200, high: int = 5000) -> int:
-    """Periods in which damping alone shrinks a disturbance by 1e-6, within [low, high]."""
+def settling_periods(
+    oscillator: Oscillator, low: int = OPTIONS.least_settling, high: int = OPTIONS.most_settling
+) -> int:
+    """Periods in which damping alone shrinks a disturbance by `OPTIONS.settling_factor`, within [low, high]."""
     decay = oscillator.decay * oscillator.period
-    return high if decay <= 0.0 else int(min(max(math.log(1e6) / decay, low), high))
+    return high if decay <= 0.0 else int(min(max(math.log(OPTIONS.settling_factor) / decay, low), high))
 
 
 def periodic_only(function: Callable[P, R]) -> Callable[P, R]:

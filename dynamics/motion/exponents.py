@@ -11,7 +11,8 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.flow.protocol import Flow, lost_motion
 from dynamics.model.arrays import AsArray
-from dynamics.model.limits import AVERAGED, BATCHES, TRANSIENT, checked_grid
+from dynamics.model.limits import AVERAGED, TRANSIENT, checked_grid
+from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import Oscillator, settling_periods
 from dynamics.model.states import checked_state
 from dynamics.motion.sweeps import long_flow
@@ -100,7 +101,7 @@ def lyapunov_exponents(
         if transient is not None:
             skip = faults.whole("transient", transient, *TRANSIENT)
     at = oscillator.rest_state() if state is None else checked_state(state, size=oscillator.dimension)
-    sizes = np.array([n // BATCHES + (i < n % BATCHES) for i in range(BATCHES)])
+    sizes = np.array([n // OPTIONS.batches + (i < n % OPTIONS.batches) for i in range(OPTIONS.batches)])
     motion = long_flow(oscillator, tolerance).stretches(at, [skip, *sizes.tolist()])
     if motion.message:
         raise lost_motion(at, motion.message)
@@ -108,9 +109,9 @@ def lyapunov_exponents(
     exponents = sizes / n @ rates
     order = np.argsort(exponents)[::-1]
     exponents = exponents[order]
-    spread = np.std(rates[:, order], axis=0, ddof=1) / math.sqrt(BATCHES)
+    spread = np.std(rates[:, order], axis=0, ddof=1) / math.sqrt(OPTIONS.batches)
     largest = float(np.max(np.abs(exponents)))
-    sure = abs(exponents[0]) > 3.0 * spread[0]
+    sure = abs(exponents[0]) > OPTIONS.sure * spread[0]
     message = "average more periods: the sign of the larger exponent is not certain"
     if sure:
         message = "chaotic" if exponents[0] > 0.0 else "periodic"
@@ -222,7 +223,7 @@ def lyapunov_scan(
         used += result.cost.periods
         unsure += not result.converged
     lost = int(np.sum(np.isnan(exponents[:, 0])))
-    message = f"{len(grid)} values, {int(np.sum(exponents[:, 0] > 3.0 * errors[:, 0]))} chaotic"
+    message = f"{len(grid)} values, {int(np.sum(exponents[:, 0] > OPTIONS.sure * errors[:, 0]))} chaotic"
     if unsure:
         message += f"; the sign is not certain at {unsure}: average more periods"
     if lost:
@@ -238,9 +239,9 @@ def stretch_rate(flow: Flow, state: Array, periods: int) -> tuple[Array, float, 
 
     All nan if the motion is lost.
     """
-    sizes = [len(part) for part in np.array_split(np.arange(periods), BATCHES)]
+    sizes = [len(part) for part in np.array_split(np.arange(periods), OPTIONS.batches)]
     motion = flow.stretches(state, sizes, keep=True)
     if motion.message:
         return np.full_like(motion.states, np.nan), math.nan, math.nan
     rates = motion.logs[:, 0] / sizes
-    return motion.states, float(np.mean(rates)), float(np.std(rates, ddof=1)) / math.sqrt(BATCHES)
+    return motion.states, float(np.mean(rates)), float(np.std(rates, ddof=1)) / math.sqrt(OPTIONS.batches)

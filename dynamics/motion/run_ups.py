@@ -23,6 +23,7 @@ from dynamics.flow.flows import flow_of
 from dynamics.flow.motions import share_below
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import POSITIVE, Whole
+from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import EPS, PeriodicOscillator, periodic_only, settling_periods
 from dynamics.model.states import checked_outputs, checked_state
 
@@ -37,9 +38,6 @@ HIGHEST = 6
 
 HELD = 4
 """Periods for which a drive train keeps a frequency: its tables cost as much as a hundred periods. A pair keeps one."""
-
-FAST = 0.1
-"""Change of the frequency in one decay time, over the width of a resonance, above which motion lags behind."""
 
 STEADY = "rounding of the exact flow between steps of the frequency, whose error is that of the result"
 
@@ -194,7 +192,7 @@ def run_up(
         if good
         else f"{number} blocks; the motion grows without bound: check the parameters"
     )
-    if rate > FAST:
+    if rate > OPTIONS.lag:
         said += "; faster than the motion follows: jumps come late and peaks are lower than steady ones"
     rms, peak, force_rms, force_peak, separated, *rest = np.ascontiguousarray(fine[0].T)
     return RunUp(

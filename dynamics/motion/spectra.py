@@ -17,14 +17,9 @@ from base.results import EXACT
 from dynamics.flow.motions import mesh_force, trajectory
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import NUMBER
+from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import PeriodicOscillator
 from dynamics.model.states import checked_outputs
-
-STRETCHES = 8
-"""Stretches that the spectrum of a motion without a period is averaged over, each half over the next."""
-
-APERIODIC = 64
-"""Excitation periods of such a stretch."""
 
 OVERSAMPLED = 8
 """Samples of a period of the highest order: force has corners, and aliases fall with the square of their number."""
@@ -108,8 +103,8 @@ def motion_spectrum(
         )
         top = faults.number("highest", highest, Limit.above(0.0, 100_000.0))
         _ = faults.number("state", float(np.max(np.abs(np.asarray(state, dtype=np.float64)))), NUMBER)
-    length = n or APERIODIC
-    parts = 1 if n else STRETCHES
+    length = n or OPTIONS.spectrum_periods
+    parts = 1 if n else OPTIONS.spectrum_stretches
     per_period = 2 * math.ceil(OVERSAMPLED * max(top, 4.0) / 2.0) * 2
     rows = checked_outputs(outputs, oscillator.dimension)
     motion = trajectory(oscillator, state, length * (parts + 1) // 2 if parts > 1 else length, per_period)

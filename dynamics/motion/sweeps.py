@@ -14,16 +14,13 @@ from dynamics.flow.flows import flow_of, flows_along
 from dynamics.flow.protocol import Flow
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import KEPT, LONGEST_PERIOD, TRANSIENT, checked_grid
+from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import EPS, Oscillator, settling_periods
 from dynamics.model.states import checked_state
 from dynamics.orbits.shooting import find_orbit, motion_label
 
 APERIODIC = "aperiodic"
 DIVERGED = "diverged"
-TOLERANCE = 1e-9  # of steps of a motion that is followed for long; orbits and branches have their own
-CREEP = 0.02  # change per round, over the size of the motion, below which a motion may creep to an orbit
-LEAVING = 2_000  # periods a motion is given to creep away from an unstable orbit
-MOST_PATIENT = 20_000  # periods a creeping motion is followed on
 
 
 @record
@@ -69,7 +66,7 @@ def long_flow(oscillator: Oscillator, tolerance: float | None) -> Flow:
 
 def long_tolerance(oscillator: Oscillator, tolerance: float | None) -> float | None:
     """Tolerance of a motion that is followed for long: that given; without one the exact flow is no coarser."""
-    return tolerance if tolerance is not None or not oscillator.has_steps else TOLERANCE
+    return tolerance if tolerance is not None or not oscillator.has_steps else OPTIONS.long_step_tolerance
 
 
 def sweep(
@@ -185,7 +182,7 @@ def checked_sweep(
 
 def repeat_after(states: Array, longest: int, tolerance: float = EPS) -> int:
     """Smallest number of periods after which all states (kept, 2) repeat, on a flow of a tolerance; 0 if none."""
-    close = max(1e-6, 1e3 * tolerance) * max(float(np.max(np.abs(states))), 1e-300)
+    close = max(OPTIONS.repeats, 1e3 * tolerance) * max(float(np.max(np.abs(states))), 1e-300)
     for n in range(1, longest + 1):
         if float(np.max(np.abs(states[n:] - states[:-n]))) <= close:
             return n
@@ -263,10 +260,10 @@ def creeping(oscillator: Oscillator, flow: Flow, states: Array, longest: int) ->
     drift = [float(np.max(np.abs(states[-1] - states[-1 - n]))) for n in range(1, longest + 1)]
     away = 0
     for n in (int(k) + 1 for k in np.argsort(drift)[:2]):
-        if drift[n - 1] > CREEP * scale:
+        if drift[n - 1] > OPTIONS.creep * scale:
             break
-        if drift[n - 1] < 0.1 * CREEP * scale:
-            away = max(LEAVING, len(states))
+        if drift[n - 1] < 0.1 * OPTIONS.creep * scale:
+            away = max(OPTIONS.leaving_periods, len(states))
         orbit = find_orbit(oscillator, states[-1], periods=n, tolerance=orbit_tolerance(flow))
         if not (orbit.converged and orbit.stable):
             continue
@@ -275,7 +272,7 @@ def creeping(oscillator: Oscillator, flow: Flow, states: Array, longest: int) ->
         if gap > 0.1 * scale or not rate > 0.0:
             continue
         rounds = math.log(max(gap / (1e-7 * scale), 2.0)) / -math.log(min(rate, 1.0 - 1e-12))
-        more = int(min(orbit.periods * math.ceil(rounds) + len(states), MOST_PATIENT))
+        more = int(min(orbit.periods * math.ceil(rounds) + len(states), OPTIONS.creep_periods))
         ahead = flow.follow(states[-1], 1, orbit.periods * 20 - 1, derivatives=False).state
         if not float(np.max(np.abs(ahead - orbit.state))) < gap:
             continue  # it does not come nearer: passing by

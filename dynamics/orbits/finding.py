@@ -15,6 +15,7 @@ from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.flow.flows import flow_of
 from dynamics.flow.protocol import propagated
 from dynamics.model.limits import SEARCHED, whole_numbers
+from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import PeriodicOscillator, periodic_only
 from dynamics.model.states import Region, checked_region
 from dynamics.orbits.hunting import hunted
@@ -24,13 +25,11 @@ from dynamics.orbits.starting import around, grid_of, long_motions
 
 BESIDE = (1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2)  # of the size of the region
 PLAIN = 25  # Newton iterations from a start without deflation
-LEAST = 18  # batches at least, and twice as many as the last new orbit took
 PASSED = 6  # periods that every second batch has gone on for, at most
 GOLDEN = (
     0.7548776662466927,
     0.5698402909980532,
 )  # shifts of a sequence that fills the plane evenly, after Roberts
-GROWTHS = 4  # searches of a region that grows, at most
 WHOLE = 40  # periods of long motions that are looked at all the time, by so many samples
 SAMPLES = 32
 SHARES = tuple(k / 10 for k in range(1, 10))  # of the way from one orbit to the next
@@ -151,7 +150,7 @@ def find_orbits(
         if region is not None:
             region = checked_region(faults, region)
     search = _Search(oscillator, region)
-    for _ in range(GROWTHS):
+    for _ in range(OPTIONS.region_growths):
         counts = [search.all_of(n, side, most) for n in wanted]
         beyond = search.grows()
         if not beyond:
@@ -287,7 +286,7 @@ class _Search:
             once = seen.count(1)
             unseen = once * (once - 1) / (2.0 * seen.count(2) + 2.0)
             last_new = batch if len(self.orbits) > known else last_new
-            if batch + 1 >= max(LEAST, 2 * (last_new + 1)) and once == 0:
+            if batch + 1 >= max(OPTIONS.least_batches, 2 * (last_new + 1)) and once == 0:
                 break
         return {"starts": used, "once": once, "unseen": unseen}
 

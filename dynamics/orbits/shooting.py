@@ -13,11 +13,11 @@ from base import Array, Cost, Faults, Stopwatch, part, quantity, record
 from dynamics.flow.flows import flow_of
 from dynamics.flow.protocol import Flow, MapResult
 from dynamics.model.limits import NEWTON_STEPS, ORBIT_PERIODS, TRANSIENT
+from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import EPS, Oscillator
 from dynamics.model.states import checked_state
 from dynamics.orbits.multiple_shooting import shoot_in_stretches
 
-FAR = 1e6  # stretch of the map beyond which one shot loses too many digits
 LONG = 200  # cells of an orbit that many shots are tried for, too, where one shot fails
 
 
@@ -176,7 +176,7 @@ def find_orbit(
     stretch = float(np.max(np.abs(image.jacobian)))
     residual = history[-1]
     good = bool(residual <= flow.noise * scale * max(1.0, stretch) and residual <= 1e-6 * scale)
-    lost = bool(image.message) or not stretch < FAR
+    lost = bool(image.message) or not stretch < OPTIONS.shot_stretch
     if lost or not good:
         start = x if np.all(np.isfinite(x)) else state
         orbit = _in_stretches(oscillator, flow, start, n, limit, size, lost, watch, used)
@@ -188,7 +188,7 @@ def find_orbit(
         residual = float(np.max(np.abs(image.state - x)))
         finer = flow.finer().follow(x, n, derivatives=False)
         error = float(np.max(np.abs(newton_step(image.jacobian, finer.state - x)))) / scale
-        good = error < 1e-3 and scale < 1e9 * size
+        good = error < OPTIONS.orbit_error and scale < 1e9 * size
         if good:
             message = f"converged in {len(history) - 1} iterations"
             if n != periods:
@@ -219,7 +219,7 @@ def _in_stretches(
         return None
     nodes = chain.nodes
     scale = max(float(np.max(np.abs(nodes))), 1e-300)
-    if not (chain.error < 1e-3 and scale < 1e9 * size):
+    if not (chain.error < OPTIONS.orbit_error and scale < 1e9 * size):
         return None
     starts = nodes[:: len(nodes) // n]
     least = next(
