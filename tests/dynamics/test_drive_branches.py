@@ -12,6 +12,7 @@ from dynamics import (
     FourierStiffness,
     GearOscillator,
     continue_branch,
+    diagram,
     doubled_orbit,
     find_orbit,
     sweep,
@@ -107,3 +108,24 @@ def test_an_impact_that_passes_the_start_of_the_period_ends_no_branch(free, freq
     assert theirs.converged
     assert ours.multipliers[[0, -1]] == pytest.approx(theirs.multipliers[[0, -1]], abs=1e-8)
     assert np.all(np.diff(ours.values) > 0.0)  # never back at a corner
+
+
+def test_two_freedoms_have_the_diagram_of_their_mesh():
+    """A second freedom that touches nothing: special points are those of the pair, those of four multipliers too."""
+    gear = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.64, half_backlash=0.2)
+    drive = DriveOscillator(
+        np.diag([1.0, 2.0]), np.diag([0.0, 0.2]), np.diag([0.0, 0.7]), [1.0, 0.0], gear.stiffness,
+        2.0 * gear.damping_ratio, [gear.mean_force, 0.3], gear.error_amplitude, gear.frequency, gear.half_backlash,
+    )  # fmt: skip
+    asked = {"bounds": (0.63, 0.67), "periods": (1,), "searches": 1, "swept": 3, "max_period": 1}
+    theirs, ours = (diagram(one, "frequency", **asked) for one in (gear, drive))
+    assert ours.converged
+    here, there = (
+        sorted((kind, label, value, x, v) for _, kind, value, label, x, v in one.table())
+        for one in (ours, theirs)
+    )
+    assert [row[:2] for row in here] == [row[:2] for row in there] != []
+    assert np.array([row[2:] for row in here]) == pytest.approx(
+        np.array([row[2:] for row in there]), abs=1e-8
+    )
+    assert all(branch.multipliers.shape[1] == 4 for branch in ours.branches)
