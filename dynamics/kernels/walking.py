@@ -13,11 +13,46 @@ from dynamics.kernels.compiling import (
     FloatArray,
     Space,
     Table,
+    helper,
     plain_kernel,
 )
 from dynamics.kernels.flow import expand
 from dynamics.kernels.regions import enter, leave, note_extremum, start
 from dynamics.kernels.roots import copy, find_turn, poly
+
+
+@helper
+def note_turns(
+    rest: FloatArray, spare: FloatArray, g: FloatArray, b: FloatArray, choose: FloatArray, t: float, way: int,
+    now: float, region: int, par: FloatArray, h: float, turns: FloatArray, turned: int,
+) -> tuple[int, int]:  # fmt: skip
+    """Note the extrema within t of the motion `rest`, which is used up, `now` cells from the start.
+
+    Returns which way the motion goes on and the number of extrema; what does not fit in `turns` is counted alone.
+    """
+    done = 0.0
+    while len(turns) > 0:
+        way, step = find_turn(rest, spare, g, b, choose, t - done, way if done == 0.0 else ZERO)
+        if step < 0.0:
+            break
+        done += step
+        if turned < len(turns):
+            note_extremum(turns[turned], (now + done) * h, rest, region, par, h)
+        turned += 1
+        if step == 0.0:
+            way, done = ZERO, 0.0
+    return way, turned
+
+
+@helper
+def note_impact(events: FloatArray, happened: int, tau: float, x: float, v: float, region: int) -> int:
+    """Note a crossing of the backlash's limit and the region entered, if it fits; returns the number of crossings."""
+    if happened < len(events):
+        events[happened, 0] = tau
+        events[happened, 1] = x
+        events[happened, 2] = v
+        events[happened, 3] = region
+    return happened + 1
 
 
 @plain_kernel
@@ -58,30 +93,15 @@ def walk(
                 samples[filled, 0] = f + region * d
                 samples[filled, 1] = df / h
                 filled += 1
-            done = 0.0
             copy(a, rest)
-            while len(turns) > 0:
-                way, step = find_turn(rest, spare, g, b, choose, t - done, way if done == 0.0 else ZERO)
-                if step < 0.0:
-                    break
-                done += step
-                if turned < len(turns):
-                    note_extremum(turns[turned], (now + done) * h, rest, region, par, h)
-                turned += 1
-                if step == 0.0:
-                    way, done = ZERO, 0.0
+            way, turned = note_turns(rest, spare, g, b, choose, t, way, now, region, par, h, turns, turned)
             y, w, _ = poly(a, ZERO, t)
             s = 0.5 if hit == 0 else s + t
             if hit == 0:
                 break
             region, y = enter(region, hit, par)
             fresh = hit
-            if happened < len(events):
-                events[happened, 0] = (global_cell + s + 0.5) * h
-                events[happened, 1] = hit * d
-                events[happened, 2] = w / h
-                events[happened, 3] = region
-            happened += 1
+            happened = note_impact(events, happened, (global_cell + s + 0.5) * h, hit * d, w / h, region)
             if s >= 0.5:
                 break
         if not (abs(y) < 1e150 and abs(w) < 1e150):

@@ -17,8 +17,9 @@ from dynamics.kernels.compiling import (
 )
 from dynamics.kernels.drives.expanding import evaluate
 from dynamics.kernels.drives.propagating import Drive, aim, enter_cells, leave_cells, room_for
-from dynamics.kernels.regions import enter, leave, note_extremum
-from dynamics.kernels.roots import copy, find_turn
+from dynamics.kernels.regions import enter, leave
+from dynamics.kernels.roots import copy
+from dynamics.kernels.walking import note_impact, note_turns
 
 
 @kernel
@@ -52,30 +53,15 @@ def walk(
                 evaluate(a, max(at, 0.0), end)
                 leave_cells(par, h, region, end, samples[filled])
                 filled += 1
-            done = 0.0
             copy(a[0], rest)
-            while len(turns) > 0:
-                way, step = find_turn(rest, spare, g, b, choose, t - done, way if done == 0.0 else ZERO)
-                if step < 0.0:
-                    break
-                done += step
-                if turned < len(turns):
-                    note_extremum(turns[turned], (now + done) * h, rest, region, par, h)
-                turned += 1
-                if step == 0.0:
-                    way, done = ZERO, 0.0
+            way, turned = note_turns(rest, spare, g, b, choose, t, way, now, region, par, h, turns, turned)
             evaluate(a, t, z)
             s = 1.0 if hit == 0 else s + t
             if hit == 0:
                 break
             region, z[0] = enter(region, hit, par)
             fresh = hit
-            if happened < len(events):
-                events[happened, 0] = (global_cell + s) * h
-                events[happened, 1] = hit * d
-                events[happened, 2] = z[m] / h
-                events[happened, 3] = region
-            happened += 1
+            happened = note_impact(events, happened, (global_cell + s) * h, hit * d, z[m] / h, region)
             if s >= 1.0:
                 break
         size = 0.0
