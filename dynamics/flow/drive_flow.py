@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from base import Array, Cost, Integers, Stopwatch, in_blocks
+from base import Array, Cost, Integers, Stopwatch
 from dynamics.flow.exact_flow import REASONS
 from dynamics.flow.protocol import MapResult, PartedFlow, Stretches, lost_motion
 from dynamics.kernels.drives import STRIDE
@@ -175,23 +175,22 @@ class DriveFlow(PartedFlow):
         )
 
     def settle(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
-        """Follow starts until they stay near known attractors."""
-        from dynamics.kernels.drives.propagating import settle
-
+        """Follow starts until they stay near known attractors, in the coordinates of the flow."""
         osc, n = self.oscillator, self.oscillator.dimension
         moved = osc.lowered(starts, np.zeros(len(starts)))
         places = np.hstack([osc.lowered(homes[:, :n], np.zeros(len(homes))), homes[:, n:]])
         # so near in the coordinates of the flow that states are as near as asked
         near = radius / float(np.max(np.sum(np.abs(osc.coordinates.up), axis=1)))
-
-        table = self.in_strides
-
-        def settle_block(first: int, last: int) -> int:
-            return int(settle(table, moved[first:last], places, near, limit, labels[first:last]))
-
-        used = in_blocks(len(moved), settle_block, int(np.count_nonzero(labels == -1)))
+        _ = self.in_strides  # made once, before several cores ask for it
+        used = super().settle(moved, places, near, limit, labels)
         starts[:] = osc.lifted(moved, np.zeros(len(moved)))
         return used
+
+    def settle_block(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
+        """As of `settle`, on one core, of starts and attractors in the coordinates of the flow."""
+        from dynamics.kernels.drives.propagating import settle
+
+        return int(settle(self.in_strides, starts, homes, radius, limit, labels))
 
 
 def drive_flow(oscillator: DriveOscillator) -> DriveFlow:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from base import Array, Cost, Faults, Integers, Stopwatch, in_blocks
+from base import Array, Cost, Faults, Integers, Stopwatch
 from dynamics.flow.protocol import MapResult, PartedFlow, Stretches, lost_motion
 from dynamics.model.limits import POSITIVE, REFINEMENT, TAYLOR_DEGREE
 from dynamics.model.oscillator import GearOscillator
@@ -161,18 +161,11 @@ class ExactFlow(PartedFlow):
             flag = int(iterate(*table, *period, at, limit - used, 0, unseen, states[:0], counts[:0]))
         return at, flag or limit, REASONS.get(flag, "")
 
-    def settle(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
-        """Follow starts until they stay near known attractors."""
+    def settle_block(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
+        """As of `settle`, on one core."""
         from dynamics.kernels.searching import settle
 
-        def settle_block(first: int, last: int) -> int:
-            return int(
-                settle(
-                    self.arrays, self.space(), starts[first:last], homes, radius, limit, labels[first:last]
-                )
-            )
-
-        return in_blocks(len(starts), settle_block, int(np.count_nonzero(labels == -1)))
+        return int(settle(self.arrays, self.space(), starts, homes, radius, limit, labels))
 
 
 def sufficient_degree(oscillator: GearOscillator, tolerance: float) -> int:

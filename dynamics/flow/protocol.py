@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Cost, Faults, InputError, Integers, quantity, record
+from base import Array, Cost, Faults, InputError, Integers, in_blocks, quantity, record
 
 
 @record
@@ -163,6 +163,14 @@ class Flow(ABC):
         int
             Periods used.
         """
+        return in_blocks(
+            len(starts),
+            lambda a, b: self.settle_block(starts[a:b], homes, radius, limit, labels[a:b]),
+            int(np.count_nonzero(labels == -1)),
+        )
+
+    def settle_block(self, starts: Array, homes: Array, radius: float, limit: int, labels: Integers) -> int:
+        """As of `settle`, on one core."""
         used = 0
         for i in np.flatnonzero(labels == -1):
             home, wait, distance, period = 0, 0, 0.0, 0
