@@ -108,10 +108,10 @@ def _saddles(oscillator: Oscillator, states: Array, size: float, longest: int, m
             near = orbit.converged and apart(states[k], orbit.points) < 3.0 * RECURRENCE * size
             if not near or not is_direct_saddle(orbit.multipliers):
                 continue
-            known = any(
-                saddle.periods == orbit.periods
-                and apart(orbit.state, saddle.points) < OPTIONS.same_orbit * size
-                for saddle in met
-            )
-            if not known:
+            if not any(same_orbit(saddle, orbit, size) for saddle in met):
                 met.append(orbit)
+
+
+def same_orbit(a: Orbit, b: Orbit, size: float) -> bool:
+    """Whether two orbits are one, perhaps from another period on."""
+    return a.periods == b.periods and apart(b.state, a.points) < OPTIONS.same_orbit * size

@@ -5,14 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from base import Array, Booleans, Faults
-from dynamics.attraction.accessible import accessible_saddles
+from dynamics.attraction.accessible import accessible_saddles, same_orbit
 from dynamics.attraction.basins import Attractor
 from dynamics.attraction.known_attractors import KnownAttractors
 from dynamics.attraction.manifolds import is_direct_saddle
 from dynamics.flow.motions import period_map
-from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import Oscillator
-from dynamics.model.states import apart
 from dynamics.motion.sweeps import long_flow
 from dynamics.orbits.shooting import Orbit, find_orbit
 
@@ -95,7 +93,7 @@ def edge_saddles(
             orbit = None if edge is None else _saddle(oscillator, homes, edge, longest)
             if orbit is None:
                 continue
-            same = [k for k, (known, _) in enumerate(met) if _same(known, orbit, homes.size)]
+            same = [k for k, (known, _) in enumerate(met) if same_orbit(known, orbit, homes.size)]
             if same:
                 met[same[0]] = (met[same[0]][0], met[same[0]][1] + 1)
             else:
@@ -138,8 +136,3 @@ def _saddle(oscillator: Oscillator, homes: KnownAttractors, edge: Array, longest
         if orbit.converged and is_direct_saddle(orbit.multipliers) and near:
             return orbit
     return None
-
-
-def _same(a: Orbit, b: Orbit, size: float) -> bool:
-    """Whether two orbits are one, perhaps from another period on."""
-    return a.periods == b.periods and apart(b.state, a.points) < OPTIONS.same_orbit * size

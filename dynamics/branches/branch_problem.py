@@ -15,6 +15,7 @@ from base import Array, Faults
 from dynamics.branches.branch import SpecialPoint
 from dynamics.branches.sizes import WIDTH, Sizes
 from dynamics.branches.step_rules import NEAR
+from dynamics.flow.protocol import Flow
 from dynamics.model.limits import MAX_POINTS, STEP, ordered
 from dynamics.orbits.shooting import floquet_multipliers
 
@@ -158,6 +159,8 @@ class BranchProblem(ABC):
         Range of each parameter.
     scale : float
         Size of the motion, by which the state is measured.
+    tolerance : float, optional
+        Of a step, where the flow takes steps.
     """
 
     oscillator: Any
@@ -166,6 +169,7 @@ class BranchProblem(ABC):
     low: Array
     high: Array
     scale: float
+    tolerance: float | None = None
 
     maps: ClassVar = 1
     """Period maps that a Newton iteration takes."""
@@ -245,8 +249,13 @@ class BranchProblem(ABC):
         return None
 
     @abstractmethod
+    def flow(self, point: Any) -> Flow:
+        """Flow of the oscillator of a point."""
+
     def states(self, point: Any) -> Array:
         """States over the scale after 1, 2, .. n periods, shape (n, size)."""
+        start = point.u[: self.size] * self.scale
+        return np.asarray(self.flow(point).follow(start, self.periods, derivatives=False).states / self.scale)
 
     def phases(self, point: Any) -> list[list[float]]:
         """Unknowns of a point, its orbit taken from each excitation period on, one row each."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import singledispatch
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,6 @@ from dynamics.branches.sizes import size_of
 from dynamics.branches.stepwise_problem import FlowProblem
 from dynamics.flow.flows import flow_of, unserved
 from dynamics.model.drive_oscillator import DriveOscillator
-from dynamics.model.options import OPTIONS
 from dynamics.model.oscillator import GearOscillator
 from dynamics.model.protocol import Oscillator
 from dynamics.model.smooth_oscillator import SmoothOscillator
@@ -99,6 +99,24 @@ def continue_branch(
 
 
 @singledispatch
+def problem_of(
+    oscillator: Oscillator, parameters: tuple[str, ...], periods: int, low: Array, high: Array, scale: float,
+    tolerance: float | None = None,
+) -> Any:  # fmt: skip
+    """Periodic orbits of an oscillator over parameters: the one place where the problem is chosen for its kind.
+
+    Arguments are those of `BranchProblem`. All derivatives are exact for a `GearOscillator`. For a `DriveOscillator`
+    those by the state are; those by parameters and all second ones are differences, good to about 1e-9. A
+    `SmoothOscillator` has one parameter, and no second derivatives.
+    """
+    raise unserved(oscillator)
+
+
+problem_of.register(GearOscillator, ExactBranch)
+problem_of.register(DriveOscillator, DriveProblem)
+problem_of.register(SmoothOscillator, FlowProblem)
+
+
 def orbits_over(
     oscillator: Oscillator,
     parameter: str,
@@ -124,38 +142,9 @@ def orbits_over(
     tolerance : float, optional
         Of a step of the stepwise flow; tables of the exact flow are always the full ones.
     """
-    raise unserved(oscillator)
-
-
-@orbits_over.register
-def _exact(
-    oscillator: GearOscillator, parameter: str, periods: int, bounds: tuple[float, float], scale: float,
-    tolerance: float | None = None,
-) -> ExactBranch:  # fmt: skip
-    return ExactBranch(oscillator, (parameter,), periods, *_ends(bounds), scale)
-
-
-@orbits_over.register
-def _of_drive(
-    oscillator: DriveOscillator, parameter: str, periods: int, bounds: tuple[float, float], scale: float,
-    tolerance: float | None = None,
-) -> DriveProblem:  # fmt: skip
-    return DriveProblem(oscillator, (parameter,), periods, *_ends(bounds), scale)
-
-
-@orbits_over.register
-def _stepwise(
-    oscillator: SmoothOscillator, parameter: str, periods: int, bounds: tuple[float, float], scale: float,
-    tolerance: float | None = None,
-) -> FlowProblem:  # fmt: skip
-    step_tolerance = OPTIONS.step_tolerance if tolerance is None else tolerance
-    return FlowProblem(oscillator, (parameter,), periods, *_ends(bounds), scale, step_tolerance)
-
-
-def _ends(bounds: tuple[float, float]) -> tuple[Array, Array]:
-    """Range of the one parameter, as problems take it."""
-    low, high = bounds
-    return np.array([low], dtype=np.float64), np.array([high], dtype=np.float64)
+    low, high = (np.array([end], dtype=np.float64) for end in bounds)
+    problem: BranchProblem = problem_of(oscillator, (parameter,), periods, low, high, scale, tolerance)
+    return problem
 
 
 def doubled_orbit(

@@ -13,7 +13,7 @@ from base import Array, Integers
 from dynamics.branches.bends import Bend
 from dynamics.branches.branch_problem import BranchProblem, MapPoint, match_extrema
 from dynamics.branches.step_rules import touches_twice
-from dynamics.flow.exact_flow import DEGREE, tabulated
+from dynamics.flow.exact_flow import DEGREE, ExactFlow, tabulated
 from dynamics.model.oscillator import MAX_CELLS, GearOscillator, cells_per_period
 from dynamics.model.protocol import EPS
 
@@ -142,10 +142,9 @@ class OrbitProblem(BranchProblem):
         fold, flip = shrinking - turning, shrinking + turning
         return Bend(point.derivative, point.second, fold, flip, shrinking, point.extrema_slope)
 
-    def states(self, point: MapPoint) -> Array:
-        """X and V over the scale after each period."""
-        flow = tabulated(self._packed(point.u), self._cells(point.u, 1))
-        return flow.follow(point.u[:2] * self.scale, self.periods, derivatives=False).states / self.scale
+    def flow(self, point: MapPoint) -> ExactFlow:
+        """Tables of the oscillator of a point."""
+        return tabulated(self._packed(point.u), self._cells(point.u, 1))
 
     def reach(self, u: Array) -> tuple[float, float]:
         """Range of the one parameter, around that of the unknowns, in which a period has as many cells.

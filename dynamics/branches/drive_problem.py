@@ -144,25 +144,20 @@ class DriveProblem(PeriodMap):
         extrema = turns[:, :3]
         extrema[:, 0] = np.mod(extrema[:, 0] / (here.period * self.periods), 1.0)
         levels = np.array([1.0] if here.one_sided else [1.0, -1.0]) * here.half_backlash
-        counts = (int(image.counts[:, 0].sum()), int(image.counts[:, 1].sum()))
         return DrivePoint(
             u.copy(), self.values(u), here.period, image.state / self.scale, image.jacobian,
-            math.exp(image.log_determinant), counts, levels, extrema, state=state, end=image.state,
+            math.exp(image.log_determinant), image.impacts, levels, extrema, state=state, end=image.state,
             course=self._course(here, state, image),
         )  # fmt: skip
 
-    def states(self, point: MapPoint) -> Array:
-        """States over the scale after each period."""
-        flow = self._flow(self.at(point.u))
-        image = flow.follow(point.u[: self.size] * self.scale, self.periods, derivatives=False)
-        return image.states / self.scale
+    def flow(self, point: MapPoint) -> DriveFlow:
+        """Tables of the oscillator of a point."""
+        here: DriveOscillator = self.at(point.u)
+        return tabulated(here, math.ceil(here.cells) * self.refinement)
 
     def refined(self) -> DriveProblem:
         """The same with half the cells."""
         return replace(self, refinement=2 * self.refinement)
-
-    def _flow(self, here: DriveOscillator) -> DriveFlow:
-        return tabulated(here, math.ceil(here.cells) * self.refinement)
 
     def _slope(self, point: DrivePoint, place: int, cells: int) -> Array | None:
         """Derivative of the image by one unknown that is a parameter, over its range.
@@ -198,4 +193,4 @@ class DriveProblem(PeriodMap):
         ends = np.array([0.0, self.periods * here.period])
         y = here.contact_motion(ends, np.stack([state, image.state]))[0]
         sides = np.sign(here.deflection(y)).astype(int)
-        return (*image.counts.sum(axis=0).tolist(), *sides.tolist())
+        return (*image.impacts, *sides.tolist())

@@ -10,9 +10,9 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, InputError, Stopwatch, quantity, record
 from dynamics.branches.branch import UNBOUNDED, SpecialPoint, of_kind
 from dynamics.branches.branch_problem import Steps, checked_range
+from dynamics.branches.continuation import problem_of
 from dynamics.branches.locus_predictor import both_ways, joined
 from dynamics.branches.locus_tracing import DoublePoint, LocusTracer
-from dynamics.branches.sensitivity import special_problem
 from dynamics.branches.sizes import size_of
 from dynamics.branches.special_orbits import Condition, special_orbit
 from dynamics.model.arrays import AsArray
@@ -134,7 +134,7 @@ def continue_locus(
         steps = Steps(step, max_step, min_step, max_points)
         steps.check(faults)
     low, high = np.array(ranges).T
-    problem = special_problem(
+    problem = problem_of(
         start, parameters, point.periods, low, high, size_of(start, point.state, point.periods)
     )
     condition = Condition.of(start, point)

@@ -11,7 +11,7 @@ import numpy as np
 from base import Array
 from dynamics.branches.branch import SpecialPoint
 from dynamics.branches.branch_problem import MapPoint
-from dynamics.branches.sensitivity import special_problem
+from dynamics.branches.continuation import problem_of
 from dynamics.branches.special_orbits import Condition, special_orbit
 from dynamics.model.protocol import EPS, PeriodicOscillator, periodic_only
 from dynamics.model.states import scale_of
@@ -59,12 +59,12 @@ class Mark:
 
         The point solves G = 0: the orbit closes and its condition holds. With the columns for the state and the
         parameter in A and those for the others in b, the change is :math:`-A^{-1} b`; nan where A is singular, the
-        point cannot be evaluated, or another parameter may not change. Entries are as good as of `special_problem`.
+        point cannot be evaluated, or another parameter may not change. Entries are as good as of `problem_of`.
         """
         here = self.oscillator.with_parameter(self.parameter, self.value)
         low = np.array([self.value, *(here.get(n) for n in names)])
         state, size = self.place[:-1], len(self.place)
-        problem = special_problem(
+        problem = problem_of(
             here, (self.parameter, *names), self.periods, low, low + 1.0, scale_of(here, state)
         )
         at = problem.evaluate(problem.unknowns(state, low))
@@ -90,7 +90,7 @@ class Mark:
         if not (np.all(np.isfinite(guess)) and (self.parameter != "frequency" or guess[-1] > 0.0)):
             return None
         scale = scale_of(there, self.place[:-1])
-        problem = special_problem(
+        problem = problem_of(
             there, (self.parameter,), self.periods, np.zeros(1), np.array([max(abs(guess[-1]), 1e-3)]), scale
         )
         point = special_orbit(problem, self.condition, problem.unknowns(guess[:-1], guess[-1:]))
@@ -263,7 +263,7 @@ def _special(mark: Mark, like: SpecialPoint) -> SpecialPoint | None:
     """Record of the point that a mark stands at."""
     here = mark.oscillator.with_parameter(mark.parameter, mark.value)
     low, state = np.zeros(1), mark.place[:-1]
-    problem = special_problem(
+    problem = problem_of(
         here, (mark.parameter,), mark.periods, low, np.array([mark.value]), scale_of(here, state)
     )
     place = problem.unknowns(state, mark.place[-1:])

@@ -30,15 +30,9 @@ def bracketed(
     """
     from scipy.optimize import brentq
 
-    def known(value: float) -> float:
-        measured = measure(value)
-        if not math.isfinite(measured):
-            raise _LostError
-        return measured
-
     try:
-        return float(brentq(known, low, high, xtol=xtol, rtol=rtol, maxiter=100))
-    except (_LostError, RuntimeError, ValueError):  # not within the trials; the sign does not change
+        return float(brentq(measure, low, high, xtol=xtol, rtol=rtol, maxiter=100))
+    except (RuntimeError, ValueError):  # not within the trials; lost, or the sign does not change
         return None
 
 
@@ -76,7 +70,3 @@ def along_chord(
 
     root = bracketed(value, 0.0, 1.0, xtol=xtol)
     return None if root is None or not math.isfinite(value(root)) else (points[root], root)
-
-
-class _LostError(Exception):
-    """The function has no value there."""

@@ -2,38 +2,15 @@
 
 from __future__ import annotations
 
-from functools import singledispatch
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
 from base import Array, Faults, quantity, record
-from dynamics.branches.corrector import OrbitProblem
-from dynamics.branches.drive_problem import DriveProblem
-from dynamics.flow.flows import unserved
+from dynamics.branches.continuation import problem_of
 from dynamics.flow.protocol import lost_motion
-from dynamics.model.drive_oscillator import DriveOscillator
 from dynamics.model.limits import PERIODS
-from dynamics.model.oscillator import GearOscillator
 from dynamics.model.protocol import PeriodicOscillator, periodic_only
 from dynamics.model.states import checked_state
-
-
-@singledispatch
-def special_problem(
-    oscillator: PeriodicOscillator, parameters: tuple[str, ...], periods: int, low: Array, high: Array, scale: float
-) -> Any:  # fmt: skip
-    """Orbits of an oscillator over several parameters, as `special_orbit` takes them; arguments of `BranchProblem`.
-
-    All derivatives are exact for a `GearOscillator`. For a `DriveOscillator` those by the state are; those by
-    parameters and all second ones are differences, good to about 1e-9.
-    """
-    raise unserved(oscillator)
-
-
-special_problem.register(GearOscillator, OrbitProblem)
-special_problem.register(DriveOscillator, DriveProblem)
 
 
 @record
@@ -94,7 +71,7 @@ def map_derivatives(
     names = oscillator.parameters if parameters is None else tuple(parameters)
     low = np.array([oscillator.get(name) for name in names])
     # the unknowns are the state and changes of these
-    problem = special_problem(oscillator, names, n, low, low + 1.0, 1.0)
+    problem = problem_of(oscillator, names, n, low, low + 1.0, 1.0)
     point = problem.evaluate(problem.unknowns(at, low))
     if point is None:
         raise lost_motion(at, "the motion grows without bound")

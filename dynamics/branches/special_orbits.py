@@ -67,7 +67,7 @@ class Condition:
         return float(point.extrema[at, 1] - level) / problem.scale
 
     def rows(self, problem: Any, point: Any) -> Array:
-        """Derivatives of map less state and of the measure by the unknowns of a `special_problem`."""
+        """Derivatives of map less state and of the measure by the unknowns of a `problem_of`."""
         bend = problem.bend(point)
         closing = bend.first - np.eye(point.size, len(point.u))
         if self.kind in PRODUCTS:
@@ -93,7 +93,7 @@ def special_orbit(
     """Newton's method for an orbit that meets a condition; None if it does not arrive.
 
     With one parameter the orbit is isolated. With two, it is sought in the plane across . (u - guess) = 0. Derivatives
-    are those of a `special_problem`; where they are exact convergence is quadratic away from grazings.
+    are those of a `problem_of`; where they are exact convergence is quadratic away from grazings.
     """
     u, noise = guess, noise_of(guess, problem.periods)
     best, kept = np.inf, None

@@ -13,6 +13,7 @@ from dynamics.branches.branch import SpecialPoint
 from dynamics.branches.branch_problem import BranchProblem, MapPoint
 from dynamics.branches.crossings import Crossing, bracketed_orbit, special_point
 from dynamics.flow.stepwise_flow import NOISE, StepwiseFlow
+from dynamics.model.options import OPTIONS
 from dynamics.model.smooth_oscillator import SmoothOscillator
 
 AHEAD = 1e-6  # along a branch, for slopes of its multipliers
@@ -21,7 +22,7 @@ XTOL = 1e-14  # width of the bracket of a special point, over the chord
 
 @dataclass(frozen=True, eq=False)
 class PeriodMap(BranchProblem):
-    """A flow over one parameter, to be made with `evaluate` and `states`; attributes as in `BranchProblem`."""
+    """A flow over one parameter, to be made with `evaluate` and `flow`; attributes as in `BranchProblem`."""
 
     @property
     def noise(self) -> float:
@@ -90,12 +91,16 @@ class FlowProblem(PeriodMap):
     """Periodic orbits of the stepwise flow; attributes as in `BranchProblem`."""
 
     oscillator: SmoothOscillator
-    tolerance: float
+
+    @property
+    def step_tolerance(self) -> float:
+        """Tolerance of a step."""
+        return OPTIONS.step_tolerance if self.tolerance is None else self.tolerance
 
     @property
     def noise(self) -> float:
         """What the choice of steps leaves."""
-        return NOISE * self.tolerance
+        return NOISE * self.step_tolerance
 
     def evaluate(self, u: Array) -> MapPoint | None:
         """Image of the unknowns; None if the parameter is not allowed there or the motion is lost."""
@@ -103,7 +108,7 @@ class FlowProblem(PeriodMap):
             here = self.at(u)
         except InputError:  # the continuation tries a smaller step
             return None
-        flow = StepwiseFlow(here, self.tolerance, self.parameters, extrema=True)
+        flow = StepwiseFlow(here, self.step_tolerance, self.parameters, extrema=True)
         image = flow.follow(u[:2] * self.scale, self.periods)
         if image.message:
             return None
@@ -115,18 +120,15 @@ class FlowProblem(PeriodMap):
         upright = counted[counted[:, 1] == 0.0]
         places = upright[:, 3].astype(int)
         levels = np.where(places >= 0, upright[:, 2] * here.law.values[places], 0.0)
-        counts = (int(image.counts[:, 0].sum()), int(image.counts[:, 1].sum()))
         return MapPoint(
             u.copy(), self.values(u), here.period, image.state / self.scale, derivative,
-            math.exp(image.log_determinant), counts, levels, extrema,
+            math.exp(image.log_determinant), image.impacts, levels, extrema,
         )  # fmt: skip
 
-    def states(self, point: MapPoint) -> Array:
-        """X and V over the scale after each period."""
-        flow = StepwiseFlow(self.at(point.u), self.tolerance)
-        image = flow.follow(point.u[:2] * self.scale, self.periods, derivatives=False)
-        return image.states / self.scale
+    def flow(self, point: MapPoint) -> StepwiseFlow:
+        """Flow of the oscillator of a point."""
+        return StepwiseFlow(self.at(point.u), self.step_tolerance)
 
     def refined(self) -> FlowProblem:
         """The same with an eighth of the tolerance."""
-        return replace(self, tolerance=max(self.tolerance / 8.0, 2e-15))
+        return replace(self, tolerance=max(self.step_tolerance / 8.0, 2e-15))

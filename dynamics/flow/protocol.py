@@ -55,6 +55,11 @@ class MapResult:
         return np.asarray(self.states[-1])
 
     @property
+    def impacts(self) -> tuple[int, int]:
+        """Exits from X > D and entries into X < -D in all."""
+        return int(self.counts[:, 0].sum()), int(self.counts[:, 1].sum())
+
+    @property
     def converged(self) -> bool:
         """Whether the motion could be followed."""
         return not self.message

@@ -251,8 +251,7 @@ def make_orbit(
         )  # fmt: skip
     determinant = math.exp(image.log_determinant)
     multipliers = multipliers_of(image.jacobian, determinant)
-    counts = (int(image.counts[:, 0].sum()), int(image.counts[:, 1].sum()))
-    stable = is_stable(multipliers)
+    stable, counts = is_stable(multipliers), image.impacts
     return Orbit(
         oscillator, x, n, multipliers, stable, motion_label(n, counts, stable), counts, image.jacobian, determinant,
         residual, error, cost, True, message, history, none if nodes is None else nodes, tolerance,
