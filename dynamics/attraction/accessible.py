@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from base import Array, InputError
-from dynamics.attraction.escapes import STRETCH, Cover
+from dynamics.attraction.covers import Cover
+from dynamics.attraction.escapes import STRETCH
 from dynamics.attraction.manifolds import is_direct_saddle
 from dynamics.flow.protocol import Flow
 from dynamics.model.options import OPTIONS

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, InputError, Integers, Stopwatch, part, quantity, record
+from dynamics.attraction.covers import Cover
 from dynamics.attraction.known_attractors import KnownAttractors
 from dynamics.flow.protocol import Flow
 from dynamics.model.arrays import AsArray
@@ -21,7 +22,7 @@ from dynamics.orbits.shooting import Orbit, find_orbit
 
 UNDECIDED, UNBOUNDED, UNSETTLED = -1, -2, -3
 SOME = 5  # part of that after which a motion of a train that did not creep to an orbit is looked at again
-SIEVE = 64  # cells along each side of the sieve that holds a chaotic attractor
+SIEVE = 64, 1  # cells along each side of a chaotic attractor and around it, which a motion on it stays in
 
 
 @record
@@ -213,7 +214,7 @@ class _Found:
         self.points: list[Array] = []
         self.periods = self.iterations = self.trials = 0
         self.patience = OPTIONS.patience * limit
-        self.sieves: list[_Sieve] = []
+        self.chaos: list[Cover] = []
 
     def follow(self, state: Array, wait: int) -> int:
         """Attractor that one state reaches, noted if it is new; or one of the negative labels."""
@@ -227,7 +228,8 @@ class _Found:
 
     def wandering(self, states: Array) -> int:
         """Label of a motion that does not repeat: chaotic, on its way to an orbit after all, or unsettled."""
-        if self.oscillator.decay == 0.0 or any(sieve.holds(states) for sieve in self.sieves):
+        late = self.oscillator.in_plane(states[len(states) // 2 :])
+        if self.oscillator.decay == 0.0 or not all(np.any(cover.outside(late)) for cover in self.chaos):
             return self.note(None, states)
         several = self.oscillator.dimension > 2
         if several and (label := self.creep(states)) >= 0:
@@ -246,7 +248,7 @@ class _Found:
         if n:
             return self.polish(end, n)
         if exponent > OPTIONS.sure * error:
-            self.sieves.append(_Sieve(motion))
+            self.chaos.append(Cover.of(self.oscillator.in_plane(motion), *SIEVE))
             return self.note(None, states)
         n, _, more = creeping(self.oscillator, self.flow, end, self.longest)
         return self.polish(end, n) if n and more else UNSETTLED
@@ -316,27 +318,3 @@ class _Found:
             scatter = float(np.sqrt(share * (1.0 - share) / len(labels)))
             records.append(Attractor(orbit.label if orbit else APERIODIC, states, orbit, share, scatter))
         return tuple(records)
-
-
-class _Sieve:
-    """The cells that a chaotic motion visits in the first displacement and its speed, and their neighbours."""
-
-    def __init__(self, motion: Array) -> None:
-        self.pair = [0, motion.shape[1] // 2]
-        motion = motion[:, self.pair]
-        self.low = motion.min(axis=0)
-        self.size = np.maximum((motion.max(axis=0) - self.low) / SIEVE, 1e-300)
-        visited = np.zeros((SIEVE + 4, SIEVE + 4), dtype=bool)
-        visited[tuple(self._cells(motion).T)] = True
-        self.open = visited.copy()
-        for shift in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1)):
-            self.open |= np.roll(visited, shift, axis=(0, 1))
-
-    def _cells(self, states: Array) -> Integers:
-        """Indices of the cells; what lies far outside is put in the margin, which remains closed."""
-        at = np.clip((states - self.low) / self.size + 2.0, 0.0, SIEVE + 3.0)
-        return np.asarray(at, dtype=np.int64)
-
-    def holds(self, states: Array) -> bool:
-        """Whether a motion has reached it: all of the later half of its states."""
-        return bool(np.all(self.open[tuple(self._cells(states[len(states) // 2 :, self.pair]).T)]))

@@ -9,14 +9,14 @@ narrow as the periods that are spent, and the law says how many a narrower one n
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Booleans, Cost, Faults, InputError, Stopwatch, part, quantity, record
+from base import Array, Cost, Faults, InputError, Stopwatch, part, quantity, record
 from base.results import EXACT
 from dynamics.attraction.basins import Attractor
+from dynamics.attraction.covers import Cover
 from dynamics.model.limits import PERIODS, STARTS, ordered
 from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import Oscillator, settling_periods
@@ -60,37 +60,6 @@ class ChaosEnd:
     def rates(self) -> Array:
         """Escapes per period at each value."""
         return np.asarray(self.escapes / np.maximum(self.followed, 1.0))
-
-
-@dataclass(frozen=True, eq=False)
-class Cover:
-    """Cells of the plane that an attractor passes, with a margin."""
-
-    low: Array
-    size: Array
-    cells: Booleans
-
-    @classmethod
-    def of(cls, states: Array) -> Cover:
-        """Cover of states (n, 2)."""
-        low, high = states.min(axis=0), states.max(axis=0)
-        side, margin = OPTIONS.cover_cells, OPTIONS.cover_margin
-        size = np.maximum(high - low, 1e-12) / side
-        marked = np.zeros((side + 2 * margin + 1,) * 2, dtype=bool)
-        at = np.minimum(((states - low) / size).astype(int), side - 1) + margin
-        marked[at[:, 0], at[:, 1]] = True
-        grown = np.zeros_like(marked)
-        for i in range(-margin, margin + 1):
-            for j in range(-margin, margin + 1):
-                grown |= np.roll(marked, (i, j), axis=(0, 1))
-        return cls(low - margin * size, size, grown)
-
-    def outside(self, states: Array) -> Booleans:
-        """Which of the states (n, 2) lie in no cell."""
-        at = np.floor((states - self.low) / self.size)
-        inside = np.all((at >= 0) & (at < len(self.cells)), axis=1)
-        place = np.where(inside[:, None], at, 0).astype(int)
-        return np.asarray(~(inside & self.cells[place[:, 0], place[:, 1]]))
 
 
 def chaos_end(

@@ -19,7 +19,7 @@ from dynamics import (
     sweep,
 )
 from dynamics.attraction import basins as basin_search
-from dynamics.attraction.escapes import Cover
+from dynamics.attraction.covers import Cover
 from dynamics.motion import exponents, spectra, sweeps
 from dynamics.motion.sweeps import repeat_after
 
