@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, InputError, Stopwatch
-from dynamics.branches.branch import GOOD_ENDS, MEETS, UNBOUNDED, Branch, SpecialPoint
+from dynamics.branches.branch import GOOD_ENDS, MEETS, Branch, SpecialPoint
 from dynamics.branches.branch_problem import BranchProblem, Heading, MapPoint, Steps
 from dynamics.branches.crossings import find_crossings, rejoining_point
 from dynamics.branches.locus_predictor import Tracer, both_ways, joined
@@ -84,7 +84,7 @@ class _Walker(Tracer):
         progress: Callable[[int, float], None] | None,
     ) -> None:  # fmt: skip
         super().__init__(problem, start, steps)
-        self.progress, self.size = progress, max(problem.scale, problem.oscillator.floor)
+        self.progress = progress
         self.states = [start.u[: start.size] * problem.scale]
         self.special: list[SpecialPoint] = []
         self.tangent, self.bend = start.tangent(along), np.zeros(len(along))
@@ -117,19 +117,20 @@ class _Walker(Tracer):
         return bool(taken.whole)
 
     @property
+    def least(self) -> float:  # type: ignore[override]
+        """Size over the scale below which a motion is measured by a smaller one."""
+        return SMALL if self.problem.driven < SMALL else 0.0
+
+    @property
     def sizes(self) -> Sizes:
         """Sizes of motions that the scale serves."""
-        least = SMALL if self.problem.driven < SMALL else 0.0
-        return Sizes(least, min(LARGE, OPTIONS.unbounded * self.size / self.problem.scale))
+        return Sizes(self.least, min(LARGE, OPTIONS.unbounded * self.size / self.problem.scale))
 
     def attempt(self, last: MapPoint) -> _Step | None:
         """Next point with what lies before it; at a bound, the point on it."""
-        size = self.problem.size_of(last.u)
-        if size * self.problem.scale > OPTIONS.unbounded * self.size:
-            self.ended = UNBOUNDED
+        last = self.measured(last)
+        if last is None:
             return None
-        if not self.sizes.least <= size <= self.sizes.most:
-            last = self._magnified(last, size)
         aim = self.aimed(last, last.u + self.step * (self.tangent + self.step * self.bend))
         if aim is None:
             return None
@@ -200,19 +201,14 @@ class _Walker(Tracer):
             return np.zeros(point.size)
         return np.asarray(self.problem.half_way(point) - point.u[: point.size])
 
-    def _magnified(self, last: MapPoint, factor: float) -> MapPoint:
-        """The point measured by its new size, of which steps and tolerances are shares, if it is found again."""
-        larger = self.problem.magnified(factor)
+    def met_again(self, larger: BranchProblem, last: MapPoint, along: Array) -> MapPoint | None:
+        """The orbit at the same value of the parameter."""
         again: MapPoint | None = larger.correct(larger.unknowns(self.states[-1], last.value), larger.flat)
-        if again is None:
-            return last
-        self.problem, self.points[-1] = larger, again
-        shrink = np.append(np.full(last.size, 1.0 / factor), 1.0)
-        self.phases = (np.array(self.phases) * shrink).tolist()
-        self.bend = np.zeros(len(shrink))
-        self.half = self.half / factor
-        self.tangent = again.tangent(self.tangent * shrink)
         return again
+
+    def rescale(self, again: MapPoint, along: Array, factor: float) -> None:
+        """Without a bend: the next step is straight."""
+        self.bend, self.half, self.tangent = np.zeros(len(along)), self.half / factor, again.tangent(along)
 
     def _between(
         self, last: MapPoint, new: MapPoint, tangent: Array, half: Array, patient: bool

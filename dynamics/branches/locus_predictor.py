@@ -9,7 +9,10 @@ from typing import Any, ClassVar, TypeVar
 import numpy as np
 
 from base import Array
+from dynamics.branches.branch import UNBOUNDED
 from dynamics.branches.branch_problem import MapPoint, Steps
+from dynamics.branches.sizes import LARGE
+from dynamics.model.options import OPTIONS
 
 T = TypeVar("T")
 W = TypeVar("W", bound="Tracer")
@@ -30,12 +33,15 @@ class Tracer(ABC):
 
     flat: ClassVar = 0.0
     """Slope of a parameter along the curve below which it is not aimed at the end of its range."""
+    least = 0.0
+    """Size over the scale below which a motion is measured by a smaller one."""
     tangent: Array
 
     def __init__(self, problem: Any, start: Any, steps: Steps) -> None:
         self.problem, self.steps, self.step = problem, steps, steps.first
         self.points = [start]
         self.phases = problem.phases(start)
+        self.size = max(problem.scale, problem.oscillator.floor)
         self.ended = ""
 
     def run(self) -> None:
@@ -76,6 +82,35 @@ class Tracer(ABC):
     @abstractmethod
     def why(self, last: Any) -> str:
         """Why no step was possible."""
+
+    def measured(self, last: MapPoint) -> Any:
+        """The last point, by the present size of the motion as scale, of which steps and tolerances are shares.
+
+        None, and `ended` set, if the motion grows without bound; the point as it is if it is not met again.
+        """
+        factor = self.problem.size_of(last.u)
+        if factor * self.problem.scale > OPTIONS.unbounded * self.size:
+            self.ended = UNBOUNDED
+            return None
+        if self.least <= factor <= LARGE:
+            return last
+        larger = self.problem.magnified(factor)
+        shrink = np.append(np.full(last.size, 1.0 / factor), np.ones(len(last.values)))
+        again = self.met_again(larger, last, self.tangent * shrink)
+        if again is None:
+            return last
+        self.problem, self.points[-1] = larger, again
+        self.phases = (np.array(self.phases) * shrink).tolist()
+        self.rescale(again, self.tangent * shrink, factor)
+        return again
+
+    @abstractmethod
+    def met_again(self, larger: Any, last: Any, along: Array) -> Any:
+        """The last point in a problem of another scale, `along` the tangent there; None if it is not met."""
+
+    @abstractmethod
+    def rescale(self, again: Any, along: Array, factor: float) -> None:
+        """Measure by the other scale what is kept besides the point."""
 
     def aimed(self, last: MapPoint, guess: Array) -> tuple[Array, Array] | None:
         """A guess and the row across which it is corrected: at the end of a range that end; None if that is reached."""

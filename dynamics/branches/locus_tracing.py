@@ -10,13 +10,10 @@ from typing import Any
 import numpy as np
 
 from base import Array, quantity, record
-from dynamics.branches.branch import UNBOUNDED
 from dynamics.branches.branch_problem import MapPoint, Steps, match_extrema
 from dynamics.branches.locus_predictor import Tracer
 from dynamics.branches.roots import bracketed
-from dynamics.branches.sizes import LARGE
 from dynamics.branches.special_orbits import Condition, special_orbit
-from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import EPS
 
 
@@ -51,23 +48,16 @@ class LocusTracer(Tracer):
         steps: Steps, progress: Callable[[int, Array], None] | None,
     ) -> None:  # fmt: skip
         super().__init__(problem, start, steps)
-        self.condition, self.progress, self.size = (
-            condition,
-            progress,
-            max(problem.scale, problem.oscillator.floor),
-        )
+        self.condition, self.progress = condition, progress
         self.double: list[DoublePoint] = []
         self.tangent = self._tangent(start, np.append(np.zeros(start.size), [1.0, 1e-3])) * sign
         self.null = _null(start, np.ones(start.size))[1]
 
     def attempt(self, last: MapPoint) -> MapPoint | None:
         """Next point; at a bound, the point on it."""
-        size = self.problem.size_of(last.u)
-        if size * self.problem.scale > OPTIONS.unbounded * self.size:
-            self.ended = UNBOUNDED
+        last = self.measured(last)
+        if last is None:
             return None
-        if size > LARGE:
-            last = self._magnified(last, size)
         aim = self.aimed(last, last.u + self.step * self.tangent)
         if aim is None:
             return None
@@ -86,20 +76,13 @@ class LocusTracer(Tracer):
                 return None
         return new
 
-    def _magnified(self, last: Any, factor: float) -> Any:
-        """The point measured by its new size, of which steps and tolerances are shares, if it is found again."""
-        larger = self.problem.magnified(factor)
-        shrink = np.append(np.full(last.size, 1.0 / factor), [1.0, 1.0])
-        along = self.tangent * shrink
-        again: MapPoint | None = special_orbit(
-            larger, self.condition, larger.unknowns(last.state, last.values), along
-        )
-        if again is None:
-            return last
-        self.problem, self.points[-1] = larger, again
-        self.phases = (np.array(self.phases) * shrink).tolist()
+    def met_again(self, larger: Any, last: Any, along: Array) -> Any:
+        """The special orbit in the plane across the curve."""
+        return special_orbit(larger, self.condition, larger.unknowns(last.state, last.values), along)
+
+    def rescale(self, again: MapPoint, along: Array, factor: float) -> None:
+        """The tangent alone is kept."""
         self.tangent = self._tangent(again, along)
-        return again
 
     def accept(self, last: MapPoint, reached: MapPoint) -> None:
         """Take a point, mark what changes sign before it, choose the next step."""

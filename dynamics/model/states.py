@@ -36,6 +36,11 @@ def checked_state(state: npt.ArrayLike, path: str = "state", size: int = 2) -> A
     return at
 
 
+def start_state(oscillator: Oscillator, state: npt.ArrayLike | None, path: str = "state") -> Array:
+    """The state that a motion starts at: that given, checked; at rest under the mean force without one."""
+    return oscillator.rest_state() if state is None else checked_state(state, path, oscillator.dimension)
+
+
 def checked_outputs(outputs: npt.ArrayLike | None, size: int) -> Array:
     """Outputs as rows of factors on a state.
 

@@ -14,7 +14,7 @@ from dynamics.model.arrays import AsArray
 from dynamics.model.limits import AVERAGED, TRANSIENT, checked_grid
 from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import Oscillator, settling_periods
-from dynamics.model.states import checked_state
+from dynamics.model.states import checked_state, start_state
 from dynamics.motion.sweeps import long_flow
 
 
@@ -100,7 +100,7 @@ def lyapunov_exponents(
         skip = settling_periods(oscillator)
         if transient is not None:
             skip = faults.whole("transient", transient, *TRANSIENT)
-    at = oscillator.rest_state() if state is None else checked_state(state, size=oscillator.dimension)
+    at = start_state(oscillator, state)
     sizes = np.array([n // OPTIONS.batches + (i < n % OPTIONS.batches) for i in range(OPTIONS.batches)])
     motion = long_flow(oscillator, tolerance).stretches(at, [skip, *sizes.tolist()])
     if motion.message:

@@ -16,7 +16,7 @@ from dynamics.model.arrays import AsArray
 from dynamics.model.limits import KEPT, LONGEST_PERIOD, TRANSIENT, checked_grid
 from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import EPS, Oscillator, settling_periods
-from dynamics.model.states import checked_state
+from dynamics.model.states import start_state
 from dynamics.orbits.shooting import find_orbit, motion_label
 
 APERIODIC = "aperiodic"
@@ -128,7 +128,7 @@ def sweep(
     watch = Stopwatch()
     grid, order, longest, kept, wait = checked_sweep(values, direction, max_period, keep, transient)
     first = oscillator.with_parameter(parameter, float(grid[order[0]]))
-    state = first.rest_state() if initial is None else checked_state(initial, "initial", oscillator.dimension)
+    state = start_state(first, initial, "initial")
     restart = state.copy()
     flow_at = flows_along(oscillator, parameter, long_tolerance(oscillator, tolerance))
     states = np.full((len(grid), kept, oscillator.dimension), np.nan)

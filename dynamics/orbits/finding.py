@@ -364,4 +364,4 @@ class _Search:
             return None
         gaps = np.max(np.abs(self.places - state), axis=1)
         nearest = int(gaps.argmin())
-        return self.owners[nearest] if gaps[nearest] < 1e-7 * self.scale else None
+        return self.owners[nearest] if gaps[nearest] < OPTIONS.same_orbit * self.scale else None

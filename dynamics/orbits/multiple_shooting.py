@@ -78,7 +78,8 @@ def shoot_in_stretches(
     """
     firsts = stretch_starts(table, periods)
     tau = np.asarray(firsts[:-1] * (oscillator.period / table.cells), dtype=np.float64)
-    for nodes in (_followed(oscillator, table, guess, firsts), oscillator.balanced(tau)):
+    slow = oscillator.balanced(tau)
+    for nodes in (_followed(table, guess, firsts, slow, oscillator.half_backlash), slow):
         chain = _newton(table, nodes, firsts, limit, oscillator.floor)
         if chain is not None:
             return replace(chain, error=_error(table, chain, periods))
@@ -171,11 +172,10 @@ def _newton(table: PartedFlow, nodes: Array, firsts: Integers, limit: int, floor
     return kept if best <= 1e-14 * 64.0 * stretch * scale else None
 
 
-def _followed(oscillator: PeriodicOscillator, table: PartedFlow, guess: Array, firsts: Integers) -> Array:
-    """Nodes on the motion from the guess; where it grows far beyond what drives it, the slow balance."""
-    tau = np.asarray(firsts[:-1] * (oscillator.period / table.cells), dtype=np.float64)
-    nodes = oscillator.balanced(tau)
-    bound = 20.0 * max(float(np.max(np.abs(guess))), float(np.max(np.abs(nodes))), oscillator.half_backlash)
+def _followed(table: PartedFlow, guess: Array, firsts: Integers, slow: Array, half_backlash: float) -> Array:
+    """Nodes on the motion from the guess; where it grows far beyond what drives it, those of the slow balance."""
+    nodes = slow.copy()
+    bound = 20.0 * max(float(np.max(np.abs(guess))), float(np.max(np.abs(nodes))), half_backlash)
     state, counts = guess.copy(), np.zeros(2, dtype=np.int64)
     for i, length in enumerate(np.diff(firsts)):
         if not float(np.max(np.abs(state))) < bound:
