@@ -12,6 +12,7 @@ import numpy as np
 
 from base import Array, record
 from fem.contact.loaded_flanks import FlanksInPlace, LoadedFlanks, hub_lever
+from fem.influence.gear_shape import MeshLevel
 from fem.laws.contact_candidates import ContactCandidates
 from fem.laws.local_law import FilmLaw, PairLaws
 from fem.laws.mesh_setup import MeshSetup
@@ -191,31 +192,34 @@ def between(
     bodies: PairCompliance,
     flanks: FlanksInPlace,
     other: FlanksInPlace,
-    before: bool = False,
+    level: MeshLevel = MeshLevel.FINE,
 ) -> Array:
     """Compliance between the loaded flanks and the others, for F' = kappa F (positions, pairs, others) [m/N]."""
     front, back = (other, flanks) if setup.back else (flanks, other)
-    compliance = across(bodies, front.candidates, back.candidates, before) / (
+    compliance = across(bodies, front.candidates, back.candidates, level) / (
         front.lever_ratios[:, :, None] * back.lever_ratios[:, None, :]
     )
     return np.swapaxes(compliance, 1, 2) if setup.back else compliance
 
 
 def across(
-    bodies: PairCompliance, front: ContactCandidates, back: ContactCandidates, before: bool = False
+    bodies: PairCompliance,
+    front: ContactCandidates,
+    back: ContactCandidates,
+    level: MeshLevel = MeshLevel.FINE,
 ) -> Array:
     """Compliance between contacts of front and back flanks (positions, front pairs, back pairs) [m/N].
 
     The rotation of each body on its hub is felt by all teeth, by the levers of the forces about its axis, as in the
     compliance of either side: with a weak hub it is all but a small part, and what both sides yield would else not be
     that of one body. The rest dies away with the teeth between; forces at tip edges are taken along the normals of the
-    flanks in it. By the mesh before the last refinement if asked.
+    flanks in it.
     """
     positions, pair = len(front.place), bodies.pair
     if "coupling" in bodies.left_out:
         return np.zeros((positions, len(front.offset), len(back.offset)))
     moved = np.zeros((positions, len(front.offset), len(back.offset)))
-    back_flanks = (bodies.back_before if before else None) or bodies.back_flanks
+    back_flanks = bodies.back_flanks if level is MeshLevel.FINE else bodies.coarse_backs
     numbers, hubs = (pair.pinion.teeth, pair.wheel.teeth), (bodies.pinion, bodies.wheel)
     for gear, (flexible, teeth, hub) in enumerate(zip(back_flanks, numbers, hubs, strict=True)):
         here, there = front.teeth[gear, :positions, :, None], back.teeth[gear, :positions, None, :]

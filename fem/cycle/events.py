@@ -85,8 +85,7 @@ class ContactProblem:
             A contact somewhere on them has no solution.
         """
         fine = self.divided()
-        before = self.bodies.coarser  # with the tips that have been asked for
-        coarse = None if before is None else self._alike(before, fine)
+        coarse = self._alike(self.bodies.coarser, fine)
         others = [(replace(self, film=film), share) for film, share in self.varied]
         varied = tuple((other._alike(self.bodies, fine), share) for other, share in others)
         fewer = None

@@ -192,7 +192,10 @@ def mesh_cycle(
         for k, (side, contact, number) in sorted(solutions.items())
     )
     named = reference or default_reference(bodies)
-    return cycles if named == "bore" else tuple(cycle.against(named) for cycle in cycles)
+    if named == "bore":
+        return cycles
+    # arcs are solved for against what is asked for, not taken from others
+    return tuple(replace(cycle.against(named), origin=None) for cycle in cycles)
 
 
 def _solved(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -167,6 +167,14 @@ class MeshCycle(PairFigures, MeshFigures):
         "copies that were pickled",
         default=None,
     )
+    origin: tuple[MeshCycle, Array] | None = part(
+        "the cycle that this one was measured from, and the turn by which their arcs differ (2,) [m/N]; None where the "
+        "arcs are its own",
+        default=None,
+    )
+    known_arcs: MeshArcs | str | None = part(
+        "the arcs, or why there are none, in copies that were pickled", default=None
+    )
 
     @property
     def face_position(self) -> Array | None:
@@ -216,8 +224,7 @@ class MeshCycle(PairFigures, MeshFigures):
             # of pressed flanks it starts where they rest, with moments about the wheel that are not zero
             since = self.force * (less @ (slopes / slopes[0])) if self.pair.tight else shift
             secant = self.force / (self.force / self.secant_stiffness - since)
-        known = self.__dict__.get("_found")
-        measured = replace(
+        return replace(
             self,
             reference=reference,
             bore_inertia=bore_inertia if reference == "body" else (0.0, 0.0),
@@ -230,32 +237,35 @@ class MeshCycle(PairFigures, MeshFigures):
             error=self.error * max(1.0, float(np.max(1.0 / slope))),
             problem=None if self.problem is None else self.problem.less(less),
             face=None if self.face is None else self.face.less(slope),
+            origin=(self, less),
         )
-        if known is not None:
-            # copies that were pickled have nothing else, and all others need not solve the contact anew
-            measured.__dict__["_found"] = (
-                known if isinstance(known, str) else measured_less(known, self.force, less, self.pair.tight)
-            )
-        return measured
 
     @property
     def arcs(self) -> MeshArcs | None:
         """Curves on smooth arcs between events, found when they are first asked for; None without a solution.
+
+        A cycle that was measured from another one has that one's, less the turn: the contact is solved once.
 
         Raises
         ------
         base.SolverError
             The contact has a solution at the cycle's positions, but not between them.
         """
-        if isinstance(self._found, str):
-            raise SolverError(self._found)
-        return self._found
+        if isinstance(self._arcs, str):
+            raise SolverError(self._arcs)
+        return self._arcs
 
     @cached_property
-    def _found(self) -> MeshArcs | str | None:
+    def _arcs(self) -> MeshArcs | str | None:
         """Arcs, or why there are none."""
+        if self.origin is not None:
+            cycle, turn = self.origin
+            arcs = cycle._arcs
+            return (
+                measured_less(arcs, self.force, turn, self.pair.tight) if isinstance(arcs, MeshArcs) else arcs
+            )
         if self.problem is None:
-            return None
+            return self.known_arcs
         try:
             return self.problem.arcs()
         except SolverError as error:
@@ -263,7 +273,8 @@ class MeshCycle(PairFigures, MeshFigures):
 
     def __getstate__(self) -> dict[str, Any]:
         """Take the arcs along instead of what they are found from."""
-        return {**self.__dict__, "_found": self._found, "problem": None}
+        state = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {**state, "known_arcs": self._arcs, "problem": None, "origin": None}
 
     @described("1", no_error=ITSELF, kept=True)
     def model_error(self) -> float:

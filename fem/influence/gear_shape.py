@@ -8,6 +8,7 @@ number of the shape; logarithms count lengths in modules.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, is_dataclass, replace
+from enum import Enum
 from functools import partial
 from math import ceil
 from typing import TYPE_CHECKING, Any
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
     from meshes import Sizes
 
-__all__ = ["GearShape", "MeshedShape", "plain", "shapes"]
+__all__ = ["GearShape", "MeshLevel", "MeshedShape", "plain", "shapes"]
 
 DIGITS = 12
 """Of lengths over the module: gears that differ in size alone have the same numbers, whatever the last bits are."""
@@ -66,9 +67,20 @@ class GearShape:
         return ceil((high - low) / base_pitch) + 1
 
 
+class MeshLevel(Enum):
+    """Which of the two nested meshes of a gear: what errs by the mesh is what FINE and COARSE differ by, over the gain.
+
+    Answers are those of FINE, the mesh in use. COARSE is the one before its last refinement; its answers are in errors
+    alone, and in corrections so small that their error is none of the answer's.
+    """
+
+    COARSE = "coarse"
+    FINE = "fine"
+
+
 @dataclass(frozen=True)
 class MeshedShape:
-    """A gear's shape and the mesh in use, which is solved together with the one that it refines.
+    """A gear's shape and the mesh in use, which is solved together with the one that it refines (`MeshLevel`).
 
     Attributes
     ----------

@@ -18,7 +18,7 @@ from fem.elasticity.ring import Ring, ring_of
 from fem.influence.back_compliance import BackCompliance, back_by_mirror, back_compliance
 from fem.influence.flank_motion import FlankMotion, flank_motion
 from fem.influence.gear_compliance import GearCompliance, gear_compliance
-from fem.influence.gear_shape import MeshedShape, plain
+from fem.influence.gear_shape import MeshedShape, MeshLevel, plain
 from fem.influence.memo import Memo, read_only
 from fem.influence.tip_strips import TipStrips, tip_strips
 
@@ -32,7 +32,7 @@ BACK_SAMPLES = 20
 """Loads along a flank whose answer on the other side of the teeth is looked at: there it is smooth."""
 
 _RECORDS: Memo[Any] = Memo(MOST_RECORDS)
-_RINGS: Memo[tuple[Ring, Ring]] = Memo(MOST_RINGS)
+_RINGS: Memo[Mapping[MeshLevel, Ring]] = Memo(MOST_RINGS)
 _FACES: Memo[Any] = Memo(MOST_FACES)
 
 
@@ -58,30 +58,29 @@ class ResultStore(Protocol):
 
 @record
 class SolvedFlanks:
-    """A gear's flanks on one mesh, and what the coarser one differs by.
+    """A gear's flanks on both of its meshes (`MeshLevel`).
 
     Attributes
     ----------
-    flexible, before : GearCompliance
-        On this mesh, and on the one before the last refinement.
+    fine, coarse : GearCompliance
     rho : (n,) array
         Curvature radii of the loads [m].
     change : (n,) array
         By how much ``own`` grew there from the coarser mesh [m per N/m].
     cross_change : float
         Largest change of a cross term [m per N/m].
-    back_before : BackCompliance
+    coarse_backs : BackCompliance
         What loads do to the other side of the teeth on the coarser mesh.
     unknowns, annulus_unknowns : int
         Of the sector, and of the annulus that it stands for.
     """
 
-    flexible: GearCompliance
-    before: GearCompliance
+    fine: GearCompliance
+    coarse: GearCompliance
     rho: Array
     change: Array
     cross_change: float
-    back_before: BackCompliance
+    coarse_backs: BackCompliance
     unknowns: int
     annulus_unknowns: int
 
@@ -92,12 +91,12 @@ class SolvedFlanks:
     def scaled(self, module: float, law: PlaneElasticity) -> SolvedFlanks:
         """Give the flanks of a gear in modules and E* their size [m] and modulus."""
         return SolvedFlanks(
-            self.flexible.scaled(module, law),
-            self.before.scaled(module, law),
+            self.fine.scaled(module, law),
+            self.coarse.scaled(module, law),
             self.rho * module,
             self.change / law.plane_modulus,
             self.cross_change / law.plane_modulus,
-            self.back_before.scaled(module, law.plane_modulus),
+            self.coarse_backs.scaled(module, law.plane_modulus),
             self.unknowns,
             self.annulus_unknowns,
         )
@@ -124,10 +123,10 @@ class GearStore:
         """Flanks with loads at a number of places."""
         return self.record("flanks", (meshed, samples), lambda: self._flanks(meshed, samples))
 
-    def tips(self, meshed: MeshedShape, before: bool = False) -> TipStrips:
-        """Answer of the tip edges, or that on the mesh before the last refinement."""
-        name = "coarse tips" if before else "tips"
-        return self.record(name, (meshed,), lambda: self._tips(meshed, before))
+    def tips(self, meshed: MeshedShape, level: MeshLevel) -> TipStrips:
+        """Answer of the tip edges on one of the meshes."""
+        name = "tips" if level is MeshLevel.FINE else "coarse tips"
+        return self.record(name, (meshed,), lambda: self._tips(meshed, level))
 
     def motion(self, meshed: MeshedShape) -> FlankMotion:
         """Motion of the flank, on the coarser mesh: a correction."""
@@ -137,8 +136,8 @@ class GearStore:
         """What loads on the front flanks do to the back flanks."""
         return self.record("back flanks", (meshed,), lambda: self._backs(meshed))
 
-    def rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:
-        """Factorised gears, the coarser one first."""
+    def rings(self, meshed: MeshedShape) -> Mapping[MeshLevel, Ring]:
+        """Factorised gears on both meshes."""
         return _RINGS.obtain(meshed, lambda: self._rings(meshed))
 
     def record(self, name: str, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
@@ -156,7 +155,7 @@ class GearStore:
         influence: T = _FACES.obtain((name, key), compute)
         return influence
 
-    def _rings(self, meshed: MeshedShape) -> tuple[Ring, Ring]:
+    def _rings(self, meshed: MeshedShape) -> Mapping[MeshLevel, Ring]:
         from meshes import mesh_sector
 
         watch = Stopwatch()
@@ -165,20 +164,21 @@ class GearStore:
         own = Cost(watch.seconds, parts={"mesh": watch.seconds})
         coarse, fine = (ring_of(sector, meshed.shape.law) for sector in (mesh.coarser, mesh))
         self.costs += [own, coarse.cost, fine.cost]
-        return coarse, fine
+        return {MeshLevel.COARSE: coarse, MeshLevel.FINE: fine}
 
     def _flanks(self, meshed: MeshedShape, samples: int) -> SolvedFlanks:
-        coarse, fine = self.rings(meshed)
+        rings = self.rings(meshed)
+        coarse, fine = rings[MeshLevel.COARSE], rings[MeshLevel.FINE]
         watch, profile, reach = Stopwatch(), meshed.shape.profile, meshed.shape.reach
         places = sample_places(profile, samples)
         loads = flank_loads(coarse, places)
-        there, before = sampled(fine, places, reach), samples_of(loads, reach)
+        fine_samples, coarse_samples = sampled(fine, places, reach), samples_of(loads, reach)
         flanks = SolvedFlanks(
-            gear_compliance(fine, profile, there),
-            gear_compliance(coarse, profile, before),
+            gear_compliance(fine, profile, fine_samples),
+            gear_compliance(coarse, profile, coarse_samples),
             places,
-            there.own - before.own,
-            float(np.max(np.abs(there.cross - before.cross), initial=0.0)),
+            fine_samples.own - coarse_samples.own,
+            float(np.max(np.abs(fine_samples.cross - coarse_samples.cross), initial=0.0)),
             back_by_mirror(loads.part(slice(samples)), reach),
             len(fine.inner) + len(fine.cut),
             fine.unknowns,
@@ -186,22 +186,22 @@ class GearStore:
         self.costs.append(Cost(watch.seconds, parts={"solve": watch.seconds}))
         return flanks
 
-    def _tips(self, meshed: MeshedShape, before: bool) -> TipStrips:
-        ring = self.rings(meshed)[0 if before else 1]
+    def _tips(self, meshed: MeshedShape, level: MeshLevel) -> TipStrips:
+        ring = self.rings(meshed)[level]
         watch = Stopwatch()
         strips = tip_strips(ring, meshed.shape.profile)
         self.costs.append(Cost(watch.seconds, parts={"tips": watch.seconds}))
         return strips
 
     def _motion(self, meshed: MeshedShape) -> FlankMotion:
-        ring = self.rings(meshed)[0]
+        ring = self.rings(meshed)[MeshLevel.COARSE]
         watch = Stopwatch()
         motion = flank_motion(ring)
         self.costs.append(Cost(watch.seconds, parts={"motion": watch.seconds}))
         return motion
 
     def _backs(self, meshed: MeshedShape) -> BackCompliance:
-        ring = self.rings(meshed)[1]
+        ring = self.rings(meshed)[MeshLevel.FINE]
         watch, shape = Stopwatch(), meshed.shape
         backs = back_compliance(ring, sample_places(shape.profile, BACK_SAMPLES), shape.reach)
         self.costs.append(Cost(watch.seconds, parts={"back flanks": watch.seconds}))

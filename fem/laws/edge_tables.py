@@ -30,7 +30,7 @@ class EdgeTables:
     setup : MeshSetup
         At any positions: what counts is how the gears are set up.
     bodies : PairCompliance
-        On any of its meshes that share the answer of the tips; others have separate laws (`serving`).
+        On one of its meshes; the other one has separate laws (`serving`).
     """
 
     def __init__(self, setup: MeshSetup, bodies: PairCompliance) -> None:
@@ -39,11 +39,10 @@ class EdgeTables:
         self._other: EdgeTables | None = None
 
     def serving(self, bodies: PairCompliance) -> EdgeTables:
-        """Laws of the same pair with the tips of other bodies: these, or others that are kept here as well."""
-        strips = bodies.tip_strips
-        if bodies is self.bodies or strips is None or strips is self.bodies.tips:
+        """Laws of the same pair on a mesh: these, or others that are kept here as well."""
+        if bodies.level is self.bodies.level:
             return self
-        if self._other is None or self._other.bodies.tip_strips is not strips:
+        if self._other is None:
             self._other = EdgeTables(self.setup, bodies)
         return self._other
 

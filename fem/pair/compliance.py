@@ -3,7 +3,8 @@
 The displacement at a load along the load is an energy, so its error is the square of the energy norm of the
 finite elements' error: it falls nearly with the fourth power of the edge length (curved second-order elements;
 see ``fem.elasticity.line_load``), always has the same sign, and hardly depends on the load's place. Two nested meshes
-show it: with the order p, the finer one's error is their difference over 2^p - 1.
+(``fem.influence.gear_shape.MeshLevel``) show it: with the order p, the finer one's error is their difference over
+2^p - 1.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from base.results import WORST
 from fem.elasticity.flamant import hertz_indentation
 from fem.elasticity.plane_elasticity import PlaneElasticity, check_plane
 from fem.elasticity.support import Support, held_profiles, on_both
-from fem.influence.gear_shape import MeshedShape, shapes
+from fem.influence.gear_shape import MeshedShape, MeshLevel, shapes
 from fem.influence.gear_store import GearStore, ResultStore, SolvedFlanks
 from fem.influence.tip_strips import gain_beside
 from fem.pair.checked import check_pair
@@ -126,20 +127,20 @@ def compliance(
     profiles = held_profiles(pair, held)
     gear_shapes = shapes(pair, profiles, plane)
     laws = [PlaneElasticity.of(material, plane) for material in pair.materials]
-    sizes, level = sizes or Sizes(), refinements or 1
+    sizes, times = sizes or Sizes(), refinements or 1
     gears = GearStore(kept)
     while True:
         first, second = (
-            _fitted(gears, MeshedShape(shape, sizes, level), options.fit * tolerance).scaled(pair.module, law)
+            _fitted(gears, MeshedShape(shape, sizes, times), options.fit * tolerance).scaled(pair.module, law)
             for shape, law in zip(gear_shapes, laws, strict=True)
         )
-        mesh_error, fit_error = _errors(pair, (first, second), sizes.corner * 0.5**level, options.gain)
+        mesh_error, fit_error = _errors(pair, (first, second), sizes.corner * 0.5**times, options.gain)
         error = mesh_error + fit_error
-        finer = _finer(sizes, level, mesh_error, tolerance - min(fit_error, 0.5 * tolerance), options)
+        finer = _finer(sizes, times, mesh_error, tolerance - min(fit_error, 0.5 * tolerance), options)
         if refinements is not None or error <= tolerance or finer is None:
             break
-        sizes, level = finer
-    message = f"mesh refined {level} time{'' if level == 1 else 's'}, error {error:.1e}"
+        sizes, times = finer
+    message = f"mesh refined {times} time{'' if times == 1 else 's'}, error {error:.1e}"
     if error > tolerance and refinements is None:
         message = f"error {error:.1e} above the tolerance {tolerance:.1e}: the mesh is the finest allowed"
     settled = error < WORST or refinements is not None
@@ -150,12 +151,14 @@ def compliance(
     bodies = PairCompliance(
         pair,
         plane,
-        first.flexible,
-        second.flexible,
-        level,
+        first.fine,
+        second.fine,
+        times,
         sizes,
         # every tooth that may touch together with another one, tip edges outside the path at both ends included
-        min(ceil(pair.contact_ratio) + 1, *(len(solved.flexible.cross_series) for solved in (first, second))),
+        min(ceil(pair.contact_ratio) + 1, *(len(solved.fine.cross_series) for solved in (first, second))),
+        (first.coarse, second.coarse),
+        (first.coarse_backs, second.coarse_backs),
         error,
         Cost(0.0),
         settled,
@@ -163,15 +166,15 @@ def compliance(
         supports=held,
         fit_error=fit_error,
         gain=options.gain,
-        before=(first.before, second.before),
-        back_before=(first.back_before, second.back_before),
     )
-    tips, coarse_tips = (bodies.tips_of(gears, before) if tip_edges else None for before in (False, True))
+    tips, coarse_tips = (
+        bodies.tips_of(gears, level) if tip_edges else None for level in (MeshLevel.FINE, MeshLevel.COARSE)
+    )
     motions = bodies.motions_of(gears) if motion else None
     parts = sum(gears.costs, Cost(0.0)).parts
     counts = {"annulus_unknowns": first.annulus_unknowns + second.annulus_unknowns}
     cost = Cost(watch.seconds, first.unknowns + second.unknowns, parts=parts, counts=counts)
-    return replace(bodies, tip_strips=tips, tip_strips_before=coarse_tips, flank_motions=motions, cost=cost)
+    return replace(bodies, tip_strips=tips, coarse_tip_strips=coarse_tips, flank_motions=motions, cost=cost)
 
 
 def _fitted(gears: GearStore, meshed: MeshedShape, most: float) -> SolvedFlanks:
@@ -179,8 +182,8 @@ def _fitted(gears: GearStore, meshed: MeshedShape, most: float) -> SolvedFlanks:
     local = float(hertz_indentation(0.1, meshed.shape.law, 1.0))
     for count in SAMPLES:
         flanks = gears.flanks(meshed, count)
-        least = local + float(np.min(flanks.flexible.own(flanks.rho)))
-        if flanks.flexible.fit_error <= most * least:
+        least = local + float(np.min(flanks.fine.own(flanks.rho)))
+        if flanks.fine.fit_error <= most * least:
             break
     return flanks
 
@@ -195,17 +198,17 @@ def _errors(
     rho1 = np.linspace(pair.points.A, pair.points.E, 60)
     own, change = np.zeros_like(rho1), np.zeros_like(rho1)
     for gear, rho in zip(gears, (rho1, pair.line_of_action - rho1), strict=True):
-        flexible = gear.flexible
+        flexible = gear.fine
         own += flexible.own(rho) + hertz_indentation(0.1 * pair.module, flexible.law, pair.module)
         away = (flexible.rho_end**2 - np.clip(rho, *flexible.rho_range) ** 2) / (2 * flexible.base_radius)
         change += gear.change_at(rho) / gain_beside(away / (edge * pair.module), gain)
     crossed = sum(gear.cross_change for gear in gears) / float(np.min(own))
-    fit = sum(gear.flexible.fit_error for gear in gears) / float(np.min(own))
+    fit = sum(gear.fine.fit_error for gear in gears) / float(np.min(own))
     return max(float(np.max(np.abs(change / own))), crossed / gain), fit
 
 
 def _finer(
-    sizes: Sizes, level: int, error: float, tolerance: float, options: Options
+    sizes: Sizes, times: int, error: float, tolerance: float, options: Options
 ) -> tuple[Sizes, int] | None:
     """Edge lengths and refinements that should bring an error below a tolerance; None beyond the finest."""
     if error <= tolerance:  # it is the fit that errs, or nothing
@@ -213,6 +216,6 @@ def _finer(
     factor = (0.6 * tolerance / error) ** (1 / options.order) if np.isfinite(error) else 0.5
     halvings = max(0, floor(-log2(factor) + 0.3))
     factor = 2 ** (floor(STEPS * log2(factor)) / STEPS)
-    if level + halvings > options.finest:
+    if times + halvings > options.finest:
         return None
-    return sizes.scaled(min(factor * 2**halvings, 1.0)), level + halvings
+    return sizes.scaled(min(factor * 2**halvings, 1.0)), times + halvings

@@ -13,7 +13,7 @@ from fem.elasticity.support import FIXED, Support, held_profiles
 from fem.influence.back_compliance import BackCompliance
 from fem.influence.flank_motion import FlankMotion
 from fem.influence.gear_compliance import GearCompliance
-from fem.influence.gear_shape import MeshedShape, shapes
+from fem.influence.gear_shape import MeshedShape, MeshLevel, shapes
 from fem.influence.gear_store import GearStore
 from fem.influence.tip_strips import TipStrips
 
@@ -39,26 +39,25 @@ class SolvedPair:
     refinements: int = quantity("1", "refinements of the mesh in use")
     sizes: Sizes = part("of the mesh before it was refined")
     reach: int = quantity("1", "neighbours with cross terms on either side of a tooth")
+    coarse_flanks: tuple[GearCompliance, GearCompliance] = part(
+        "of pinion and wheel on the mesh before the last refinement"
+    )
+    coarse_backs: tuple[BackCompliance, BackCompliance] = part(
+        "what loads on front flanks do to back flanks, on the mesh before the last refinement"
+    )
     error: float = quantity("1", "estimated relative error of a pair's deflection, largest along the path")
     cost: Cost
     converged: bool
     message: str
     supports: tuple[Support, Support] = part("how the bores of both are held", default=(FIXED, FIXED))
     tip_strips: tuple[TipStrips, TipStrips] | None = part(
-        "tip edges of both gears; None before contact outside the path has asked for them", default=None
+        "tip edges of both gears, where they have been solved already", default=None
     )
-    tip_strips_before: tuple[TipStrips, TipStrips] | None = part(
-        "the same on the mesh before the last refinement; None before errors have asked for it", default=None
+    coarse_tip_strips: tuple[TipStrips, TipStrips] | None = part(
+        "the same on the mesh before the last refinement", default=None
     )
     flank_motions: tuple[FlankMotion, FlankMotion] | None = part(
-        "how the flanks of both gears move; None before contacts that move have asked for it", default=None
-    )
-    back_series: tuple[BackCompliance, BackCompliance] | None = part(
-        "what loads on front flanks do to back flanks; None before flanks on both sides have asked for it",
-        default=None,
-    )
-    back_before: tuple[BackCompliance, BackCompliance] | None = part(
-        "the same on the mesh before the last refinement; None where that is unknown", default=None
+        "how the flanks of both gears move, where that has been solved already", default=None
     )
     fit_error: float = quantity(
         "1", "part of the error by the fit along the flanks", no_error=ITSELF, default=0.0
@@ -66,9 +65,7 @@ class SolvedPair:
     gain: float = quantity(
         "1", "by how much the last refinement reduced the mesh's error", no_error=ITSELF, default=1.0
     )
-    before: tuple[GearCompliance, GearCompliance] | None = part(
-        "of pinion and wheel on the mesh before the last refinement", default=None
-    )
+    level: MeshLevel = part("mesh that flanks and tip edges are of", default=MeshLevel.FINE)
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave the factorised gears behind: they are large, and a factorisation cannot travel."""
@@ -86,41 +83,27 @@ class SolvedPair:
 
     @cached_property
     def tips(self) -> tuple[TipStrips, TipStrips]:
-        """Tip edges of both gears, for contact outside the path; solved where they were not."""
-        return self.tip_strips or self.tips_of(GearStore())
+        """Tip edges of both gears, for contact outside the path; solved where they were not.
 
-    @cached_property
-    def _tips_before(self) -> tuple[TipStrips, TipStrips]:
-        """Tip edges whose difference from these, over the gain of the mesh, is their error.
-
-        Far from the corner over the length of the element there they are those of the mesh before: loads on the flank
-        and on the edge are the same tooth's, and what is wrong of both evens out where the load goes from one to the
-        other. Nearer, a refinement gains less than ``gain``, and the difference is enlarged by as much.
+        Those of the coarser mesh are what `coarser` needs: far from the corner over the length of the element there
+        they are as solved, for loads on the flank and on the edge are the same tooth's, and what is wrong of both evens
+        out where the load goes from one to the other. Nearer, a refinement gains less than ``gain``, and the difference
+        is enlarged by as much.
         """
+        fine_tips = self.tip_strips or self.tips_of(GearStore(), MeshLevel.FINE)
+        if self.level is MeshLevel.FINE:
+            return fine_tips
+        coarse_tips = self.coarse_tip_strips or self.tips_of(GearStore(), MeshLevel.COARSE)
         edge = self.sizes.corner * 0.5**self.refinements * self.pair.module
         first, second = (
-            fine.towards(before, edge, self.gain)
-            for fine, before in zip(
-                self.tips, self.tip_strips_before or self.tips_of(GearStore(), before=True), strict=True
-            )
+            fine.towards(coarse, edge, self.gain) for fine, coarse in zip(fine_tips, coarse_tips, strict=True)
         )
         return first, second
 
-    @cached_property
-    def _flanks_before(self) -> tuple[GearCompliance, GearCompliance] | None:
-        """Flanks whose difference from these, over the gain of the mesh, is the error of mesh and fit."""
-        if self.before is None:
-            return None
+    def tips_of(self, gears: GearStore, level: MeshLevel) -> tuple[TipStrips, TipStrips]:
+        """Tip edges of both gears on one of the meshes, from where solved gears are."""
         first, second = (
-            before.off_by(fine, self.gain)
-            for fine, before in zip((self.pinion, self.wheel), self.before, strict=True)
-        )
-        return first, second
-
-    def tips_of(self, gears: GearStore, before: bool = False) -> tuple[TipStrips, TipStrips]:
-        """Tip edges of both gears from where solved gears are, or on the mesh before the last refinement."""
-        first, second = (
-            gears.tips(meshed, before).scaled(self.pair.module, flexible.law)
+            gears.tips(meshed, level).scaled(self.pair.module, flexible.law)
             for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
         )
         return first, second
@@ -140,9 +123,7 @@ class SolvedPair:
 
     @cached_property
     def back_flanks(self) -> tuple[BackCompliance, BackCompliance]:
-        """What loads on the front flanks of both gears do to their back flanks; solved where it was not."""
-        if self.back_series is not None:
-            return self.back_series
+        """What loads on the front flanks of both gears do to their back flanks; solved when it is first asked for."""
         gears = GearStore()
         first, second = (
             gears.backs(meshed).scaled(self.pair.module, flexible.law.plane_modulus)
@@ -158,34 +139,20 @@ class SolvedPair:
     def _rings(self) -> tuple[Ring, Ring]:
         gears = GearStore()
         first, second = (
-            gears.rings(meshed)[1].scaled(self.pair.module, flexible.law)
+            gears.rings(meshed)[MeshLevel.FINE].scaled(self.pair.module, flexible.law)
             for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
         )
         return first, second
 
-    @property
-    def coarser(self) -> Self | None:
-        """The same gears, off by their errors times the gain of the last refinement; None where these are unknown.
+    @cached_property
+    def coarser(self) -> Self:
+        """The same gears, off by their errors times the gain of the last refinement: what answers are compared with.
 
-        By the mesh they differ as the one before that refinement does. Motion and back flanks do not change.
+        By the mesh they differ as the one before that refinement does, by the fits as these leave out. Motion and back
+        flanks do not change.
         """
-        if self._flanks_before is None:
-            return None
-        pinion, wheel = self._flanks_before
-        tips, motions, backs = (
-            self.__dict__.get(name, known)  # whatever has been solved until now
-            for name, known in (
-                ("tips", self.tip_strips),
-                ("motions", self.flank_motions),
-                ("back_flanks", self.back_series),
-            )
+        pinion, wheel = (
+            coarse.off_by(fine, self.gain)
+            for fine, coarse in zip((self.pinion, self.wheel), self.coarse_flanks, strict=True)
         )
-        return replace(
-            self,
-            pinion=pinion,
-            wheel=wheel,
-            before=None,
-            tip_strips=None if tips is None else self._tips_before,
-            flank_motions=motions,
-            back_series=backs,
-        )
+        return replace(self, pinion=pinion, wheel=wheel, level=MeshLevel.COARSE)

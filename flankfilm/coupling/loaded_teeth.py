@@ -110,7 +110,7 @@ class LoadedTeeth:
         """Loaded contact with the inertia on the bores, which counts for what it is measured against."""
         if contact.reference != "body" or self.bore_inertia == (0.0, 0.0):
             return contact
-        return contact.against("body", self.bore_inertia)
+        return replace(contact.against("body", self.bore_inertia), origin=None)
 
     @property
     def force(self) -> float:

@@ -159,7 +159,7 @@ def one(pair, torque, options, roots: bool) -> tuple[str, dict[str, float]]:
     assert usual.arcs is not None
     found = ratios(usual.arcs, reference)
     if roots and not options["friction"] and pair.contact_ratio < 2:
-        best.__dict__["_found"] = reference
+        best = replace(best, known_arcs=reference, problem=None)
         with suppress(InputError):  # some fillets fold the elements of so coarse a mesh
             found |= root_ratios(pair, usual, best)
     least, most = min(found, key=found.get), max(found, key=found.get)
