@@ -23,7 +23,6 @@ from fem.elasticity.line_load import FlankPoints
 from fem.elasticity.prism import Face, Section, prism
 
 __all__ = [
-    "FreeEnds",
     "HalfFace",
     "free_ends",
     "free_ends_across",
@@ -174,24 +173,6 @@ def half_face(half_width: float, module: float, last: float = LAST, growth: floa
     return HalfFace(np.asarray(ends), mass, stiffness, mixed)
 
 
-@record
-class FreeEnds:
-    """What free ends add to the displacements by line loads, by functions over half a face.
-
-    Attributes
-    ----------
-    half : HalfFace
-    own : two arrays (loads, psi, psi)
-        At each load, of loads that are equal and such that are opposite on both halves: [m per N] by a unit functional.
-    cross : two arrays (reach, loads, points, psi, psi)
-        On neighbours; the first function is the load's.
-    """
-
-    half: HalfFace
-    own: tuple[Array, Array]
-    cross: tuple[Array, Array]
-
-
 def over_cells(half: HalfFace, even: Array, odd: Array, edges: Array) -> Array:
     """Means over cells (..., cells, cells) by a unit force on a cell.
 
@@ -201,15 +182,18 @@ def over_cells(half: HalfFace, even: Array, odd: Array, edges: Array) -> Array:
     even, odd : (..., psi, psi) arrays
         By functions over half the face.
     edges : (cells + 1,) array
-        Of the cells, growing, from mid-face [m].
+        Of the cells, growing, from mid-face [m]; the face ends where they do, to the last bit.
     """
+    edges = np.clip(edges, -half.ends[-1], half.ends[-1])
     same, opposite = half.means(edges)
     opposite = opposite[1:]
     return np.asarray(0.5 * (same.T @ even @ same + opposite.T @ odd @ opposite))
 
 
-def free_ends(over: Section, half: HalfFace, at: FlankPoints, reach: int) -> FreeEnds:
-    """Solve a gear with free ends and between walls.
+def free_ends(
+    over: Section, half: HalfFace, at: FlankPoints, reach: int
+) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """Solve a gear with free ends and between walls, by functions over half a face.
 
     Parameters
     ----------
@@ -219,13 +203,21 @@ def free_ends(over: Section, half: HalfFace, at: FlankPoints, reach: int) -> Fre
     at : FlankPoints
     reach : int
         Neighbours that are observed.
+
+    Returns
+    -------
+    own : two arrays (loads, psi, psi)
+        What free ends add at each load, of loads that are equal and such that are opposite on both halves: [m per N] by
+        a unit functional.
+    cross : two arrays (reach, loads, points, psi, psi)
+        On neighbours; the first function is the load's.
     """
     own, cross = [], []
     for even in (True, False):
         free, walls = (prism(over, half.face(even, ends)).influence(at, reach) for ends in (True, False))
         own.append(free[0] - walls[0])
         cross.append(np.moveaxis(free[1] - walls[1], 2, 3))
-    return FreeEnds(half, (own[0], own[1]), (cross[0], cross[1]))
+    return (own[0], own[1]), (cross[0], cross[1])
 
 
 def free_ends_across(

@@ -189,11 +189,9 @@ class Prism:
         cross : (reach, loads, psi, points, psi) array
             On the neighbours on the side of growing rho [m per N/m]; first the loads, then what is observed.
         """
-        count = len(at.rho)
-        reduced, on_cuts, _ = self.condensed.up(self._nodal(at))
-        pull = np.asarray(self.polar.T @ on_cuts)
+        count, (loads, pull) = len(at.rho), self._condensed(at)
         ends = self.links.at_ends(pull, 0).reshape(-1, count, self.psi)
-        inside = reduced[self.inner].reshape(-1, count, self.psi)
+        inside = loads.reshape(-1, count, self.psi)
         own = np.einsum("ulp,ulq->lpq", inside, inside, optimize=True) * self.condensed.modulus
         own += np.einsum("ulp,ulq->lpq", pull.reshape(ends.shape), ends, optimize=True)
         there = [(pull.T @ self.links.at_ends(pull, tooth)).T for tooth in range(1, reach + 1)]

@@ -32,7 +32,6 @@ from fem.influence.series import CrossSeries, FlankFit, of_teeth
 
 __all__ = [
     "BackEndCorrection",
-    "BackEndCorrectionOfCells",
     "BackHarmonics",
     "back_end_correction",
     "back_harmonics",
@@ -95,30 +94,19 @@ class BackEndCorrection:
     cross: tuple[Array, Array]
     error: float
 
-    def over(self, edges: Array) -> BackEndCorrectionOfCells:
-        """Put loads on cells between edges (cells + 1,), growing, from mid-face."""
+    def over(self, edges: Array) -> Mapping[int, CrossSeries]:
+        """Put loads on cells between edges (cells + 1,), growing, from mid-face.
+
+        Returns
+        -------
+        mapping of int to CrossSeries of (cells, cells)
+            For each tooth, counted anticlockwise from the loaded one: means over cells by a unit force on a cell, of
+            the load first [module per E* module^2 of force].
+        """
         tables = over_cells(self.half, *self.cross, edges)
-        reach = len(tables) // 2
-        return BackEndCorrectionOfCells(
-            {tooth: CrossSeries(self.place, table) for tooth, table in enumerate(tables, -reach)}
-        )
-
-
-@record
-class BackEndCorrectionOfCells:
-    """What free ends add between cells of front and back flanks, in modules and E*: [module per E* module^2 of force].
-
-    Attributes
-    ----------
-    series : mapping of int to CrossSeries of (cells, cells)
-        For each tooth, counted anticlockwise from the loaded one; cells of the load first.
-    """
-
-    series: Mapping[int, CrossSeries]
-
-    def across(self, tooth: Integers, load: Array, point: Array) -> Array:
-        """Means over cells by a unit force on a cell (..., cells, cells); arguments as of ``BackHarmonics.across``."""
-        return of_teeth(self.series, tooth, load, point)
+        return {
+            tooth: CrossSeries(self.place, table) for tooth, table in enumerate(tables, -(len(tables) // 2))
+        }
 
 
 def back_harmonics(meshed: MeshedShape) -> BackHarmonics:

@@ -18,7 +18,7 @@ from numpy.polynomial import chebyshev
 
 from base import Array, record
 from fem.elasticity.flank_samples import sample_places
-from fem.elasticity.free_ends import FreeEnds, HalfFace, free_ends, half_face, over_cells
+from fem.elasticity.free_ends import HalfFace, free_ends, half_face, over_cells
 from fem.elasticity.line_load import flank_points
 from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.prism import Face, Section, prism, section
@@ -30,7 +30,6 @@ from meshes.outline import Sizes
 __all__ = [
     "AxialHarmonics",
     "EndCorrection",
-    "EndCorrectionOfCells",
     "axial_harmonics",
     "between_waves",
     "end_correction",
@@ -172,37 +171,19 @@ class EndCorrection:
     own: tuple[Array, Array]
     cross: tuple[Array, Array]
 
-    def over(self, edges: Array) -> EndCorrectionOfCells:
-        """Put loads on cells between edges (cells + 1,), growing, from mid-face."""
-        tables = over_cells(self.half, *self.cross, edges)
-        return EndCorrectionOfCells(
-            FlankSeries(self.root, over_cells(self.half, *self.own, edges)),
-            {tooth: CrossSeries(self.place, table) for tooth, table in enumerate(tables, 1)},
-        )
+    def over(self, edges: Array) -> tuple[FlankSeries, Mapping[int, CrossSeries]]:
+        """Put loads on cells between edges (cells + 1,), growing, from mid-face.
 
-
-@record
-class EndCorrectionOfCells:
-    """What free ends add between cells, in modules and E*: [module per E* module^2 of force].
-
-    Attributes
-    ----------
-    own : FlankSeries of (cells, cells)
-        Over (rho_end - rho)^(1/2).
-    cross : mapping of int to CrossSeries of (cells, cells)
-        For the k-th tooth on the side of growing rho, over the load's and the point's rho.
-    """
-
-    own: FlankSeries
-    cross: Mapping[int, CrossSeries]
-
-    def own_at(self, rho: Array) -> Array:
-        """Means over cells by a unit force on a cell (..., cells, cells) for rho (...)."""
-        return self.own.at(rho)
-
-    def cross_at(self, tooth: int, load: Array, point: Array) -> Array:
-        """The same on a neighbour; cells of the load first."""
-        return self.cross[tooth].at(load, point)
+        Returns
+        -------
+        own : FlankSeries of (cells, cells)
+            Means over cells by a unit force on a cell [module per E* module^2 of force].
+        cross : mapping of int to CrossSeries of (cells, cells)
+            The same on the k-th tooth on the side of growing rho; cells of the load first.
+        """
+        own, cross = (over_cells(self.half, *tables, edges) for tables in (self.own, self.cross))
+        series = {tooth: CrossSeries(self.place, table) for tooth, table in enumerate(cross, 1)}
+        return FlankSeries(self.root, own), series
 
 
 def end_correction(meshed: MeshedShape, face_width: float) -> EndCorrection:
@@ -211,11 +192,11 @@ def end_correction(meshed: MeshedShape, face_width: float) -> EndCorrection:
     rho = sample_places(profile, END_PLACES)
     root, place = _variables(rho, profile.flank_rho[1])
     half = half_face(0.5 * face_width, 1.0)
-    solved: FreeEnds = free_ends(over, half, flank_points(over.mesh, rho), reach)
+    by_load, by_neighbour = free_ends(over, half, flank_points(over.mesh, rho), reach)
     by_root = FlankFit(root, root.unit(rho), END_PLACES - 1).weights
     by_place = FlankFit(place, place.unit(rho), 2 * END_PLACES // 3).weights
-    own = [np.einsum("ai,ipq->apq", by_root, table) for table in solved.own]
+    own = [np.einsum("ai,ipq->apq", by_root, table) for table in by_load]
     cross = [
-        np.einsum("ai,bj,rijpq->rabpq", by_place, by_place, table, optimize=True) for table in solved.cross
+        np.einsum("ai,bj,rijpq->rabpq", by_place, by_place, table, optimize=True) for table in by_neighbour
     ]
     return EndCorrection(root, place, half, (own[0], own[1]), (cross[0], cross[1]))

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
     from meshes import Sizes
 
-__all__ = ["GearShape", "MeshLevel", "MeshedShape", "plain", "shapes"]
+__all__ = ["GearShape", "MeshLevel", "MeshedShape", "plain", "rounded", "shapes"]
 
 DIGITS = 12
 """Of lengths over the module: gears that differ in size alone have the same numbers, whatever the last bits are."""
@@ -95,6 +95,11 @@ class MeshedShape:
     refinements: int
 
 
+def rounded(length: float) -> float:
+    """Length over the module or the face width, by which what is solved is known."""
+    return float(f"{length:.{DIGITS}g}")
+
+
 def plain(part: Any) -> Any:
     """Turn what decides a record, nested records and numbers, into what keys of caches are made of."""
     if is_dataclass(part):
@@ -118,7 +123,7 @@ def shapes(
     """
 
     def over(unit: float, length: float) -> float:
-        return float(f"{length / unit:.{DIGITS}g}")
+        return rounded(length / unit)
 
     modules = partial(over, pair.module)
 

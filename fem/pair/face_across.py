@@ -6,7 +6,7 @@ reverse by Maxwell and Betti. The gears are solved for it when it is asked for, 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -19,9 +19,9 @@ from fem.influence.back_face import (
     back_end_correction,
     back_harmonics,
 )
-from fem.influence.gear_shape import MeshedShape
+from fem.influence.gear_shape import MeshedShape, rounded
 from fem.influence.gear_store import GearStore
-from fem.pair.face_compliance import DIGITS, ends_over_cells
+from fem.influence.series import CrossSeries, of_teeth
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
@@ -92,8 +92,15 @@ def back_waves_of(meshed: MeshedShape, gears: GearStore) -> BackHarmonics:
 
 def back_ends_of(meshed: MeshedShape, width: float, gears: GearStore) -> BackEndCorrection:
     """What free ends add to it over a face of some width in modules, solved where it is kept nowhere."""
-    long = float(f"{width:.{DIGITS}g}")
+    long = rounded(width)
     return gears.record("ends across", (meshed, long), partial(back_end_correction, meshed, long))
+
+
+def _ends_over(meshed: MeshedShape, width: float, edges: Array) -> Mapping[int, CrossSeries]:
+    """The same over cells with edges (cells + 1,) in modules, put together where they are kept nowhere."""
+    gears = GearStore()
+    key = meshed, rounded(width), edges.tobytes()
+    return gears.over_face("ends across", key, lambda: back_ends_of(meshed, width, gears).over(edges))
 
 
 def pair_waves_across(
@@ -113,7 +120,7 @@ def pair_waves_across(
     width = bodies.pair.face_width
     wavenumber: Array = np.arange(1, cells, dtype=float) * (np.pi * bodies.pair.module / width)
     compliance: Array = np.zeros((*places.steps.shape[1:], cells - 1))
-    for gear in gears if cells > 1 else ():
+    for gear in gears:
         compliance += gear_waves_across(bodies, gear, places, wavenumber) / width
     return compliance
 
@@ -179,9 +186,8 @@ def pair_ends_across(
     compliance: Array = np.zeros((*leading, n, cells, m, cells))
     for gear in gears:
         flexible = (bodies.pinion, bodies.wheel)[gear]
-        at_cells = widths[gear] / module, edges[gear] / module
-        ends = ends_over_cells("ends across", back_ends_of, bodies.meshed[gear], *at_cells)
+        ends = _ends_over(bodies.meshed[gear], widths[gear] / module, edges[gear] / module)
         load, point = places.on_gear(gear)
-        moved = ends.across(places.steps[gear], load / module, point / module)
+        moved = of_teeth(ends, places.steps[gear], load / module, point / module)
         compliance += np.swapaxes(moved, -3, -2) / (flexible.law.plane_modulus * module)
     return compliance

@@ -2,32 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array
 from fem.influence.gear_face import AxialHarmonics, EndCorrection, axial_harmonics, end_correction
-from fem.influence.gear_shape import MeshedShape
+from fem.influence.gear_shape import MeshedShape, rounded
 from fem.influence.gear_store import GearStore
+from fem.influence.series import CrossSeries, FlankSeries
 from fem.pair.wide_contact import beyond_logarithm
 
 if TYPE_CHECKING:
-    from fem.elasticity.free_ends import HalfFace
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["ends_of", "ends_over_cells", "even_loads", "gear_waves", "pair_ends", "pair_waves", "waves_of"]
-
-Cells = TypeVar("Cells", covariant=True)
+__all__ = ["ends_of", "even_loads", "gear_waves", "pair_ends", "pair_waves", "waves_of"]
 
 SPREAD = 0.15
 """Arc from the tip corner [modules] within which loads on cells count as there: the pressure of a contact beside a
 corner, or of the corner, spreads as far; a line at the corner would yield less than nothing in short waves."""
-
-DIGITS = 12
-"""Of lengths over the module, by which what is solved of a face is known."""
 
 
 def waves_of(meshed: MeshedShape, gears: GearStore) -> AxialHarmonics:
@@ -37,8 +32,17 @@ def waves_of(meshed: MeshedShape, gears: GearStore) -> AxialHarmonics:
 
 def ends_of(meshed: MeshedShape, width: float, gears: GearStore) -> EndCorrection:
     """What free ends add to it over a face of some width in modules, solved where it is kept nowhere."""
-    long = float(f"{width:.{DIGITS}g}")
+    long = rounded(width)
     return gears.record("ends", (meshed, long), partial(end_correction, meshed, long))
+
+
+def _ends_over(
+    meshed: MeshedShape, width: float, edges: Array
+) -> tuple[FlankSeries, Mapping[int, CrossSeries]]:
+    """The same over cells with edges (cells + 1,) in modules, put together where they are kept nowhere."""
+    gears = GearStore()
+    key = meshed, rounded(width), edges.tobytes()
+    return gears.over_face("ends", key, lambda: ends_of(meshed, width, gears).over(edges))
 
 
 def pair_waves(
@@ -150,58 +154,15 @@ def pair_ends(
     module = bodies.pair.module
     for gear in gears:
         flexible = (bodies.pinion, bodies.wheel)[gear]
-        at_cells = widths[gear] / module, edges[gear] / module
-        ends = ends_over_cells("ends", ends_of, bodies.meshed[gear], *at_cells)
+        own, cross = _ends_over(bodies.meshed[gear], widths[gear] / module, edges[gear] / module)
         unit, at = 1.0 / (flexible.law.plane_modulus * module), rho[gear] / module
         for contact in range(n):
-            compliance[..., contact, :, contact, :] += unit * ends.own_at(at[..., contact])
+            compliance[..., contact, :, contact, :] += unit * own.at(at[..., contact])
         for apart in range(1, min(n, bodies.reach + 1)):
             for behind in range(n - apart):
                 ahead = behind + apart
                 load, point = (behind, ahead) if gear == 0 else (ahead, behind)
-                cross = unit * ends.cross_at(apart, at[..., load], at[..., point])
-                compliance[..., load, :, point, :] += cross
-                compliance[..., point, :, load, :] += np.swapaxes(cross, -1, -2)
+                moved = unit * cross[apart].at(at[..., load], at[..., point])
+                compliance[..., load, :, point, :] += moved
+                compliance[..., point, :, load, :] += np.swapaxes(moved, -1, -2)
     return compliance
-
-
-class Ends(Protocol[Cells]):
-    """What free ends add over a face, of which cells are asked for."""
-
-    @property
-    def half(self) -> HalfFace:
-        """Half the face."""
-
-    def over(self, edges: Array) -> Cells:
-        """Over cells with edges in modules."""
-
-
-def ends_over_cells(
-    name: str,
-    solve: Callable[[MeshedShape, float, GearStore], Ends[Cells]],
-    meshed: MeshedShape,
-    width: float,
-    edges: Array,
-) -> Cells:
-    """Free ends of a gear over cells, solved where they are kept nowhere; width and edges in modules.
-
-    Parameters
-    ----------
-    name : str
-        Under which they are kept.
-    solve : callable
-        ``ends_of``, or its like for loads and deflections on two sides of the teeth.
-    meshed : MeshedShape
-    width : float
-    edges : (cells + 1,) array
-        Growing, from the middle of the face.
-    """
-    gears = GearStore()
-    long = float(f"{width:.{DIGITS}g}")
-
-    def over() -> Cells:
-        whole = solve(meshed, width, gears)
-        # the face that was solved ends where the cells do, to the last bit
-        return whole.over(np.clip(edges, -whole.half.ends[-1], whole.half.ends[-1]))
-
-    return gears.over_face(name, (meshed, long, edges.tobytes()), over)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from base import Cost, Stopwatch, record
 from fem.influence.fillet_ends import FilletEnds, fillet_ends
 from fem.influence.fillet_waves import FilletWaves, even_waves, fillet_waves
-from fem.influence.gear_shape import DIGITS
+from fem.influence.gear_shape import rounded
 from fem.influence.gear_store import GearStore, ResultStore
 from fem.influence.root_influence import RootInfluence
 from fem.pair.face_setting import FREE_ENDS
@@ -86,7 +86,7 @@ def _waves(loaded: LoadedShape, gears: GearStore) -> FilletWaves:
 
 
 def _ends(loaded: LoadedShape, width: float, gears: GearStore) -> FilletEnds:
-    long = float(f"{width:.{DIGITS}g}")
+    long = rounded(width)
     return gears.record("fillet ends", (loaded, long), partial(fillet_ends, loaded.shape, long, loaded.low))
 
 

@@ -20,6 +20,7 @@ from fem.influence.back_compliance import back_compliance
 from fem.influence.back_face import BackHarmonics, back_end_correction, back_harmonics
 from fem.influence.gear_face import section_of
 from fem.influence.gear_shape import MeshedShape, shapes
+from fem.influence.series import of_teeth
 from gears import Gear, GearPair, ToothProfile
 from meshes import SectorMesh, Sizes, gear_mesh, mesh_sector
 from meshes.triangle import shape
@@ -202,7 +203,7 @@ def test_ends_of_cells(meshed: MeshedShape) -> None:
     cells = ends.over(np.linspace(-3.0, 3.0, 9))
     rho = np.array([0.4, 0.8]) * ends.place.span[1]
     teeth = np.array(TEETH)
-    added = cells.across(teeth[:, None, None], rho[:, None], rho)
+    added = of_teeth(cells, teeth[:, None, None], rho[:, None], rho)
     size = np.abs(added).max()
     np.testing.assert_allclose(added, added[..., ::-1, ::-1], rtol=0, atol=1e-12 * size)
     np.testing.assert_allclose(added, np.transpose(added, (0, 2, 1, 4, 3)), rtol=0, atol=1e-12 * size)

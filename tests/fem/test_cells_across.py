@@ -187,7 +187,7 @@ def test_waves_and_free_ends_of_both_gears(sides: _Sides) -> None:
                 back_ends_of(meshed, width / module, GearStore()),
             )
             by_wave += waves.across(np.array([step]), load, point, wavenumber)[0] / (modulus * width)
-            by_ends += ends.over(edges).series[step].at(load, point)[0] / (modulus * module)
+            by_ends += ends.over(edges)[step].at(load, point)[0] / (modulus * module)
         ratios = mine.front.lever_ratios[row, i] * mine.back.lever_ratios[row, j]
         at_edges += abs(ratios - 1.0) > 1e-3
         by_wave = count * modes.T @ (by_wave[:, None] * modes)
