@@ -18,7 +18,7 @@ from fem.contact.contact_sides import between
 from fem.contact.contact_state import ContactState
 from fem.contact.loaded_flanks import FlanksInPlace, flanks_in_place
 from fem.contact.shared_contacts import SharedContacts
-from fem.influence.gear_shape import MeshLevel
+from fem.influence.gear_shape import COARSE
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import FREE_ENDS
@@ -61,7 +61,7 @@ def stays_clear(
     behind = _less_film(setup.pair.backlash + other.candidates.gap + touch, other)
     if np.any(_less_film(flanks.candidates.gap - touch, flanks).min(axis=-1) + behind.min(axis=-1) < 0.0):
         return None  # both sides are pressed without a torque
-    matrix = np.swapaxes(between(setup, bodies, flanks, other, MeshLevel.COARSE), 1, 2)
+    matrix = np.swapaxes(between(setup, bodies, flanks, other, COARSE), 1, 2)
     cells, deflection = alone.contacts.forces, alone.share.transmission_error
     # closed by no more than the heaviest cell's line load on the whole face, opened by no less than the lightest one
     heaviest, lightest = (

@@ -12,7 +12,7 @@ import numpy as np
 
 from base import Array, record
 from fem.contact.loaded_flanks import FlanksInPlace, LoadedFlanks, hub_lever
-from fem.influence.gear_shape import MeshLevel
+from fem.influence.gear_shape import FINE, MeshLevel
 from fem.laws.contact_candidates import ContactCandidates
 from fem.laws.local_law import FilmLaw, PairLaws
 from fem.laws.mesh_setup import MeshSetup
@@ -192,7 +192,7 @@ def between(
     bodies: PairCompliance,
     flanks: FlanksInPlace,
     other: FlanksInPlace,
-    level: MeshLevel = MeshLevel.FINE,
+    level: MeshLevel = FINE,
 ) -> Array:
     """Compliance between the loaded flanks and the others, for F' = kappa F (positions, pairs, others) [m/N]."""
     front, back = (other, flanks) if setup.back else (flanks, other)
@@ -206,7 +206,7 @@ def across(
     bodies: PairCompliance,
     front: ContactCandidates,
     back: ContactCandidates,
-    level: MeshLevel = MeshLevel.FINE,
+    level: MeshLevel = FINE,
 ) -> Array:
     """Compliance between contacts of front and back flanks (positions, front pairs, back pairs) [m/N].
 
@@ -219,7 +219,7 @@ def across(
     if "coupling" in bodies.left_out:
         return np.zeros((positions, len(front.offset), len(back.offset)))
     moved = np.zeros((positions, len(front.offset), len(back.offset)))
-    back_flanks = bodies.back_flanks if level is MeshLevel.FINE else bodies.coarse_backs
+    back_flanks = bodies.back_flanks if level == FINE else bodies.coarse_backs
     numbers, hubs = (pair.pinion.teeth, pair.wheel.teeth), (bodies.pinion, bodies.wheel)
     for gear, (flexible, teeth, hub) in enumerate(zip(back_flanks, numbers, hubs, strict=True)):
         here, there = front.teeth[gear, :positions, :, None], back.teeth[gear, :positions, None, :]

@@ -149,7 +149,7 @@ class ContactProblem:
         return self.setup.seen(np.concatenate([self.setup.corners, more, film]))
 
     def _pairs(self, state: ContactState) -> Array | None:
-        """Share, normal force, places and line loads of every pair (positions, pairs, kinds), as of `arcs.Arc`.
+        """Share, normal force, places and line loads of every pair (positions, pairs, kinds), as of ``arcs.Arc``.
 
         None without a torque to share.
         """
@@ -158,8 +158,6 @@ class ContactProblem:
         forces = state.share.forces[0, 0] / state.lever_ratios
         rho = state.flank_rho(0)[:, 0]
         whole = np.stack([state.torques(0)[0] / abs(self.force), forces, *rho], axis=-1)
-        if self.setup.face.even_load:
-            return whole
         cells = state.cell_forces(0)[0]
         return np.concatenate([whole, cells * cells.shape[-1] / self.setup.pair.face_width], axis=-1)
 

@@ -21,6 +21,7 @@ from fem.influence.gear_compliance import CROSS_DEGREE
 from fem.influence.series import CrossSeries, FlankFit, of_teeth
 
 if TYPE_CHECKING:
+    from fem.elasticity.plane_elasticity import PlaneElasticity
     from fem.elasticity.ring import Ring
 
 __all__ = ["BackCompliance", "back_by_mirror", "back_compliance", "teeth_around"]
@@ -44,12 +45,11 @@ class BackCompliance:
     series: Mapping[int, CrossSeries]
     error: float
 
-    def scaled(self, module: float, plane_modulus: float) -> BackCompliance:
-        """Give a gear in modules and E* its size [m] and modulus [Pa]."""
-        return BackCompliance(
-            {tooth: series.scaled(module, plane_modulus) for tooth, series in self.series.items()},
-            self.error / plane_modulus,
-        )
+    def scaled(self, module: float, law: PlaneElasticity) -> BackCompliance:
+        """Give a gear in modules and E* its size [m] and modulus."""
+        modulus = law.plane_modulus
+        series = {tooth: each.scaled(module, modulus) for tooth, each in self.series.items()}
+        return BackCompliance(series, self.error / modulus)
 
     def across(self, tooth: Integers, load: Array, point: Array) -> Array:
         """Displacement into the right flank of a tooth by a load on the left flank of tooth 0 [m per N/m].

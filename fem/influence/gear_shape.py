@@ -8,10 +8,9 @@ number of the shape; logarithms count lengths in modules.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, is_dataclass, replace
-from enum import Enum
 from functools import partial
 from math import ceil
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from fem.elasticity.plane_elasticity import PlaneElasticity
 from gears import BasicRack, Blank, Gear
@@ -21,7 +20,16 @@ if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
     from meshes import Sizes
 
-__all__ = ["GearShape", "MeshLevel", "MeshedShape", "plain", "rounded", "shapes"]
+__all__ = ["COARSE", "FINE", "GearShape", "MeshLevel", "MeshedShape", "plain", "rounded", "shapes"]
+
+MeshLevel: TypeAlias = Literal["fine", "coarse"]
+"""Which of the two nested meshes of a gear: what errs by the mesh is what FINE and COARSE differ by, over the gain.
+
+Answers are those of FINE, the mesh in use. COARSE is the one before its last refinement; its answers are in errors
+alone, and in corrections so small that their error is none of the answer's."""
+
+FINE: Final = "fine"
+COARSE: Final = "coarse"
 
 DIGITS = 12
 """Of lengths over the module: gears that differ in size alone have the same numbers, whatever the last bits are."""
@@ -65,17 +73,6 @@ class GearShape:
         low, high = self.profile.flank_rho
         base_pitch = self.profile.pitch_angle * self.profile.base_radius
         return ceil((high - low) / base_pitch) + 1
-
-
-class MeshLevel(Enum):
-    """Which of the two nested meshes of a gear: what errs by the mesh is what FINE and COARSE differ by, over the gain.
-
-    Answers are those of FINE, the mesh in use. COARSE is the one before its last refinement; its answers are in errors
-    alone, and in corrections so small that their error is none of the answer's.
-    """
-
-    COARSE = "coarse"
-    FINE = "fine"
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from fem.elasticity.ring import Ring, ring_of
 from fem.influence.back_compliance import BackCompliance, back_by_mirror, back_compliance
 from fem.influence.flank_motion import FlankMotion, flank_motion
 from fem.influence.gear_compliance import GearCompliance, gear_compliance
-from fem.influence.gear_shape import MeshedShape, MeshLevel, plain
+from fem.influence.gear_shape import COARSE, FINE, MeshedShape, MeshLevel, plain
 from fem.influence.memo import Memo, read_only
 from fem.influence.tip_strips import TipStrips, tip_strips
 
@@ -96,7 +96,7 @@ class SolvedFlanks:
             self.rho * module,
             self.change / law.plane_modulus,
             self.cross_change / law.plane_modulus,
-            self.coarse_backs.scaled(module, law.plane_modulus),
+            self.coarse_backs.scaled(module, law),
             self.unknowns,
             self.annulus_unknowns,
         )
@@ -125,16 +125,23 @@ class GearStore:
 
     def tips(self, meshed: MeshedShape, level: MeshLevel) -> TipStrips:
         """Answer of the tip edges on one of the meshes."""
-        name = "tips" if level is MeshLevel.FINE else "coarse tips"
-        return self.record(name, (meshed,), lambda: self._tips(meshed, level))
+        name = "tips" if level == FINE else "coarse tips"
+        return self._solved(name, "tips", meshed, level, lambda ring: tip_strips(ring, meshed.shape.profile))
 
     def motion(self, meshed: MeshedShape) -> FlankMotion:
         """Motion of the flank, on the coarser mesh: a correction."""
-        return self.record("motion", (meshed,), lambda: self._motion(meshed))
+        return self._solved("motion", "motion", meshed, COARSE, flank_motion)
 
     def backs(self, meshed: MeshedShape) -> BackCompliance:
         """What loads on the front flanks do to the back flanks."""
-        return self.record("back flanks", (meshed,), lambda: self._backs(meshed))
+        places, reach = sample_places(meshed.shape.profile, BACK_SAMPLES), meshed.shape.reach
+        return self._solved(
+            "back flanks",
+            "back flanks",
+            meshed,
+            FINE,
+            lambda ring: back_compliance(ring, places, reach),
+        )
 
     def rings(self, meshed: MeshedShape) -> Mapping[MeshLevel, Ring]:
         """Factorised gears on both meshes."""
@@ -164,11 +171,11 @@ class GearStore:
         own = Cost(watch.seconds, parts={"mesh": watch.seconds})
         coarse, fine = (ring_of(sector, meshed.shape.law) for sector in (mesh.coarser, mesh))
         self.costs += [own, coarse.cost, fine.cost]
-        return {MeshLevel.COARSE: coarse, MeshLevel.FINE: fine}
+        return {COARSE: coarse, FINE: fine}
 
     def _flanks(self, meshed: MeshedShape, samples: int) -> SolvedFlanks:
         rings = self.rings(meshed)
-        coarse, fine = rings[MeshLevel.COARSE], rings[MeshLevel.FINE]
+        coarse, fine = rings[COARSE], rings[FINE]
         watch, profile, reach = Stopwatch(), meshed.shape.profile, meshed.shape.reach
         places = sample_places(profile, samples)
         loads = flank_loads(coarse, places)
@@ -186,23 +193,16 @@ class GearStore:
         self.costs.append(Cost(watch.seconds, parts={"solve": watch.seconds}))
         return flanks
 
-    def _tips(self, meshed: MeshedShape, level: MeshLevel) -> TipStrips:
-        ring = self.rings(meshed)[level]
-        watch = Stopwatch()
-        strips = tip_strips(ring, meshed.shape.profile)
-        self.costs.append(Cost(watch.seconds, parts={"tips": watch.seconds}))
-        return strips
+    def _solved(
+        self, name: str, part: str, meshed: MeshedShape, level: MeshLevel, solve: Callable[[Ring], T]
+    ) -> T:
+        """Record that is solved on one of the meshes, at a cost that counts as a part."""
 
-    def _motion(self, meshed: MeshedShape) -> FlankMotion:
-        ring = self.rings(meshed)[MeshLevel.COARSE]
-        watch = Stopwatch()
-        motion = flank_motion(ring)
-        self.costs.append(Cost(watch.seconds, parts={"motion": watch.seconds}))
-        return motion
+        def compute() -> T:
+            ring = self.rings(meshed)[level]
+            watch = Stopwatch()
+            solved = solve(ring)
+            self.costs.append(Cost(watch.seconds, parts={part: watch.seconds}))
+            return solved
 
-    def _backs(self, meshed: MeshedShape) -> BackCompliance:
-        ring = self.rings(meshed)[MeshLevel.FINE]
-        watch, shape = Stopwatch(), meshed.shape
-        backs = back_compliance(ring, sample_places(shape.profile, BACK_SAMPLES), shape.reach)
-        self.costs.append(Cost(watch.seconds, parts={"back flanks": watch.seconds}))
-        return backs
+        return self.record(name, (meshed,), compute)

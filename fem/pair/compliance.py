@@ -20,7 +20,7 @@ from base.results import WORST
 from fem.elasticity.flamant import hertz_indentation
 from fem.elasticity.plane_elasticity import PlaneElasticity, check_plane
 from fem.elasticity.support import Support, held_profiles, on_both
-from fem.influence.gear_shape import MeshedShape, MeshLevel, shapes
+from fem.influence.gear_shape import COARSE, FINE, MeshedShape, shapes
 from fem.influence.gear_store import GearStore, ResultStore, SolvedFlanks
 from fem.influence.tip_strips import gain_beside
 from fem.pair.checked import check_pair
@@ -167,9 +167,7 @@ def compliance(
         fit_error=fit_error,
         gain=options.gain,
     )
-    tips, coarse_tips = (
-        bodies.tips_of(gears, level) if tip_edges else None for level in (MeshLevel.FINE, MeshLevel.COARSE)
-    )
+    tips, coarse_tips = (bodies.tips_of(gears, level) if tip_edges else None for level in (FINE, COARSE))
     motions = bodies.motions_of(gears) if motion else None
     parts = sum(gears.costs, Cost(0.0)).parts
     counts = {"annulus_unknowns": first.annulus_unknowns + second.annulus_unknowns}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
 
 from base import Cost, part, quantity, record
 from base.results import ITSELF
@@ -13,15 +13,27 @@ from fem.elasticity.support import FIXED, Support, held_profiles
 from fem.influence.back_compliance import BackCompliance
 from fem.influence.flank_motion import FlankMotion
 from fem.influence.gear_compliance import GearCompliance
-from fem.influence.gear_shape import MeshedShape, MeshLevel, shapes
+from fem.influence.gear_shape import COARSE, FINE, MeshedShape, MeshLevel, shapes
 from fem.influence.gear_store import GearStore
 from fem.influence.tip_strips import TipStrips
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fem.elasticity.plane_elasticity import PlaneElasticity
     from gears import GearPair
     from meshes import Sizes
 
 __all__ = ["SolvedPair"]
+
+S = TypeVar("S", covariant=True)
+
+
+class InModules(Protocol[S]):
+    """What was solved of a gear in modules and E*."""
+
+    def scaled(self, module: float, law: PlaneElasticity) -> S:
+        """Give it a size [m] and a modulus."""
 
 
 @record
@@ -65,7 +77,7 @@ class SolvedPair:
     gain: float = quantity(
         "1", "by how much the last refinement reduced the mesh's error", no_error=ITSELF, default=1.0
     )
-    level: MeshLevel = part("mesh that flanks and tip edges are of", default=MeshLevel.FINE)
+    level: MeshLevel = part('mesh that flanks and tip edges are of: "fine" or "coarse"', default=FINE)
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave the factorised gears behind: they are large, and a factorisation cannot travel."""
@@ -90,10 +102,10 @@ class SolvedPair:
         out where the load goes from one to the other. Nearer, a refinement gains less than ``gain``, and the difference
         is enlarged by as much.
         """
-        fine_tips = self.tip_strips or self.tips_of(GearStore(), MeshLevel.FINE)
-        if self.level is MeshLevel.FINE:
+        fine_tips = self.tip_strips or self.tips_of(GearStore(), FINE)
+        if self.level == FINE:
             return fine_tips
-        coarse_tips = self.coarse_tip_strips or self.tips_of(GearStore(), MeshLevel.COARSE)
+        coarse_tips = self.coarse_tip_strips or self.tips_of(GearStore(), COARSE)
         edge = self.sizes.corner * 0.5**self.refinements * self.pair.module
         first, second = (
             fine.towards(coarse, edge, self.gain) for fine, coarse in zip(fine_tips, coarse_tips, strict=True)
@@ -102,11 +114,7 @@ class SolvedPair:
 
     def tips_of(self, gears: GearStore, level: MeshLevel) -> tuple[TipStrips, TipStrips]:
         """Tip edges of both gears on one of the meshes, from where solved gears are."""
-        first, second = (
-            gears.tips(meshed, level).scaled(self.pair.module, flexible.law)
-            for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
-        )
-        return first, second
+        return self._sized(lambda meshed: gears.tips(meshed, level))
 
     @cached_property
     def motions(self) -> tuple[FlankMotion, FlankMotion]:
@@ -115,21 +123,12 @@ class SolvedPair:
 
     def motions_of(self, gears: GearStore) -> tuple[FlankMotion, FlankMotion]:
         """How the flanks of both gears move, from where solved gears are."""
-        first, second = (
-            gears.motion(meshed).scaled(self.pair.module, flexible.law)
-            for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
-        )
-        return first, second
+        return self._sized(gears.motion)
 
     @cached_property
     def back_flanks(self) -> tuple[BackCompliance, BackCompliance]:
         """What loads on the front flanks of both gears do to their back flanks; solved when it is first asked for."""
-        gears = GearStore()
-        first, second = (
-            gears.backs(meshed).scaled(self.pair.module, flexible.law.plane_modulus)
-            for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
-        )
-        return first, second
+        return self._sized(GearStore().backs)
 
     def rings(self) -> tuple[Ring, Ring]:
         """Meshed and factorised gears: those that this process still has, or computed anew from the same sizes."""
@@ -138,8 +137,12 @@ class SolvedPair:
     @cached_property
     def _rings(self) -> tuple[Ring, Ring]:
         gears = GearStore()
+        return self._sized(lambda meshed: gears.rings(meshed)[FINE])
+
+    def _sized(self, solved: Callable[[MeshedShape], InModules[S]]) -> tuple[S, S]:
+        """Give what was solved of both gears in modules and E* their size and moduli."""
         first, second = (
-            gears.rings(meshed)[MeshLevel.FINE].scaled(self.pair.module, flexible.law)
+            solved(meshed).scaled(self.pair.module, flexible.law)
             for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
         )
         return first, second
@@ -155,4 +158,4 @@ class SolvedPair:
             coarse.off_by(fine, self.gain)
             for fine, coarse in zip((self.pinion, self.wheel), self.coarse_flanks, strict=True)
         )
-        return replace(self, pinion=pinion, wheel=wheel, level=MeshLevel.COARSE)
+        return replace(self, pinion=pinion, wheel=wheel, level=COARSE)

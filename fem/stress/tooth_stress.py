@@ -92,10 +92,9 @@ class ToothStress:
         return np.arange(self.offsets.min() - 1, self.offsets.max() + 2)
 
     def on_arcs(self, arcs: Arcs) -> CellLoads:
-        """Loads at all nodes of arcs, one after the other; pairs without cells bear evenly, on a single one."""
+        """Loads at all nodes of arcs, one after the other."""
         pairs = np.concatenate([arc.pairs for arc in arcs.arcs if arc.pairs is not None])
-        cells, whole = pairs[..., CELLS:], pairs[..., FORCE, None] / self.root.contact_width
-        return CellLoads(cells if cells.shape[-1] else whole, pairs[..., FORCE + 1 + self.gear])
+        return CellLoads(pairs[..., CELLS:], pairs[..., FORCE + 1 + self.gear])
 
     def along(self, loads: CellLoads, tooth: int, z: Array) -> Array:
         """Stress along the fillets of a tooth (n, places, 2, samples) [Pa] at places of the face in contact."""

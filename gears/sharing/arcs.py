@@ -55,8 +55,8 @@ class Arc:
     pairs: Array | None = quantity(
         "",
         "at the same points of every pair: share of the torque, normal force [N], curvature radius of the pinion's "
-        "and of the wheel's flank [m], and where the face has cells the line load on each [N/m]; None where pairs are "
-        "not distinguished",
+        "and of the wheel's flank [m], and by finite elements the line load on each cell of the face [N/m]; None where "
+        "pairs are not distinguished",
         "node pair kind",
         default=None,
     )

@@ -16,7 +16,7 @@ from fem.elasticity.ring import mesh_and_factor, ring_of
 from fem.elasticity.support import FIXED, Support, held_profiles
 from fem.influence.fillet_influence import fillet_influence
 from fem.influence.gear_compliance import gear_compliance
-from fem.influence.gear_shape import MeshedShape, MeshLevel, shapes
+from fem.influence.gear_shape import FINE, MeshedShape, shapes
 from fem.influence.gear_store import MOST_RECORDS, GearStore
 from fem.influence.memo import Memo
 from fem.influence.tip_strips import tip_strips
@@ -222,7 +222,7 @@ def test_records_from_a_shelf_are_those_of_the_process():
 
 def test_kept_records_refuse_writing():
     gears, meshed = GearStore(), MeshedShape(key(PAIR), COARSE, 1)
-    flanks, tips = gears.flanks(meshed, 20), gears.tips(meshed, MeshLevel.FINE)
+    flanks, tips = gears.flanks(meshed, 20), gears.tips(meshed, FINE)
     own, cross = flanks.fine.own_series, flanks.fine.cross_series[1]
     for array in (flanks.rho, own.coefficients, cross.coefficients, tips.kernel):
         with pytest.raises(ValueError, match="read-only"):
