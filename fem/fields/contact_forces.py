@@ -11,6 +11,7 @@ from base import Array, Integers, quantity, record
 from fem.cycle.cycle_rows import require_row
 from fem.cycle.result import MeshCycle
 from fem.elasticity.plane_elasticity import MIRROR
+from fem.fields.loaded_gears import frames
 from fem.fields.stress_fields import contact_half_width, of_axis
 from gears.tooth.rotation import turned
 
@@ -84,16 +85,14 @@ def contact_forces(pair: GearPair, cycle: MeshCycle, row: int) -> ContactForces:
 def _touched(pair: GearPair, cycle: MeshCycle, row: int, column: int) -> tuple[Array, Array]:
     """Place of a contact, and the normal along the force on the wheel."""
     start = float(pair.points.A + cycle.loaded_position[row] * pair.base_pitch)
-    placed = pair.placement(start)
     offset = int(cycle.pair_offset[column])
     # a tip edge touches the other gear's flank: the wheel's, when it comes after E
     after = bool(cycle.edge[row, column]) and start + offset * pair.base_pitch > pair.points.E
     touched = 1 if after else 0
     profile = pair.teeth_profiles[touched]
     rho = cycle.flank_rho[touched][row, column]
-    angle = (placed.pinion_angle, placed.wheel_angle)[touched]
-    angle += (offset if touched == 0 else -offset) * profile.pitch_angle
-    point, normal = turned(np.stack([profile.involute(rho), profile.normal(rho)]) * MIRROR, angle)
-    if touched == 0:
-        return point, normal
-    return point + placed.wheel_centre, -normal
+    angle, axis = frames(pair, start)[touched]
+    ahead = 1 if touched == 0 else -1
+    at = np.stack([profile.involute(rho), profile.normal(rho)]) * MIRROR
+    point, normal = turned(at, angle + ahead * offset * profile.pitch_angle)
+    return point + axis, ahead * normal

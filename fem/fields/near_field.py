@@ -69,39 +69,35 @@ def near_field(points: Array, contact: Contact, law: PlaneElasticity, length: fl
     close = inside > 0
     share = inside[close, None]
     if contact.strips is None:
-        spread = _hertz_displacement(points[close], contact, law, length)
+        sources, total = _hertz_sources(a), w
         pressed = flamant.hertz_stress(points[close], load, inward, a, 2 * w / (np.pi * a))
     else:
-        spread = _strips_displacement(points[close], contact, contact.strips, law, length)
+        middle, width, force = contact.strips
+        # a little above the middle of each
+        sources, total = np.stack([middle, 0.2 * width, force]), 1.0
         pressed = flamant.strips_stress(points[close], load, inward, contact.strips)
+    spread = total * _spread(points[close], load, inward, sources, law, length)
     displacement[close] = (1 - share) * displacement[close] + share * spread
     stress[close] = (1 - share[..., None]) * stress[close] + share[..., None] * pressed
     return displacement, stress
 
 
-def _hertz_displacement(points: Array, contact: Contact, law: PlaneElasticity, length: float) -> Array:
-    """Spread Flamant's displacement over the Hertz pressure by Gauss quadrature with weight sqrt(1 - t^2)."""
-    n = 24
-    angle = np.pi * np.arange(1, n + 1) / (n + 1)
-    load, inward = contact.at.points[0], contact.at.inward[0]
-    side = np.array([-inward[1], inward[0]])
-    total = np.zeros_like(points)
-    for t, weight in zip(np.cos(angle), 2 / (n + 1) * np.sin(angle) ** 2, strict=True):
-        source = load + t * contact.half_width * side
-        # a point that falls on a source is moved by much less than the sources are apart
-        apart = points + 1e-3 * contact.half_width * inward
-        total += weight * flamant.displacement(apart, source, inward, law, length)
-    return contact.line_load * total
+def _hertz_sources(half_width: float, count: int = 24) -> Array:
+    """Sources of Hertz's pressure by Gauss quadrature with weight sqrt(1 - t^2), as of ``_spread``."""
+    angle = np.pi * np.arange(1, count + 1) / (count + 1)
+    # a point that falls on a source is moved by much less than the sources are apart
+    above = np.full(count, 1e-3 * half_width)
+    return np.stack([np.cos(angle) * half_width, above, 2 / (count + 1) * np.sin(angle) ** 2])
 
 
-def _strips_displacement(
-    points: Array, contact: Contact, strips: Array, law: PlaneElasticity, length: float
+def _spread(
+    points: Array, load: Array, inward: Array, sources: Array, law: PlaneElasticity, length: float
 ) -> Array:
-    """Sum Flamant's displacement over strips, each taken from a little above its middle."""
-    load, inward = contact.at.points[0], contact.at.inward[0]
+    """Flamant's displacement by several loads (3, k): places along the flank, distances above them, and sizes."""
     side = np.array([-inward[1], inward[0]])
     total = np.zeros_like(points)
-    for middle, width, force in strips.T:
-        apart = points + 0.2 * width * inward
-        total += force * flamant.displacement(apart, load + middle * side, inward, law, length)
+    for place, above, size in sources.T:
+        total += size * flamant.displacement(
+            points + above * inward, load + place * side, inward, law, length
+        )
     return total

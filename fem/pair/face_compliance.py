@@ -13,12 +13,13 @@ from fem.influence.gear_face import AxialHarmonics, EndCorrection, axial_harmoni
 from fem.influence.gear_shape import MeshedShape, rounded
 from fem.influence.gear_store import GearStore
 from fem.influence.series import CrossSeries, FlankSeries
+from fem.pair.pair_compliance import contacts_apart
 from fem.pair.wide_contact import beyond_logarithm
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["ends_of", "even_loads", "gear_waves", "pair_ends", "pair_waves", "waves_of"]
+__all__ = ["ends_of", "gear_waves", "pair_ends", "pair_waves", "waves_of"]
 
 SPREAD = 0.15
 """Arc from the tip corner [modules] within which loads on cells count as there: the pressure of a contact beside a
@@ -99,32 +100,9 @@ def gear_waves(
     unit, at = 1.0 / flexible.law.plane_modulus, np.minimum(rho / module, np.sqrt(last))
     wide = beyond_logarithm(wavenumber * half_width) if half_width else 0.0
     compliance[..., diagonal, diagonal, :] = unit * (waves.own_at(at, wavenumber) + 2 / np.pi * wide)
-    for apart in range(1, min(n, bodies.reach + 1)):
-        behind, ahead = diagonal[:-apart], diagonal[apart:]
-        # the pair ahead has the smaller rho2
-        load, point = (behind, ahead) if gear == 0 else (ahead, behind)
+    for apart, load, point in contacts_apart(gear, n, bodies.reach):
         cross = unit * waves.cross_at(apart, at[..., load], at[..., point], wavenumber)
-        compliance[..., behind, ahead, :] = compliance[..., ahead, behind, :] = cross
-    return compliance
-
-
-def even_loads(bodies: PairCompliance, gear: int, rho: Array) -> Array:
-    """What even line loads yield on one gear (..., n, n) [m per N/m], without the local indentation.
-
-    Parameters
-    ----------
-    bodies, gear, rho
-        As of ``gear_waves``.
-    """
-    flexible, n = (bodies.pinion, bodies.wheel)[gear], rho.shape[-1]
-    compliance: Array = np.zeros((*rho.shape, n))
-    diagonal = np.arange(n)
-    compliance[..., diagonal, diagonal] = flexible.own(rho)
-    for apart in range(1, min(n, bodies.reach + 1)):
-        behind, ahead = diagonal[:-apart], diagonal[apart:]
-        load, point = (behind, ahead) if gear == 0 else (ahead, behind)
-        cross = flexible.cross(apart, rho[..., load], rho[..., point])
-        compliance[..., behind, ahead] = compliance[..., ahead, behind] = cross
+        compliance[..., load, point, :] = compliance[..., point, load, :] = cross
     return compliance
 
 
@@ -158,10 +136,8 @@ def pair_ends(
         unit, at = 1.0 / (flexible.law.plane_modulus * module), rho[gear] / module
         for contact in range(n):
             compliance[..., contact, :, contact, :] += unit * own.at(at[..., contact])
-        for apart in range(1, min(n, bodies.reach + 1)):
-            for behind in range(n - apart):
-                ahead = behind + apart
-                load, point = (behind, ahead) if gear == 0 else (ahead, behind)
+        for apart, loads, points in contacts_apart(gear, n, bodies.reach):
+            for load, point in zip(loads.tolist(), points.tolist(), strict=True):
                 moved = unit * cross[apart].at(at[..., load], at[..., point])
                 compliance[..., load, :, point, :] += moved
                 compliance[..., point, :, load, :] += np.swapaxes(moved, -1, -2)

@@ -2,24 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import cos
 from types import MappingProxyType
 
 import numpy as np
 
-from base import Array, Faults, described, part, record
+from base import Array, Faults, Integers, described, part, record
 from fem.elasticity.flamant import hertz_half_width, hertz_indentation
 from fem.elasticity.support import held_profiles
 from fem.elasticity.torsion import step_wind_up
 from fem.pair.hertz_approach import HertzApproach
 from fem.pair.solved_pair import SolvedPair
 
-__all__ = ["PARTS", "PairCompliance"]
+__all__ = ["PARTS", "PairCompliance", "contacts_apart"]
 
 PARTS = ("hub_windup", "coupling", "support")
 """Parts that ``PairCompliance.without`` can leave out."""
+
+
+def contacts_apart(gear: int, count: int, reach: int) -> Iterator[tuple[int, Integers, Integers]]:
+    """Contacts of a gear that are 1, 2, ... teeth apart: how many, those that are loaded and those that are seen.
+
+    Contacts stand in order of their rho1. Cross terms are symmetric (Maxwell and Betti) and known towards growing rho:
+    the pair ahead has the larger rho on the pinion and the smaller one on the wheel.
+
+    Parameters
+    ----------
+    gear : int
+        0 is the pinion, 1 the wheel.
+    count : int
+        Contacts.
+    reach : int
+        Neighbours that feel a load.
+    """
+    contact = np.arange(count)
+    for apart in range(1, min(count, reach + 1)):
+        behind, ahead = contact[:-apart], contact[apart:]
+        yield (apart, behind, ahead) if gear == 0 else (apart, ahead, behind)
 
 
 @record
@@ -172,29 +193,42 @@ class PairCompliance(SolvedPair):
         """
         rho1 = np.asarray(rho1, dtype=float)
         rho2 = self.pair.line_of_action - rho1 if rho2 is None else rho2
-        n = rho1.shape[-1]
-        width, common = self.pair.face_width, self._common
-        reach = 0 if "coupling" in self.left_out else self.reach
-        matrix = np.zeros((*rho1.shape, n))
-        own, diagonal = self.pinion.own(rho1) + self.wheel.own(rho2), np.arange(n)
-        matrix[..., diagonal, diagonal] = own / width + common
-        for apart in range(1, min(n, reach + 1)):
-            # the pair ahead has the smaller rho2, and the cross term is symmetric (Maxwell and Betti)
-            behind, ahead = diagonal[:-apart], diagonal[apart:]
-            first = self.pinion.cross(apart, rho1[..., behind], rho1[..., ahead])
-            second = self.wheel.cross(apart, rho2[..., ahead], rho2[..., behind])
+        first, second = (
+            self.even_loads(gear, rho, None if leaning is None else leaning[gear])
+            for gear, rho in enumerate((rho1, rho2))
+        )
+        contact, reach = np.arange(rho1.shape[-1]), 0 if "coupling" in self.left_out else self.reach
+        near = np.abs(contact[:, None] - contact) <= reach
+        return np.where(near, (first + second) / self.pair.face_width + self._common, 0.0)
+
+    def even_loads(self, gear: int, rho: Array, leaning: Array | None = None) -> Array:
+        """What even line loads yield on one gear, without the local indentation.
+
+        Parameters
+        ----------
+        gear : int
+            0 is the pinion, 1 the wheel.
+        rho : (..., n) array
+            Curvature radii of n pairs on it, in order of rho1, one tooth apart [m].
+        leaning : (..., n) array, optional
+            Angles by which forces lean from its own normal, as of ``bulk``.
+
+        Returns
+        -------
+        (..., n, n) array
+            Symmetric [m per N/m].
+        """
+        flexible, n = (self.pinion, self.wheel)[gear], rho.shape[-1]
+        compliance: Array = np.zeros((*rho.shape, n))
+        compliance[..., np.arange(n), np.arange(n)] = flexible.own(rho)
+        for apart, load, point in contacts_apart(gear, n, self.reach):
+            moved = flexible.cross(apart, rho[..., load], rho[..., point])
             if leaning is not None:
                 # corners are the places of largest rho
-                angles = leaning[0][..., ahead], leaning[1][..., behind]
-                corners = (
-                    self.pinion.corner(apart, rho1[..., behind]),
-                    self.wheel.corner(apart, rho2[..., ahead]),
-                )
-                first = np.cos(angles[0]) * first - np.sin(angles[0]) * corners[0]
-                second = np.cos(angles[1]) * second - np.sin(angles[1]) * corners[1]
-            cross = (first + second) / width + common
-            matrix[..., behind, ahead] = matrix[..., ahead, behind] = cross
-        return matrix
+                angle, corner = leaning[..., point], flexible.corner(apart, rho[..., load])
+                moved = np.cos(angle) * moved - np.sin(angle) * corner
+            compliance[..., load, point] = compliance[..., point, load] = moved
+        return compliance
 
     def hertz(self, rho1: Array, curvature: Array | float = 1.0, lever: Array | float = 1.0) -> HertzApproach:
         """Local indentation of pairs at rho1 [m] as a function of their forces.

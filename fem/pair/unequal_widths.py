@@ -20,7 +20,7 @@ import numpy as np
 
 from base import Array
 from fem.pair.face_across import PlacesAcross, even_loads_across, gear_waves_across
-from fem.pair.face_compliance import even_loads, gear_waves
+from fem.pair.face_compliance import gear_waves
 from fem.pair.face_setting import FaceSetting
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def overhang(bodies: PairCompliance, gear: int, rho: Array, face: FaceSetting) -
     array
         [m/N]
     """
-    even = even_loads(bodies, gear, rho)
+    even = bodies.even_loads(gear, rho)
     if "hub_windup" in bodies.left_out:
         even = even - (bodies.pinion, bodies.wheel)[gear].hub_windup
     return _wider(bodies, gear, face, even, partial(gear_waves, bodies, gear, rho))
