@@ -194,7 +194,7 @@ class CrossSeries(_Series):
             return np.asarray(np.sum((loads @ self.coefficients) * points, axis=-1))
         first, second, *value = self.coefficients.shape
         products = (loads[..., :, None] * points[..., None, :]).reshape(*loads.shape[:-1], first * second)
-        return np.asarray(np.tensordot(products, self.coefficients.reshape(-1, *value), axes=1))
+        return np.asarray(np.tensordot(products, self.coefficients.reshape(first * second, *value), axes=1))
 
     def slope(self, load: Array, point: Array) -> Array:
         """Derivative of a scalar value by rho as load and point move on together."""
