@@ -189,8 +189,8 @@ class ContactState:
         if not self.settled:
             most = 1e3 * np.max(self.share.transmission_error)
             return (
-                f"a deflection of {most:.2g} mm is far beyond the first order of contacts that move; reduce the "
-                "torque, or let contacts stay"
+                f"a deflection of {most:.2g} mm is far beyond the first order of contacts that move, in which strained "
+                "teeth stiffen without bound; reduce the torque, or let contacts stay"
             )
         if (far := self.shafts_give_way(number)) > FAR_APART:
             return (

@@ -59,7 +59,8 @@ def moved_share(
     Returns
     -------
     SharedContacts or None
-        None where Newton's method does not settle: the deflection is far beyond the first order.
+        None where Newton's method does not settle, or where strained teeth have stiffened without bound: the
+        deflection is far beyond the first order.
     """
     whole = whole + np.zeros_like(stays.share.stiffness)
     forces, remaining_gaps, lost = (
@@ -86,6 +87,9 @@ def moved_share(
         order.append(torques)
     back = np.argsort(np.concatenate(order))
     share = shares_together(shares, back)
+    hubs = 0.0 if bodies.left_out & {"coupling", "hub_windup"} else sum(bodies.hub_windup)
+    if np.any(share.stiffness * hubs >= 1.0):  # nothing else yields
+        return None
     lost[:, 0] += flanks.turned_levers()
     return replace(
         stays,

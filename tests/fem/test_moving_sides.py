@@ -165,6 +165,14 @@ def test_deflections_beyond_the_first_order_are_refused_and_others_of_the_same_c
     assert "reduce the torque, or let contacts stay" in heavy.message
 
 
+def test_teeth_that_stiffen_without_bound_are_refused_and_have_no_negative_stiffness(loose):
+    """The compliance of one position falls to that of the hubs: against the bodies the tangent would leap below 0."""
+    cycles = fem.mesh_cycle(LOOSE, (18.5, 18.7, 18.74, 18.76), 20, loose, beyond_path=False)
+    assert [cycle.converged for cycle in cycles] == [True, True, False, False]
+    assert all(np.all(cycle.stiffness > 0.0) for cycle in cycles if cycle.converged)
+    assert "strained teeth stiffen without bound" in cycles[-1].message
+
+
 @pytest.mark.parametrize("moving", [False, True])
 def test_slices_are_the_plane_where_back_flanks_bear(loose, moving):
     """Under 9 N m those of contacts that move do, of contacts that stay none."""
