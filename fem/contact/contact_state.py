@@ -29,7 +29,8 @@ NOTHING = 1e-14
 """Overlap that is rounding [m]."""
 
 LIMITS = (
-    "a tip edge presses over more than the strips cover; reduce the torque",
+    "a tip edge presses over more than the strips cover, or closes a gap of more than half a module; reduce the torque "
+    "or the deviations",
     "the deflection closes gaps more than a base pitch outside the path, where no contact was looked for; reduce the "
     "torque or the deviations",
     "a chamfer's face touches before its corner does, for which there is no law; reduce the torque",
@@ -37,7 +38,8 @@ LIMITS = (
 """What the flanks that a torque loads must not do."""
 
 LIMITS_BEHIND = (
-    "a tip edge of a back flank presses over more than the strips cover; give more backlash",
+    "a tip edge of a back flank presses over more than the strips cover, or closes a gap of more than half a module; "
+    "give more backlash",
     "back flanks overlap by more than was looked for outside the path; give more backlash",
     "the face of a chamfer touches on a back flank, for which there is no law; give more backlash",
 )
@@ -224,11 +226,11 @@ class ContactState:
     def _beyond(self, number: int, limits: tuple[str, str, str]) -> str:
         """Which limit of the laws or of the candidates is passed, empty if none is."""
         candidates, turned = self.candidates, self.share.forces[number]
+        if np.max(self.closing[number] + self.touch) > candidates.reach_gap:
+            return limits[1]
         largest = self.flanks.largest if isinstance(self.flanks, LoadedFlanks) else 0.0
         if candidates.edge.any() and np.any(turned[..., candidates.edge] > largest):
             return limits[0]
-        if np.max(self.closing[number] + self.touch) > candidates.reach_gap:
-            return limits[1]
         return limits[2] if np.any(turned[..., candidates.chamfered] > 0.0) else ""
 
 

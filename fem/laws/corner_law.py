@@ -146,8 +146,10 @@ class CornerSurface:
         return np.asarray(self.gaps(self._xi(place)[0]))
 
     def covered(self, place: Array) -> Array:
-        """Forces up to which laws of edges at places hold [N]."""
-        return np.interp(self._xi(place)[0], *self.largest)
+        """Forces up to which laws of edges at places hold [N]; 0 farther out than laws are."""
+        edges, largest = self.largest
+        at = np.arcsinh((place - self.origin) / self.unit)
+        return np.asarray(np.interp(at, edges, largest, right=0.0))
 
     def held(self, at: Booleans, place: Array, further: Array) -> CornerLaw:
         """Law of contacts that stay.

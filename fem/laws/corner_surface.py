@@ -26,7 +26,7 @@ NEAR, STEP = 0.005, 0.1
 """Distance from the end [modules] below which places are even, and the step of asinh of the distance over it."""
 
 OPEN = 0.5
-"""Gap [modules] of a corner to the other flank up to which places have laws; farther ones have the last."""
+"""Gap [modules] of a corner to the other flank up to which places have laws; farther ones have none."""
 
 ROUND = 0.1
 """Distance [modules of rho] from the end of a flank's fit within which places beyond it are rounded off to it."""
@@ -109,19 +109,11 @@ class _Corner:
         """Contacts of the tip edge: approach over the force (n, k) [m/N], gaps [m], and the largest forces [N]."""
         setup, corner, rounding = self.setup, self.corner, self.setup.rounds[self.corner]
         other, place = (self.bodies.wheel, self.bodies.pinion)[corner], self.place(self.end + z)
-        tips = (
-            setup.pair,
-            self.bodies.tips[corner],
-            corner,
-            place,
-            other.law,
-            rounding,
-            setup.removed,
-            self.turned,
-        )
+        tips = setup.pair, self.bodies.tips[corner], corner, place, other.law
+        shape = setup.removed, self.turned
         asked = np.repeat(force[None], len(z), axis=0)
         if rounding.radius > 0.0:
-            points, approach = rounded_law(*tips)
+            points, approach = rounded_law(*tips, rounding, *shape)
             gap = np.where(np.isnan(approach), np.inf, approach).min(axis=1)
             # where strips farther in recede, those that bear go on bearing
             largest = np.where(np.isfinite(points[:, -1]), points[:, -1], np.inf)
@@ -131,7 +123,7 @@ class _Corner:
             by_strips = along(points, approach - gap[:, None], size)[0]
             per_log = self.bodies.hertz(place[:1]).per_log
             return by_strips - per_log * np.log(asked / size), gap, largest
-        law = edge_laws(*tips)
+        law = edge_laws(*tips, *shape)
         table = Table.through(law.force, law.approach - law.approach[:, :1], law.smooth)
         return (table.value_and_slope(asked.T)[0] / force[:, None]).T, law.approach[:, 0], law.largest
 
@@ -218,7 +210,7 @@ def corner_surfaces(
     corner : {0, 1}
         Of the pinion, beside E, or of the wheel, beside A.
     far : float
-        Base pitches beyond the end up to which places have laws; farther ones have the last.
+        Base pitches beyond the end up to which places have laws; farther ones have none.
     slid : float
         As for ``fem.laws.cut_off.cut_off``.
     """

@@ -169,11 +169,10 @@ def edge_laws(
     corner: int,
     rho1: Array,
     other: PlaneElasticity,
-    rounding: TipRound | None = None,
     removed: tuple[Removed, Removed] | None = None,
     turned: int = 0,
 ) -> EdgeLaw:
-    """Laws of the contacts at positions ``rho1`` outside the path of contact.
+    """Laws of the contacts of a sharp corner at positions ``rho1`` outside the path of contact.
 
     Parameters
     ----------
@@ -186,33 +185,27 @@ def edge_laws(
         Positions by rho1 of the unlimited involutes [m].
     other : PlaneElasticity
         Of the gear whose flank is touched.
-    rounding : TipRound, optional
-        Of the corner; sharp unless given.
     removed : (function, function), optional
         Material missing from the flanks of pinion and wheel; none unless given.
     turned : {0, 1}
         Whose turn the approach is: of the pinion, or of the wheel with the pinion where it is.
     """
     profile = pair.teeth_profiles[corner]
-    rounding = rounding or tip_round(profile, 0.0)
-    missing = removed or (_nothing, _nothing)
-    _, touched_rho = _gaps(pair, corner, rho1, _at_corner(profile, rounding), missing)
-    if rounding.radius == 0.0 and removed is None:
+    sharp, missing = tip_round(profile, 0.0), removed or (_nothing, _nothing)
+    at_corner = _at_corner(profile, sharp)
+    _, touched_rho = _gaps(pair, corner, rho1, at_corner, missing)
+    if removed is None:
         force, approach = begun(*strip_law(pair, strips, corner, rho1, other, turned=turned))
         smooth = np.ones(len(rho1), dtype=bool)
     else:
-        sharp = rounding.radius == 0.0
-        layout = (strips.distance, strips.width) if sharp else round_layout(pair.module, rounding)
-        tip = _surface(profile, *layout, rounding)
-        answer = strips if sharp else strips.on(tip.distance, tip.width)
-        force, approach, order = closings(*_strips(pair, answer, corner, rho1, other, tip, missing, turned))
-        force, smooth = force * pair.face_width, np.zeros(len(rho1), dtype=bool)
-        if sharp:  # the corner is nearer than the middle of its strip
-            first = _touching(pair, corner, rho1, _at_corner(profile, rounding), missing, turned)[:, 0]
-            approach[:, 0] = np.minimum(approach[:, 0], first)
-            smooth = np.all(order == np.arange(order.shape[1]), axis=1)
-            inwards = begun(force[smooth], smoothed(force, approach)[smooth])
-            force[smooth], approach[smooth] = inwards
+        tip = _surface(profile, strips.distance, strips.width, sharp)
+        force, approach, order = closings(*_strips(pair, strips, corner, rho1, other, tip, missing, turned))
+        force = force * pair.face_width
+        # the corner is nearer than the middle of its strip
+        first = _touching(pair, corner, rho1, at_corner, missing, turned)[:, 0]
+        approach[:, 0] = np.minimum(approach[:, 0], first)
+        smooth = np.all(order == np.arange(order.shape[1]), axis=1)
+        force[smooth], approach[smooth] = begun(force[smooth], smoothed(force, approach)[smooth])
     force, approach, largest = _growing(force, approach)
     return EdgeLaw(force, approach, touched_rho[:, 0], largest, smooth)
 

@@ -7,8 +7,8 @@ import pytest
 
 import fem
 from fem.elasticity.corner_singularity import corner_logarithm
-from fem.laws.local_law import Table
-from fem.laws.tip_contact import edge_laws, nearest_gap
+from fem.laws.cut_off import along
+from fem.laws.tip_contact import nearest_gap, rounded_law
 from fem.laws.tip_geometry import chamfer_gap, corner_angle, tip_round, unloaded_gap
 from gears import Gear, GearPair
 from meshes import Sizes, mesh_sector
@@ -60,14 +60,18 @@ def test_a_small_contact_on_the_arc_is_hertz(article_pair, article_bodies):
     profile = article_pair.teeth_profiles[1]
     one = tip_round(profile, radius)
     place = np.array([article_pair.points.A - 1e-3])
-    law = edge_laws(article_pair, article_bodies.tips[1], 1, place, article_bodies.pinion.law, one)
-    table = Table.through(law.force, law.approach, law.smooth)
+    force, approach = rounded_law(
+        article_pair, article_bodies.tips[1], 1, place, article_bodies.pinion.law, one
+    )
+    approach = approach - np.nanmin(approach)
+    radii, line = article_pair.base_radii, article_pair.line_of_action
+    touched_rho = unloaded_gap(radii, line, place, np.array([one.rho]))[1][0, 0]
     width, m = article_pair.face_width, article_pair.module
     modulus = article_bodies.pinion.law.plane_modulus
     star = article_bodies.pinion.law.plane_poisson
     # own compliance of the wheel's tip where the arc is nearest, distance by the flanks' angle
-    turn = (profile.flank_rho[1] - (article_pair.line_of_action - place[0])) / article_pair.base_radii[1]
-    flank = (law.touched_rho[0] - place[0]) / article_pair.base_radii[0]
+    turn = (profile.flank_rho[1] - (line - place[0])) / radii[1]
+    flank = (touched_rho - place[0]) / radii[0]
     distance = one.start - radius * (flank - turn)
     strips = article_bodies.tips[1]
     from fem.influence.strip_contact import flat_kernel
@@ -76,12 +80,12 @@ def test_a_small_contact_on_the_arc_is_hertz(article_pair, article_bodies):
     leaning = strips.leaning(angle)[0] - strips.hub_windup * strips.lever(angle[0]) ** 2
     regular = leaning - flat_kernel(strips.distance, strips.width, strips.law, m)
     own = np.interp(np.log(distance), np.log(strips.distance), np.diag(regular))
-    R = 1 / (1 / radius + 1 / law.touched_rho[0])
+    R = 1 / (1 / radius + 1 / touched_rho)
     for load in (30e3, 100e3):  # N/m: half-widths of 6 and 10 um
         a = np.sqrt(8 * load * R / (np.pi * modulus))
         hertz = 2 * 2 / (np.pi * modulus) * (np.log(2 * m / a) + 0.5 - 0.5 * (1 + star))
         wanted = load * (hertz + own)
-        got = table.value_and_slope(np.array([load * width]))[0][0] - law.approach[0, 0]
+        got = along(force, approach, np.array([[load * width]]))[0][0, 0] * load * width
         assert got == pytest.approx(wanted, rel=0.01)
 
 
