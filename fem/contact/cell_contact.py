@@ -15,7 +15,7 @@ from fem.contact.cell_matrix import cell_coupling, cross_coupling
 from fem.contact.contact_sides import ContactSides
 from fem.contact.partial_cells import WITHIN, gap_drops, partial_cells
 from fem.elasticity.flamant import hertz_half_width
-from fem.pair.face_shafts import HeldShafts, shafts_under_face
+from fem.pair.face_shafts import HeldShafts, ShaftsUnderFace, shafts_under_face
 from fem.pair.wide_contact import shared_by_width
 from gears.sharing.active_set import share_forces
 from gears.sharing.staying_contacts import DeflectionLaw, JointLaw, StayingContacts
@@ -129,7 +129,7 @@ class CellContact:
         def coupling(strip: float) -> tuple[CellCoupling, CellCoupling]:
             """Of the bodies, and with the shafts."""
             own = self.coupling(replace(face, strip=strip))
-            return own, own if shafts is None else own.plus(shafts.compliance, self.sides.lever_ratios)
+            return own, self._on_shafts(own, shafts)
 
         @lru_cache(maxsize=1)
         def law(strip: float, torques: tuple[int, ...]) -> JointLaw:
@@ -164,9 +164,9 @@ class CellContact:
             if held and shafts is not None:
                 slope = law(strip, tuple(torques.tolist())).slope(forces)
                 slope = slope if film is None else slope - film.slope(forces)
-                by_tilt = nothing + shafts.levers(self.sides.lever_ratios)
+                by_tilt = nothing + shafts.levers(self.sides.lever_ratios, self.sides.count)
                 slopes[0][torques], slopes[1][torques] = alone.solved(
-                    slope, np.ones_like(forces), by_tilt, forces > 0.0, wanted
+                    slope, sign + nothing, by_tilt, forces > 0.0, wanted
                 )
         remaining_gaps = bends + apart - sign * load_share.transmission_error[..., None]
         if film is not None:
@@ -175,7 +175,7 @@ class CellContact:
         reached = None
         if held and shafts is not None:
             load_share, reached = shafts.held(
-                load_share, self.sides.lever_ratios, self.sides.gaps, slopes, levers
+                load_share, self.sides.lever_ratios, self.sides.gaps, slopes, sign * levers, self.sides.count
             )
         return CellShare(
             load_share,
@@ -203,16 +203,23 @@ class CellContact:
         forces : (torques, pitches, positions, pairs, cells) array
             [N]
         approach : (torques, pitches, positions) array
-            D [m].
+            D, with what shafts give way [m].
         """
         loads, sign = _flat(forces), np.repeat(self.sides.sign, face.cells)
-        wanted = np.ones(loads.shape[:-1], dtype=bool)
-        bends = self.coupling(face).applied(loads, wanted, np.zeros_like(loads))
+        wanted, shafts = np.ones(loads.shape[:-1], dtype=bool), shafts_under_face(face, self.pair)
+        coupling = self._on_shafts(self.coupling(face), shafts)
+        bends = coupling.applied(loads, wanted, np.zeros_like(loads))
         gaps, oil = bends + self._apart(face) - sign * approach[..., None], self.sides.oil
         if oil is not None:
             gaps = gaps - CellLaws(oil, face.cells).approach(np.zeros_like(loads))
         drops = gap_drops(self._over_sides(face, _gaps_within), _by_cells(bends, face.cells))
         return np.asarray(_by_cells(gaps, face.cells) - drops)
+
+    def _on_shafts(self, coupling: CellCoupling, shafts: ShaftsUnderFace | None) -> CellCoupling:
+        """A compliance of the bodies with that of the shafts."""
+        if shafts is None:
+            return coupling
+        return coupling.plus(shafts.compliance, self.sides.lever_ratios, self.sides.count)
 
     def _levers(self, cells: int) -> Array:
         """Levers of the cells' forces (positions, pairs cells)."""

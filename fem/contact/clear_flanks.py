@@ -22,6 +22,7 @@ from fem.influence.gear_shape import COARSE
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import FREE_ENDS
+from fem.pair.face_shafts import shafts_under_face
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
@@ -73,16 +74,27 @@ def stays_clear(
     if setup.moving_contact:  # both sides roll on, by D and by D + j
         turn = deflection + max(setup.pair.backlash, 0.0)
         doubt += (ROLLED / setup.pair.module * turn)[..., None]
-    clearance = behind + deflection[..., None] + moved - doubt * sizes
+    clearance = behind + deflection[..., None] + moved - doubt * sizes + _given_way(alone, other)
     if setup.face.model == FREE_ENDS:
         clearance = clearance - DOUBT_OF_ENDS * deflection[..., None]
     if not np.all((clearance > 0.0) | apart[:, None, None, None]):
         return None
-    touched = deflection + setup.pair.backlash + touch[..., 0] + other.candidates.gap.min(axis=-1)
+    touched = alone.contacts.turn + setup.pair.backlash + touch[..., 0] + other.candidates.gap.min(axis=-1)
     nothing = np.zeros_like(clearance)
     share = replace(alone.share, forces=nothing, pair_stiffness=nothing, transmission_error=-touched)
     closing = bodies.turning * force[:, None, None] - touched
     return ContactState(setup.opposite, other, None, SharedContacts.even(share, clearance), closing)
+
+
+def _given_way(alone: ContactState, other: FlanksInPlace) -> Array | float:
+    """By how much shafts open the gaps of the other side at least, beyond the turn on shafts that are held [m]."""
+    shafts = shafts_under_face(alone.setup.face, alone.setup.pair)
+    if shafts is None:
+        return 0.0
+    count = alone.lever_ratios.shape[-1]
+    give = shafts.bent(alone.contacts.forces, alone.lever_ratios, count, 1).sum(axis=-2).min(axis=-1)
+    turn = alone.contacts.turn - alone.share.transmission_error
+    return np.asarray(turn[..., None] + give[..., None] / other.lever_ratios)
 
 
 def _less_film(gap: Array, flanks: FlanksInPlace) -> Array:

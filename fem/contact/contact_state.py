@@ -25,9 +25,6 @@ __all__ = ["ContactState", "contact_state"]
 FAR_APART = 0.5
 """Deflection of shafts in modules above which teeth mesh on another path."""
 
-NOTHING = 1e-14
-"""Overlap that is rounding [m]."""
-
 LIMITS = (
     "a tip edge presses over more than the strips cover, or closes a gap of more than half a module; reduce the torque "
     "or the deviations",
@@ -215,12 +212,6 @@ class ContactState:
             return ""
         if number in self.unshared:
             return "no load sharing with back flanks was found; give more backlash, or reduce the torque"
-        touched = np.any(other.share.forces[number] > 0.0) or np.any(other.contacts.open[number] < -NOTHING)
-        if self.setup.face.on_shafts and touched:
-            return (
-                "flanks on both sides bear, which is not known on shafts that give way; give more backlash, or leave "
-                "the shafts out"
-            )
         return other._beyond(number, LIMITS_BEHIND)
 
     def _beyond(self, number: int, limits: tuple[str, str, str]) -> str:
@@ -260,8 +251,9 @@ def contact_state(
     settled, rest, unshared
         As of ``ContactState``.
     """
-    turn, count = contacts.share.transmission_error, sides.count
-    ways = ((slice(count), turn, 1.0), (slice(count, None), -(turn + sides.play), -1.0))
+    turn, count, shafts = contacts.share.transmission_error, sides.count, contacts.shafts
+    play = sides.play if shafts is None else sides.play + shafts.touch + shafts.behind
+    ways = ((slice(count), turn, 1.0), (slice(count, None), -(turn + play), -1.0))
     states = [
         ContactState(
             setup,

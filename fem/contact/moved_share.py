@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from base import Array, record
-from fem.contact.cell_coupling import CellCoupling
 from fem.contact.moved_side import MovedSide
-from fem.contact.moving_contacts import MovingContacts
 from fem.contact.shared_contacts import SharedContacts, of_pairs, settled_gaps
 from fem.pair.face_shafts import HeldShafts, joined, shafts_under_face
 from fem.pair.wide_contact import shares_together
@@ -28,12 +26,26 @@ class Rolling(ContactForces, Protocol):
     def all_bent(self, loads: Array) -> Array:
         """As ``bent``, at all positions."""
 
+    def bent_by(self, give: Array) -> Rolling:
+        """The same where shafts have given way at the cells (..., n) [m]."""
+
+    def plus(self, more: Array, lever_ratios: Array) -> Rolling:
+        """With a further compliance (2, 2, cells, cells) [m/N] of forces by these levers (positions, pairs)."""
+
     def lever_losses(self, share: LoadShare) -> tuple[Array, Array]:
         """Parts of base radii (2, ..., pairs) by which levers of pairs' forces, and of further ones, are shorter."""
 
 
 class Moving(Protocol):
     """Flanks whose contacts move, on one side of the teeth or on both."""
+
+    @property
+    def sides(self) -> tuple[MovedSide, ...]:
+        """Those of each side, the loaded one first."""
+
+    @property
+    def lever_ratios(self) -> Array:
+        """Kappa of the forces that are solved for (positions, pairs)."""
 
     def contacts(self, bodies: PairCompliance, rise: Array, strip: float = 0.0) -> Rolling:
         """Put contacts together."""
@@ -72,8 +84,7 @@ def moved_share(
         rise, near, asked = stays.rise[torques], stays.forces[torques], whole[torques]
         contacts = flanks.contacts(bodies, rise, float(strip))
         solved: _Solved | None
-        if isinstance(flanks, MovedSide) and stays.shafts is not None:
-            assert isinstance(contacts, MovingContacts)
+        if stays.shafts is not None:
             solved = _on_shafts(flanks, contacts, asked, near)
         else:
             solved = _on_rigid_shafts(contacts, asked, near, stays.share.transmission_error[torques])
@@ -119,28 +130,28 @@ def _on_rigid_shafts(contacts: Rolling, whole: Array, near: Array, approach: Arr
     return _Solved(share, open_gaps(contacts, share), contacts.lever_losses(share))
 
 
-def _on_shafts(side: MovedSide, contacts: MovingContacts, whole: Array, near: Array) -> _Solved | None:
+def _on_shafts(flanks: Moving, contacts: Rolling, whole: Array, near: Array) -> _Solved | None:
     """Solve on shafts that give way, held where the load brings them."""
-    setup, lever_ratios = side.setup, side.lever_ratios
-    shafts = shafts_under_face(setup.face, setup.pair)
+    first, lever_ratios = flanks.sides[0], flanks.lever_ratios
+    count, shafts = first.lever_ratios.shape[-1], shafts_under_face(first.setup.face, first.setup.pair)
     assert shafts is not None
     # corners touch at the approach of the flanks, to which shafts do not contribute
-    bent = shafts.bent(near, side.flanks.lever_ratios).sum(axis=-2)[..., None, :] / lever_ratios[..., None]
-    contacts = replace(contacts, along=contacts.along + bent.reshape(*bent.shape[:-2], -1))
-    assert isinstance(contacts.coupling, CellCoupling)
-    yielding = replace(contacts, coupling=contacts.coupling.plus(shafts.compliance, lever_ratios))
+    staying = np.concatenate([side.flanks.lever_ratios for side in flanks.sides], axis=-1)
+    give = shafts.give(near, staying, count) / lever_ratios[..., None]
+    contacts = contacts.bent_by(give.reshape(*give.shape[:-2], -1))
+    yielding = contacts.plus(shafts.compliance, lever_ratios)
     share = _solved(yielding, whole, near, None)
     if share is None:
         return None
     turn = share.transmission_error
     open_ = open_gaps(yielding, share)
     at = contacts.linearised(share.forces, turn, contacts.all_bent(share.forces))
-    by_tilt = np.zeros_like(share.forces) + shafts.levers(lever_ratios)
+    by_tilt = np.zeros_like(share.forces) + shafts.levers(lever_ratios, count)
     bears, wanted = share.forces > 0.0, np.ones(turn.shape, dtype=bool)
     slopes = at.jacobian.solved(at.own, at.reach, by_tilt, bears, wanted)
-    gap = side.flanks.candidates.gap
-    gaps = gap - gap.min(axis=-1, keepdims=True)
-    share, brought = shafts.held(share, lever_ratios, gaps, slopes, at.further_lever_ratios)
+    clear = (side.flanks.candidates.gap for side in flanks.sides)
+    gap = np.concatenate([gap - gap.min(axis=-1, keepdims=True) for gap in clear], axis=-1)
+    share, brought = shafts.held(share, lever_ratios, gap, slopes, at.further_lever_ratios, count)
     share = replace(share, stiffness=share.stiffness - at.stiff)
     lost = yielding.lever_losses(replace(share, transmission_error=turn))
     return _Solved(share, open_, lost, brought)

@@ -123,6 +123,11 @@ class MovedSide:
             self.own,
         )
 
+    @property
+    def sides(self) -> tuple[MovedSide]:
+        """It alone."""
+        return (self,)
+
     def turned_levers(self) -> Array:
         """Part of the pinion's base radius by which levers about the wheel's axis are longer (positions, pairs)."""
         if self.own is None:

@@ -15,12 +15,14 @@ of even loads the plane's, of slow waves that of slices.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, Booleans, Integers, record
+from fem.contact.cell_coupling import CellCoupling
 from fem.laws.corner_law import Pushed
 from gears.sharing.active_set import Linearised
 from gears.sharing.load_coupling import Coupling
@@ -104,6 +106,15 @@ class MovingContacts:
     def everywhere(self, pairs: Array) -> Array:
         """(..., pairs) as (..., n), the same in all cells."""
         return np.repeat(pairs, self.cells, axis=-1)
+
+    def bent_by(self, give: Array) -> MovingContacts:
+        """The same where shafts have given way at the cells (..., n) [m]."""
+        return replace(self, along=self.along + give)
+
+    def plus(self, more: Array, lever_ratios: Array) -> MovingContacts:
+        """With a further compliance between cells, as of ``fem.contact.cell_coupling.CellCoupling.plus``."""
+        assert isinstance(self.coupling, CellCoupling)
+        return replace(self, coupling=self.coupling.plus(more, lever_ratios, lever_ratios.shape[-1]))
 
     @cached_property
     def _propped(self) -> Array | float:

@@ -138,6 +138,23 @@ class MovingSides:
         there = self.back.unloaded(back, self.behind(approach), back_bent)
         return np.concatenate([here, there], axis=-1) + self._pressed(approach, bent)
 
+    def bent_by(self, give: Array) -> MovingSides:
+        """As of ``MovingContacts``."""
+        front, back = self.split(give)
+        return replace(self, front=self.front.bent_by(front), back=self.back.bent_by(back))
+
+    def plus(self, more: Array, lever_ratios: Array) -> MovingSides:
+        """As of ``MovingContacts``, with what loads on one side do to the other."""
+        pairs = self.count // self.front.cells
+        ratios = lever_ratios[:, :pairs], lever_ratios[:, pairs:]
+        assert isinstance(self.cross, CellCross)
+        return replace(
+            self,
+            front=self.front.plus(more, ratios[0]),
+            back=self.back.plus(more, ratios[1]),
+            cross=self.cross.plus(more[0, 1], ratios),
+        )
+
     def of_sides(self, share: LoadShare) -> tuple[LoadShare, LoadShare]:
         """Share of either side, by the turn that closes its gaps."""
         loads, slopes = self.split(share.forces), self.split(share.pair_stiffness)
@@ -201,6 +218,16 @@ class MovedSides:
         """As of ``MovedSide``."""
         return np.concatenate([side.turned_levers() for side in (self.front, self.back)], axis=-1)
 
+    @property
+    def lever_ratios(self) -> Array:
+        """As of ``MovedSide``, with those of the other side after them."""
+        return np.concatenate([self.front.lever_ratios, self.back.lever_ratios], axis=-1)
+
+    @property
+    def sides(self) -> tuple[MovedSide, MovedSide]:
+        """Both, the loaded one first."""
+        return self.front, self.back
+
 
 def _derivatives(values: Sequence[Array], step: float) -> tuple[Array, Array]:
     """By both places, from values ahead of and behind either."""
@@ -235,7 +262,7 @@ def both_moved(
     asked = np.where(apart, np.min(force, where=~apart, initial=np.inf), force)[:, None, None]
     clear, kept, rolled = np.zeros((len(force), 1, 1), dtype=bool), None, None
     if alone is not None:
-        kept = beside_nothing(staying, bodies, alone.contacts, even=False)
+        kept = beside_nothing(staying, bodies, alone.contacts)
         rolled = _rolled(sides, bodies, kept)
         clear = nothing_overlaps(staying, rolled)
         if rolled is kept:  # then solved anew at all positions

@@ -25,6 +25,7 @@ from fem.contact.shared_contacts import SharedContacts, share_staying
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
+from fem.pair.face_shafts import shafts_under_face
 from gears.tooth.errors import LoadSharingError
 
 if TYPE_CHECKING:
@@ -86,15 +87,15 @@ def share_with_opposite(
         Torques for which it is kept whatever it lets overlap.
     """
     other = loaded_flanks(setup.opposite, bodies, film, reach, tables)
-    sides, refused = both_sides(setup, bodies, flanks, other), setup.face.on_shafts
+    sides = both_sides(setup, bodies, flanks, other)
 
     def solve(whole: Array) -> SharedContacts:
         return share_staying(bodies, whole, sides)
 
-    kept = None if alone is None else beside_nothing(sides, bodies, alone.contacts, even=refused)
+    kept = None if alone is None else beside_nothing(sides, bodies, alone.contacts)
     joint, lost = kept, np.zeros(len(force), dtype=bool)
     clear = None if kept is None else nothing_overlaps(sides, kept)
-    if clear is None or not (np.all(clear | apart[:, None, None]) or refused):
+    if clear is None or not np.all(clear | apart[:, None, None]):
         asked = np.where(apart, float(np.min(force, where=~apart, initial=np.inf)), force)[:, None, None]
         try:
             joint = solve(asked)
@@ -108,7 +109,7 @@ def share_with_opposite(
         if kept is not None and clear is not None and joint is not None:
             joint = joint.with_kept(kept, clear | (apart | lost)[:, None, None])
     assert joint is not None
-    rest = 0.0 if refused else at_rest(sides, force, solve)
+    rest = at_rest(sides, force, solve)
     assert rest is not None
     return contact_state(
         bodies, force, sides, joint, rest=rest, unshared=tuple(np.flatnonzero(lost).tolist())
@@ -124,19 +125,20 @@ def _lost(solve: Callable[[Array], SharedContacts], whole: Array) -> bool:
     return False
 
 
-def beside_nothing(
-    sides: ContactSides, bodies: PairCompliance, loaded: SharedContacts, *, even: bool
-) -> SharedContacts:
-    """Contacts of a loaded side that bears alone, beside those of the other; gaps there by even loads if asked for."""
+def beside_nothing(sides: ContactSides, bodies: PairCompliance, loaded: SharedContacts) -> SharedContacts:
+    """Contacts of a loaded side that bears alone, beside those of the other and the gaps that are left there."""
     face, (*leading, _, cells) = sides.setups[0].face, loaded.forces.shape
     more = sides.matrix.shape[-1] - sides.count
     whole = loaded.beside(np.zeros((*leading, more, cells)))
-    if even or face.even_load:
-        gaps = np.repeat(sides.open(whole.share)[..., sides.count :, None], cells, axis=-1)
-    else:
-        contact = CellContact(bodies, np.zeros((len(loaded.forces), 1, 1)), sides)
-        gaps = contact.open(face, whole.forces, loaded.share.transmission_error)[..., sides.count :, :]
-    return loaded.beside(gaps)
+    if face.even_load:
+        return loaded.beside(sides.open(whole.share)[..., sides.count :, None])
+    contact = CellContact(bodies, np.zeros((len(loaded.forces), 1, 1)), sides)
+    beside = loaded.beside(contact.open(face, whole.forces, loaded.turn)[..., sides.count :, :])
+    shafts = shafts_under_face(face, sides.setups[0].pair)
+    if shafts is None or beside.shafts is None:
+        return beside
+    _, behind = shafts.touches(whole.forces, sides.lever_ratios, sides.gaps, sides.count)
+    return replace(beside, shafts=replace(beside.shafts, behind=behind))
 
 
 def nothing_overlaps(sides: ContactSides, contacts: SharedContacts) -> Booleans:

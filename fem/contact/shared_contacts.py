@@ -72,6 +72,12 @@ class SharedContacts:
         return cls(share, forces, open_[..., None], np.zeros(count), none, lost, no_errors(count))
 
     @property
+    def turn(self) -> Array:
+        """D from the first touch on straight shafts (torques, pitches, positions) [m]."""
+        turn = self.share.transmission_error
+        return turn if self.shafts is None else turn + self.shafts.touch
+
+    @property
     def open(self) -> Array:
         """Minimum gap that is left along the face (torques, pitches, positions, pairs) [m]."""
         return np.asarray(self.remaining_gaps.min(axis=-1))
@@ -87,8 +93,16 @@ class SharedContacts:
             transmission_error=turn,
             pair_stiffness=sign * self.share.pair_stiffness[..., pairs],
         )
-        lost = self.lost[..., pairs]
-        return replace(self, share=share, forces=forces, remaining_gaps=remaining_gaps, rise=rise, lost=lost)
+        shafts = self.shafts if self.shafts is None or sign > 0.0 else self.shafts.opposite
+        return replace(
+            self,
+            share=share,
+            forces=forces,
+            remaining_gaps=remaining_gaps,
+            rise=rise,
+            lost=self.lost[..., pairs],
+            shafts=shafts,
+        )
 
     def beside(self, remaining_gaps: Array) -> SharedContacts:
         """With pairs after these that bear nothing, and the gaps that are left to them (..., pairs, cells) [m]."""
@@ -127,6 +141,9 @@ class SharedContacts:
             forces=mixed(self.forces, kept.forces),
             remaining_gaps=mixed(self.remaining_gaps, kept.remaining_gaps),
             rise=mixed(self.rise, kept.rise),
+            shafts=None
+            if self.shafts is None or kept.shafts is None
+            else self.shafts.merged(kept.shafts, mixed),
         )
 
 

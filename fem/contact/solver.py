@@ -75,6 +75,8 @@ def _near(setup: MeshSetup, flanks: LoadedFlanks, state: ContactState) -> bool:
     if flanks.oil is not None:
         film = float(np.max(flanks.oil.approach(np.zeros_like(state.share.forces))))
     reached = state.closing.reshape(len(state.closing), -1)
+    if (shafts := state.contacts.shafts) is not None:  # which close gaps farther where they tilt
+        reached = reached + (shafts.most * setup.pair.module - shafts.touch).reshape(reached.shape)
     return bool(np.any(flanks.candidates.back_gap < reached + 3.0 * film))
 
 
@@ -111,8 +113,7 @@ def _two_sided(
             clear = stays_clear(setup, bodies, force, film, flanks, alone, apart, reach)
             if clear is not None:
                 return replace(alone, opposite=clear)
-    # on shafts that give way it is looked at whether the other side would bear, which is refused
-    solve = both_moved if setup.moving_contact and not setup.face.on_shafts else share_with_opposite
+    solve = both_moved if setup.moving_contact else share_with_opposite
     state = solve(setup, bodies, force, film, flanks, alone, apart, reach, tables)
     if alone is None or (state.opposite is not None and state.opposite.bears):
         return state

@@ -18,11 +18,20 @@ by the approach delta + psi z of the flanks. Its first entry is the tangent. Wha
 .. math:: (X^T (J + S)^{-1} X)^{-1} - (X^T J^{-1} X)^{-1} \ge 0 , \qquad X = (1, z) ,
 
 so that no shaft makes a mesh stiffer. u = a + phi z + r, r orthogonal to 1 and z: f . u = F a + M phi + f . r.
+
+Where flanks on both sides of the teeth bear, a load on one side bends the shafts along its own line of action and
+twists them its own way. The normals of both sides, away from the flanks, are n and n' with n.n' = -cos 2 alpha_w, and
+the torques are opposed: with S = B + T of bending and twist,
+
+.. math:: u = S f + S_\times f' , \qquad u' = S_\times f + S f' , \qquad S_\times = -(B \cos 2\alpha_w + T) .
+
+The turn opens the gaps of the other side: with signs s = 1 and -1 of the contacts on either side, 1 and z become s and
+s z in the matrix of the mesh, which is that of bodies whose turn differs by psi along the face.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -36,6 +45,9 @@ if TYPE_CHECKING:
     from gears import GearPair, LoadShare, Shaft
 
 __all__ = ["HeldShafts", "ShaftsUnderFace", "joined", "shafts_under_face"]
+
+BY_LOADS = "gcd,...d->...gc"
+"""Index of what both shafts give way by at the cells, by loads on cells."""
 
 
 @record
@@ -54,6 +66,8 @@ class HeldShafts:
         Of (F, M) [N, N m] by the approach at mid-face and its slope over the face [m, rad].
     most : (...) array
         Largest on the face of what both give way together, over the module.
+    behind : (...) array
+        Touch of the flanks on the other side, by the turn that closes their gaps [m]; 0 where there are none.
     """
 
     deflection: Array
@@ -61,6 +75,12 @@ class HeldShafts:
     touch: Array
     mesh: Array
     most: Array
+    behind: Array
+
+    @property
+    def opposite(self) -> HeldShafts:
+        """Of the flanks on the other side, but for what shafts give way by along the line of action of these."""
+        return replace(self, touch=self.behind, behind=self.touch)
 
     @property
     def tilt_touch(self) -> Array:
@@ -76,21 +96,29 @@ class HeldShafts:
             self.touch[torque].ravel(),
             self.mesh[torque].reshape(several, 2, 2),
             self.most[torque].ravel(),
+            self.behind[torque].ravel(),
         )
+
+    def merged(self, other: HeldShafts, choose: Callable[[Array, Array], Array]) -> HeldShafts:
+        """What is chosen from each array and that of others."""
+        names = [field.name for field in fields(HeldShafts)]
+        return HeldShafts(*(choose(getattr(self, name), getattr(other, name)) for name in names))
 
 
 @record
 class ShaftsUnderFace:
-    """Flexibility of both shafts along the line of action, between middles of cells.
+    """Flexibility of both shafts along the lines of action, between middles of cells.
+
+    Pairs on the loaded side of the teeth come first, those on the other side after them.
 
     Attributes
     ----------
-    between : (2, cells, cells) array
-        Of pinion's and wheel's shaft [m/N]; zero of rigid ones.
+    between : (2, 2, 2, cells, cells) array
+        What gives way on either side by loads on either side, of pinion's and wheel's shaft [m/N]; zero of rigid ones.
     middles : (cells,) array
         z [m].
-    gaps : (PLACES,) array
-        Along the face without load, beyond the smallest of them [m].
+    gaps : (2, PLACES) array
+        Along the face without load, of either side, beyond the smallest of them [m].
     module : float
         [m]
     """
@@ -102,17 +130,39 @@ class ShaftsUnderFace:
 
     @property
     def compliance(self) -> Array:
-        """S of both shafts (cells, cells) [m/N]."""
-        return np.asarray(self.between.sum(axis=0))
+        """S of both shafts between the cells of either side (2, 2, cells, cells) [m/N]."""
+        return np.asarray(self.between.sum(axis=2))
 
-    def levers(self, kappa: Array) -> Array:
-        """z/kappa (positions, pairs cells) [m]: what a tilt closes, and the moment of forces kappa F."""
-        return np.asarray((self.middles / kappa[..., None]).reshape(len(kappa), -1))
+    def levers(self, kappa: Array, count: int) -> Array:
+        """S z/kappa (positions, pairs cells) [m]: what a tilt closes, and the moment of forces kappa F."""
+        sign = np.where(np.arange(kappa.shape[-1]) < count, 1.0, -1.0)
+        return np.asarray((sign[:, None] * self.middles / kappa[..., None]).reshape(len(kappa), -1))
 
-    def bent(self, forces: Array, kappa: Array) -> Array:
-        """What either shaft gives way at the cells (..., 2, cells) [m] by forces kappa F (..., pairs, cells)."""
-        loads = (forces / kappa[..., None]).sum(axis=-2)
-        return np.asarray(np.einsum("gcd,...d->...gc", self.between, loads, optimize=True))
+    def bent(self, forces: Array, kappa: Array, count: int, side: int = 0) -> Array:
+        """What either shaft gives way at the cells (..., 2, cells) [m] along the line of action of a side.
+
+        Parameters
+        ----------
+        forces : (..., pairs, cells) array
+            kappa F [N].
+        kappa : (positions, pairs) array
+        count : int
+            Pairs on the loaded side.
+        side : {0, 1}
+            The loaded one, or the other.
+        """
+        loads = forces / kappa[..., None]
+        own, other = (loads[..., pairs, :].sum(axis=-2) for pairs in (slice(count), slice(count, None)))
+        return np.asarray(
+            np.einsum(BY_LOADS, self.between[side, 0], own, optimize=True)
+            + np.einsum(BY_LOADS, self.between[side, 1], other, optimize=True)
+        )
+
+    def give(self, forces: Array, kappa: Array, count: int) -> Array:
+        """What both give way by at the cells of each pair, along the line of action of its side (..., pairs, cells)."""
+        sides = (self.bent(forces, kappa, count, side).sum(axis=-2)[..., None, :] for side in (0, 1))
+        first, second = sides
+        return np.asarray(np.where(np.arange(kappa.shape[-1])[:, None] < count, first, second))
 
     def held(
         self,
@@ -120,7 +170,8 @@ class ShaftsUnderFace:
         kappa: Array,
         gaps: Array,
         slopes: tuple[Array, Array],
-        arms: Array | float = 1.0,
+        levers: Array,
+        count: int,
     ) -> tuple[LoadShare, HeldShafts]:
         """Measure a share from the first touch on shafts that are held where its loads bring them; no force changes.
 
@@ -133,21 +184,24 @@ class ShaftsUnderFace:
         gaps : (..., pairs) array
             Of pairs, beyond that of the pair that touches first [m].
         slopes : two (..., pairs cells) arrays
-            J^-1 1 and J^-1 z of its cells, with the shafts held [N/m, N].
-        arms : (..., pairs cells) array or float
-            Levers of further forces over those for which F is given.
+            J^-1 s and J^-1 s z of its cells, with the shafts held [N/m, N].
+        levers : (..., pairs cells) array
+            Levers of further forces over those for which F is given, below 0 on the other side.
+        count : int
+            Pairs on the loaded side.
         """
-        levers = self.levers(kappa)
-        rows = arms, levers
+        rows = levers, self.levers(kappa, count)
         mesh = [[np.sum(row * slope, axis=-1) for slope in slopes] for row in rows]
-        bent = self.bent(share.forces.reshape(*share.forces.shape[:-1], -1, len(self.middles)), kappa)
-        touch = self._touch(bent.sum(axis=-2), kappa, gaps)
+        forces = share.forces.reshape(*share.forces.shape[:-1], -1, len(self.middles))
+        bent = self.bent(forces, kappa, count)
+        touch, behind = self.touches(forces, kappa, gaps, count)
         held_shafts = HeldShafts(
             bent.mean(axis=-1),
             bent @ self.middles / (self.middles @ self.middles),
             touch,
             np.moveaxis(np.array(mesh), (0, 1), (-2, -1)),
-            np.abs(bent.sum(axis=-2)).max(axis=-1) / self.module,
+            self._most(forces, kappa, count),
+            behind,
         )
         return (
             replace(
@@ -159,11 +213,32 @@ class ShaftsUnderFace:
             held_shafts,
         )
 
-    def _touch(self, bent: Array, kappa: Array, gaps: Array) -> Array:
+    def _most(self, forces: Array, kappa: Array, count: int) -> Array:
+        """Largest on the face of what both give way together, along either line of action, over the module."""
+        sides = range(1 if count == kappa.shape[-1] else 2)
+        bent = [self.bent(forces, kappa, count, side).sum(axis=-2) for side in sides]
+        return np.asarray(np.max([np.abs(along).max(axis=-1) for along in bent], axis=0) / self.module)
+
+    def touches(self, forces: Array, kappa: Array, gaps: Array, count: int) -> tuple[Array, Array]:
+        """Turns at which the flanks on either side touch without load on shafts that forces have bent (...) [m].
+
+        Beyond those on straight ones, each by the turn that closes the gaps of its side; arguments as of ``held``, with
+        forces on cells (..., pairs, cells).
+        """
+        touches = [np.zeros(forces.shape[:-2]) for _ in range(2)]
+        for side, pairs in enumerate((slice(count), slice(count, kappa.shape[-1]))):
+            if pairs.start != pairs.stop:
+                own = gaps[..., pairs]
+                bent = self.bent(forces, kappa, count, side).sum(axis=-2)
+                clear = own - own.min(axis=-1, keepdims=True) if side else own
+                touches[side] = self._touch(bent, kappa[:, pairs], clear, self.gaps[side])
+        return touches[0], touches[1]
+
+    def _touch(self, bent: Array, kappa: Array, gaps: Array, face_gaps: Array) -> Array:
         """Minimum gap along the face of all pairs (...), less the give of the shafts at the cells (..., cells) [m]."""
-        straight = not self.gaps.any()  # then it is at a middle or at an end of the face
+        straight = not face_gaps.any()  # then it is at a middle or at an end of the face
         along = bent @ (_ends(bent.shape[-1]) if straight else _between_middles(bent.shape[-1]))
-        least, beyond = np.full(bent.shape[:-1], np.inf), 0.0 if straight else self.gaps
+        least, beyond = np.full(bent.shape[:-1], np.inf), 0.0 if straight else face_gaps
         on_path = np.min(along + beyond, axis=-1)
         for lever, gap in zip(kappa.T, np.moveaxis(gaps, -1, 0), strict=True):
             if np.isfinite(gap).any():
@@ -178,14 +253,15 @@ def shafts_under_face(face: FaceSetting, pair: GearPair) -> ShaftsUnderFace | No
     """Bend and twist the shafts of a face; None where both are rigid."""
     if all(shaft is None for shaft in face.shafts):
         return None
-    between = np.zeros((2, face.cells, face.cells))
-    z = face.middles(pair.face_width)
+    between = np.zeros((2, 2, 2, face.cells, face.cells))
+    z, angle = face.middles(pair.face_width), pair.working_pressure_angle
     for gear, shaft in enumerate(face.shafts):
         if shaft is not None:
             on_face = pair.base_radii[gear], pair.face_offsets[gear], pair.face_width
-            between[gear] = _between_cells(shaft, face.cells, *on_face)
-    gaps = face.gaps_along(pair)
-    return ShaftsUnderFace(between, z, gaps - gaps.min(), pair.module)
+            own, across = _between_cells(shaft, face.cells, *on_face, 2.0 * angle)
+            between[:, :, gear] = np.array([[own, across], [across, own]])
+    gaps = np.stack([side.gaps_along(pair) for side in (face, face.opposite(angle))])
+    return ShaftsUnderFace(between, z, gaps - gaps.min(axis=-1, keepdims=True), pair.module)
 
 
 def joined(parts: Sequence[HeldShafts], order: Integers) -> HeldShafts:
@@ -195,12 +271,15 @@ def joined(parts: Sequence[HeldShafts], order: Integers) -> HeldShafts:
 
 
 @lru_cache(maxsize=32)
-def _between_cells(shaft: Shaft, cells: int, radius: float, offset: float, width: float) -> Array:
-    """S of a shaft between the cells of its gear's face (cells, cells) [m/N], kept for what follows."""
+def _between_cells(
+    shaft: Shaft, cells: int, radius: float, offset: float, width: float, apart: float
+) -> tuple[Array, Array]:
+    """S of a shaft between the cells of its gear's face (cells, cells) [m/N], on one side and across, kept."""
     from gears.pair.shaft_face import shaft_over_face
 
     z = ((np.arange(cells) + 0.5) / cells - 0.5) * width
-    return shaft_over_face(shaft, z, radius, offset, width).between
+    on_face = shaft_over_face(shaft, z, radius, offset, width)
+    return on_face.between, on_face.across(apart)
 
 
 @lru_cache(maxsize=8)

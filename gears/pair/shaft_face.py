@@ -13,6 +13,7 @@ that the shaft has there.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import cos
 
 import numpy as np
 
@@ -29,11 +30,25 @@ class ShaftOverFace:
 
     Attributes
     ----------
-    between : ndarray, shape (n, n)
-        Deflection at z by a unit force at z' [m/N].
+    bent, twisted : ndarray, shape (n, n)
+        Deflection at z by a unit force at z' [m/N]: along the force by bending, alike in all directions across the
+        axis, and by twist.
     """
 
-    between: Array
+    bent: Array
+    twisted: Array
+
+    @property
+    def between(self) -> Array:
+        """Deflection at z by a unit force at z' along the same line of action (n, n) [m/N]."""
+        return self.bent + self.twisted
+
+    def across(self, apart: float) -> Array:
+        """The same along a line of action by a force on the flanks of the other side (n, n) [m/N].
+
+        Their torques are opposed, and their normals stand pi - `apart` from each other, 2 alpha_w of both lines [rad].
+        """
+        return np.asarray(-cos(apart) * self.bent - self.twisted)
 
 
 def shaft_over_face(
@@ -74,7 +89,7 @@ def shaft_over_face(
     loads = np.zeros((2 * len(nodes), len(places)))
     loads[2 * at, np.arange(len(places))] = 1.0
     bent = np.linalg.solve(bending(shaft, nodes)[0], loads)[2 * at]
-    return ShaftOverFace(0.5 * (bent + bent.T) + base_radius**2 * _twist(shaft, places, ends))
+    return ShaftOverFace(0.5 * (bent + bent.T), base_radius**2 * _twist(shaft, places, ends))
 
 
 def _joined(places: Array, apart: float) -> tuple[Array, Integers]:

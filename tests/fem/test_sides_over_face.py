@@ -11,7 +11,7 @@ import fem
 from fem.contact.solver import solve_contact
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import face_setting
-from gears import Alignment, Bearing, Gear, GearPair, Lead, Material, Shaft, ShaftSegment
+from gears import Alignment, Gear, GearPair, Lead, Material
 
 CELLS = 8
 STEEL, POM = Material(206e9, 0.3, 7850.0), Material(2.8e9, 0.36, 1410.0)
@@ -162,13 +162,6 @@ def test_contacts_that_move_have_the_tangent_of_their_turn_and_carry_the_torque(
     rise = (more.force - less.force) / (more.transmission_error - less.transmission_error)
     np.testing.assert_allclose(same.stiffness, rise, rtol=1e-3)
     np.testing.assert_allclose(same._moments()[0][0] * plastic[0].base_radii[0], torque, rtol=1e-9)
-
-
-def test_shafts_are_refused_by_name(tight):
-    shaft = Shaft((ShaftSegment(0.2, 0.03),), (Bearing(0.005, 5e8), Bearing(0.195, 5e8)), 0.06, 0.0)
-    over = cycle(tight, 50.0, shafts=(shaft, None))
-    assert not over.converged
-    assert "leave the shafts out" in over.message
 
 
 def test_the_alignment_of_the_other_flanks():
