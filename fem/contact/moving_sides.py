@@ -23,24 +23,19 @@ import numpy as np
 from base import Array, Booleans, record
 from fem.contact.cell_coupling import CellCoupling
 from fem.contact.cell_matrix import cross_coupling
-from fem.contact.contact_sides import between, both_sides
-from fem.contact.contact_state import ContactState, contact_state
+from fem.contact.contact_sides import between
 from fem.contact.cross_coupling import CellCross, CrossCoupling, DenseCross
-from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
-from fem.contact.moved_share import moved_share, open_gaps
-from fem.contact.moved_side import MovedSide, moved_side
+from fem.contact.loaded_flanks import LoadedFlanks
+from fem.contact.moved_share import open_gaps
+from fem.contact.moved_side import MovedSide
 from fem.contact.moving_contacts import MovingContacts
-from fem.contact.opposite_flanks import at_rest, beside_nothing, nothing_overlaps
-from fem.contact.shared_contacts import SharedContacts, share_staying
+from fem.contact.shared_contacts import SharedContacts
 from gears.sharing.active_set import Linearised, LoadShare
 
 if TYPE_CHECKING:
-    from fem.laws.edge_tables import EdgeTables
-    from fem.laws.local_law import Film
-    from fem.laws.mesh_setup import MeshSetup
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["MovedSides", "MovingSides", "both_moved"]
+__all__ = ["MovedSides", "MovingSides"]
 
 STEP = 1e-3
 """Part of the module over which X is differentiated by the place."""
@@ -214,6 +209,13 @@ class MovedSides:
         touches = (side.flanks.candidates.gap.min(axis=-1) for side in sides)
         return MovingSides(here, there, np.asarray(setup.pair.backlash + sum(touches)), cross)
 
+    def rolled(self, bodies: PairCompliance, kept: SharedContacts) -> SharedContacts:
+        """A loaded side that bears alone, with the gaps of the other where both have rolled on; those of cells stay."""
+        if not self.front.setup.face.even_load:
+            return kept
+        gaps = open_gaps(self.contacts(bodies, kept.rise), kept.share)
+        return replace(kept, remaining_gaps=gaps[..., None])
+
     def turned_levers(self) -> Array:
         """As of ``MovedSide``."""
         return np.concatenate([side.turned_levers() for side in (self.front, self.back)], axis=-1)
@@ -232,71 +234,3 @@ class MovedSides:
 def _derivatives(values: Sequence[Array], step: float) -> tuple[Array, Array]:
     """By both places, from values ahead of and behind either."""
     return (values[0] - values[1]) / (2 * step), (values[2] - values[3]) / (2 * step)
-
-
-def both_moved(
-    setup: MeshSetup,
-    bodies: PairCompliance,
-    force: Array,
-    film: Film | None,
-    flanks: LoadedFlanks,
-    alone: ContactState | None,
-    apart: Booleans,
-    reach: float,
-    tables: EdgeTables,
-) -> ContactState:
-    """Share forces (torques,) [N] among flanks on both sides that move; of contacts that stay where it fails.
-
-    Parameters
-    ----------
-    setup, bodies, force, film, flanks, apart, reach, tables
-        As for ``fem.contact.opposite_flanks.share_with_opposite``.
-    alone : ContactState or None
-        The loaded side by itself, solved; None without a torque.
-    """
-    other = loaded_flanks(setup.opposite, bodies, film, reach, tables)
-    staying = both_sides(setup, bodies, flanks, other)
-    known = None if alone is None else alone.side
-    front = known or moved_side(setup, bodies, flanks, tables)
-    sides = MovedSides(front, moved_side(setup.opposite, bodies, other, tables))
-    asked = np.where(apart, np.min(force, where=~apart, initial=np.inf), force)[:, None, None]
-    clear, kept, rolled = np.zeros((len(force), 1, 1), dtype=bool), None, None
-    if alone is not None:
-        kept = beside_nothing(staying, bodies, alone.contacts)
-        rolled = _rolled(sides, bodies, kept)
-        clear = nothing_overlaps(staying, rolled)
-        if rolled is kept:  # then solved anew at all positions
-            clear = np.full_like(clear, clear.all())
-        clear = clear | apart[:, None, None]
-
-    def solve(whole: Array) -> SharedContacts | None:
-        return moved_share(sides, bodies, whole, share_staying(bodies, whole, staying))
-
-    moved: SharedContacts | None
-    if kept is not None and clear.all():
-        moved, begin = kept, kept
-    else:
-        begin = share_staying(bodies, asked, staying)
-        moved = moved_share(sides, bodies, asked, begin)
-        if moved is None and kept is not None:
-            moved = moved_share(sides, bodies, asked, begin.with_kept(kept, ~clear))
-        if moved is not None and rolled is not None:
-            moved = moved.with_kept(rolled, clear)
-    rest = None if moved is None else at_rest(staying, force, solve)
-    return contact_state(
-        bodies,
-        force,
-        staying,
-        begin if moved is None else moved,
-        (sides.front, sides.back),
-        settled=rest is not None,
-        rest=0.0 if rest is None else rest,
-    )
-
-
-def _rolled(sides: MovedSides, bodies: PairCompliance, kept: SharedContacts) -> SharedContacts:
-    """A loaded side with the gaps of the other where both have rolled on; those of cells unchanged."""
-    if not sides.front.setup.face.even_load:
-        return kept
-    gaps = open_gaps(sides.contacts(bodies, kept.rise), kept.share)
-    return replace(kept, remaining_gaps=gaps[..., None])

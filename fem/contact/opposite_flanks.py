@@ -21,6 +21,9 @@ from fem.contact.cell_contact import CellContact
 from fem.contact.contact_sides import ContactSides, both_sides
 from fem.contact.contact_state import ContactState, contact_state
 from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
+from fem.contact.moved_share import moved_share
+from fem.contact.moved_side import moved_side
+from fem.contact.moving_sides import MovedSides
 from fem.contact.shared_contacts import SharedContacts, share_staying
 from fem.laws.edge_tables import EdgeTables
 from fem.laws.local_law import Film
@@ -31,7 +34,7 @@ from gears.tooth.errors import LoadSharingError
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["OppositeFlanks", "at_rest", "beside_nothing", "nothing_overlaps", "share_with_opposite"]
+__all__ = ["OppositeFlanks", "share_with_opposite"]
 
 ROUNDING = 1e-12
 """Overlap over the deflection that is none."""
@@ -71,7 +74,7 @@ def share_with_opposite(
     reach: float,
     tables: EdgeTables,
 ) -> ContactState:
-    """Share forces (torques,) [N] among the flanks on both sides.
+    """Share forces (torques,) [N] among the flanks on both sides; of contacts that stay where moving ones fail.
 
     Parameters
     ----------
@@ -88,44 +91,85 @@ def share_with_opposite(
     """
     other = loaded_flanks(setup.opposite, bodies, film, reach, tables)
     sides = both_sides(setup, bodies, flanks, other)
+    moved = None
+    if setup.moving_contact:
+        front = (
+            moved_side(setup, bodies, flanks, tables) if alone is None or alone.side is None else alone.side
+        )
+        moved = MovedSides(front, moved_side(setup.opposite, bodies, other, tables))
+    clear, kept, rolled = np.zeros((len(force), 1, 1), dtype=bool), None, None
+    if alone is not None:
+        kept = _beside_nothing(sides, bodies, alone.contacts)
+        rolled = kept if moved is None else moved.rolled(bodies, kept)
+        clear = _nothing_overlaps(sides, rolled)
+        if moved is not None and rolled is kept:  # then solved anew at all positions
+            clear = np.full_like(clear, clear.all())
+        clear = clear | apart[:, None, None]
+    begin, joint, lost = kept, kept, np.zeros(len(force), dtype=bool)
+    if kept is None or not clear.all():
+        asked = np.where(apart, np.min(force, where=~apart, initial=np.inf), force)[:, None, None]
+        asked, begin, lost = _staying(sides, bodies, asked, apart, kept)
+        joint = begin if moved is None else moved_share(moved, bodies, asked, begin)
+        if joint is None and moved is not None and kept is not None:
+            joint = moved_share(moved, bodies, asked, begin.with_kept(kept, ~clear))
+        if joint is not None and rolled is not None:
+            joint = joint.with_kept(rolled, clear | lost[:, None, None])
 
-    def solve(whole: Array) -> SharedContacts:
-        return share_staying(bodies, whole, sides)
+    def solve(whole: Array) -> SharedContacts | None:
+        stays = share_staying(bodies, whole, sides)
+        return stays if moved is None else moved_share(moved, bodies, whole, stays)
 
-    kept = None if alone is None else beside_nothing(sides, bodies, alone.contacts)
-    joint, lost = kept, np.zeros(len(force), dtype=bool)
-    clear = None if kept is None else nothing_overlaps(sides, kept)
-    if clear is None or not np.all(clear | apart[:, None, None]):
-        asked = np.where(apart, float(np.min(force, where=~apart, initial=np.inf)), force)[:, None, None]
-        try:
-            joint = solve(asked)
-        except LoadSharingError:
-            lost = ~apart & np.array([_lost(solve, whole) for whole in asked])
-            if kept is None or not lost.any():
-                raise
-            if not np.all(lost | apart):
-                known = ~(lost | apart)
-                joint = solve(np.where(known[:, None, None], asked, np.min(asked[known])))
-        if kept is not None and clear is not None and joint is not None:
-            joint = joint.with_kept(kept, clear | (apart | lost)[:, None, None])
-    assert joint is not None
-    rest = at_rest(sides, force, solve)
-    assert rest is not None
+    rest = None if joint is None else _at_rest(sides, force, solve)
+    contacts = joint or begin
+    assert contacts is not None
     return contact_state(
-        bodies, force, sides, joint, rest=rest, unshared=tuple(np.flatnonzero(lost).tolist())
+        bodies,
+        force,
+        sides,
+        contacts,
+        () if moved is None else moved.sides,
+        settled=rest is not None,
+        rest=0.0 if rest is None else rest,
+        unshared=tuple(np.flatnonzero(lost).tolist()),
     )
 
 
-def _lost(solve: Callable[[Array], SharedContacts], whole: Array) -> bool:
+def _staying(
+    sides: ContactSides, bodies: PairCompliance, whole: Array, apart: Booleans, kept: SharedContacts | None
+) -> tuple[Array, SharedContacts, Booleans]:
+    """Share forces among contacts that stay.
+
+    Returns
+    -------
+    whole : (torques, 1, 1) array
+        What was shared [N]: another force in place of those for which no load sharing is found beside others.
+    contacts : SharedContacts
+    lost : (torques,) boolean array
+        These.
+    """
+    try:
+        return whole, share_staying(bodies, whole, sides), np.zeros_like(apart)
+    except LoadSharingError:
+        lost = ~apart & np.array([_lost(sides, bodies, force) for force in whole])
+        if kept is None or not lost.any():
+            raise
+    known = ~(lost | apart)
+    if not known.any():
+        return whole, kept, lost
+    whole = np.where(known[:, None, None], whole, np.min(whole[known]))
+    return whole, share_staying(bodies, whole, sides), lost
+
+
+def _lost(sides: ContactSides, bodies: PairCompliance, whole: Array) -> bool:
     """Whether no load sharing is found under a torque (1, 1) [N]."""
     try:
-        solve(whole[None])
+        share_staying(bodies, whole[None], sides)
     except LoadSharingError:
         return True
     return False
 
 
-def beside_nothing(sides: ContactSides, bodies: PairCompliance, loaded: SharedContacts) -> SharedContacts:
+def _beside_nothing(sides: ContactSides, bodies: PairCompliance, loaded: SharedContacts) -> SharedContacts:
     """Contacts of a loaded side that bears alone, beside those of the other and the gaps that are left there."""
     face, (*leading, _, cells) = sides.setups[0].face, loaded.forces.shape
     more = sides.matrix.shape[-1] - sides.count
@@ -141,13 +185,13 @@ def beside_nothing(sides: ContactSides, bodies: PairCompliance, loaded: SharedCo
     return replace(beside, shafts=replace(beside.shafts, behind=behind))
 
 
-def nothing_overlaps(sides: ContactSides, contacts: SharedContacts) -> Booleans:
+def _nothing_overlaps(sides: ContactSides, contacts: SharedContacts) -> Booleans:
     """Where nothing overlaps on the other side (torques, pitches, positions)."""
     gaps, turn = contacts.open[..., sides.count :], contacts.share.transmission_error
     return np.asarray(np.all(gaps >= -ROUNDING * np.abs(turn)[..., None], axis=-1))
 
 
-def at_rest(
+def _at_rest(
     sides: ContactSides, force: Array, solve: Callable[[Array], SharedContacts | None]
 ) -> Array | None:
     """Turn without torque (pitches, positions) [m]: 0 where teeth are not pressed together, None without a solution.

@@ -14,7 +14,6 @@ from fem.contact.contact_state import ContactState, contact_state
 from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
 from fem.contact.moved_share import moved_share
 from fem.contact.moved_side import moved_side
-from fem.contact.moving_sides import both_moved
 from fem.contact.opposite_flanks import share_with_opposite
 from fem.contact.shared_contacts import share_staying
 from fem.laws.contact_candidates import REACHES
@@ -113,8 +112,7 @@ def _two_sided(
             clear = stays_clear(setup, bodies, force, film, flanks, alone, apart, reach)
             if clear is not None:
                 return replace(alone, opposite=clear)
-    solve = both_moved if setup.moving_contact else share_with_opposite
-    state = solve(setup, bodies, force, film, flanks, alone, apart, reach, tables)
+    state = share_with_opposite(setup, bodies, force, film, flanks, alone, apart, reach, tables)
     if alone is None or (state.opposite is not None and state.opposite.bears):
         return state
     return replace(
