@@ -21,7 +21,7 @@ from dynamics.kernels.compiling import (
 )
 from dynamics.kernels.roots import choices, copy, largest
 from dynamics.kernels.sensitivity import probe
-from dynamics.kernels.tables import differentiate, fill_there, first_touched, room_of, slopes_of, tables_of
+from dynamics.kernels.tables import differentiate, fill, first_touched, room_of, slopes_of, tables_of
 
 NEARLY = 1e-6  # Newton's step, over the scale, after which an orbit is likely to be good to rounding
 Rooms = tuple[Any, Any, Room, Room, Any, Any]
@@ -149,7 +149,7 @@ def correct(
         whole = final or limit == 0 or step < NEARLY
         if not move(origin, ways, u, q):
             return LOST, 0, done, best
-        fill_there(q, coef, edge, room, first)
+        fill(q, coef, edge, room, first)
         first = touched
         differentiate(q, ways, edge, room, more, dcoef, dedge)
         state[0], state[1] = u[0] * scale, u[1] * scale

@@ -19,16 +19,11 @@ from dynamics.kernels.compiling import (
     IntArray,
     Space,
     Table,
-    called,
     helper,
     plain_kernel,
-    shared,
 )
 from dynamics.kernels.regions import clear, drag_jump, enter, leave, start
 from dynamics.kernels.roots import choices, poly, shift, sole_root
-
-TABLE = "Tuple((f8[::1], f8[:, :, ::1], f8[:, ::1]))"
-SPACE = "Tuple((f8[:, ::1], f8[:, ::1], f8[:, ::1], i8[:, ::1]))"
 
 
 def space_of(degree: int) -> Space:
@@ -219,10 +214,7 @@ def straighten(jac: FloatArray, h: float) -> None:
     jac[0, 1], jac[1, 1] = -s * turned, c * turned * h
 
 
-@shared(
-    "Tuple((i8, f8, f8, i8))(f8[::1], f8[:, :, ::1], f8[:, ::1], i8, i8, i8, f8, f8,"
-    " i8, f8[:, ::1], f8[:, ::1], f8[:, ::1], i8[::1])"
-)
+@helper
 def some_cells(
     par: FloatArray, coef: FloatArray, edge: FloatArray, first: int, last: int, region: int, y: float, w: float,
     want: int, jac: FloatArray, work: FloatArray, choose: FloatArray, count: IntArray,
@@ -299,9 +291,3 @@ def iterate(
         jac[1, 0] /= h
         jac[1, 1] /= h
     return FINE
-
-
-iterate_there = called(
-    iterate,
-    f"i8({TABLE}, {SPACE}, i8, i8, f8[::1], i8, i8, f8[:, ::1], f8[:, ::1], i8[:, ::1])",
-)

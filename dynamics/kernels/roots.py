@@ -6,7 +6,7 @@ from typing import cast
 
 import numpy as np
 
-from dynamics.kernels.compiling import NO, ONE, YES, ZERO, FloatArray, helper, maker, shared
+from dynamics.kernels.compiling import NO, ONE, YES, ZERO, FloatArray, helper, maker
 
 
 @helper
@@ -196,7 +196,7 @@ def monotone(c: FloatArray, first: int, end: float) -> bool:
     return bool(-c[first + 1] > 1.0001 * rest)
 
 
-@shared("f8(f8[::1], f8[::1], f8, i8)")
+@helper
 def first_exit(c: FloatArray, b: FloatArray, end: float, fresh: int) -> float:
     """Smallest t in [0, end] at which the polynomial turns negative, -1 if it does not.
 

@@ -14,7 +14,7 @@ from dynamics.kernels.compiling import (
     Table,
     plain_kernel,
 )
-from dynamics.kernels.flow import iterate_there, some_cells
+from dynamics.kernels.flow import iterate, some_cells
 from dynamics.kernels.regions import start
 from dynamics.kernels.roots import largest
 
@@ -115,7 +115,7 @@ def hunt(
             jac[0, 0] = jac[1, 1] = 1.0
             jac[0, 1] = jac[1, 0] = 0.0
             used += periods
-            if iterate_there(table, space, ZERO, cells, x, periods - 1, ONE, jac, image, counts) != FINE:
+            if iterate(table, space, ZERO, cells, x, periods - 1, ONE, jac, image, counts) != FINE:
                 break
             r0, r1 = x[0] - at0, x[1] - at1
             near = max(abs(r0), abs(r1))
@@ -156,6 +156,6 @@ def hunt(
             if not old:
                 points[known, 0], points[known, 1] = x[0], x[1]
                 known += 1
-            iterate_there(table, space, ZERO, cells, x, ZERO, ZERO, jac, image, counts)
+            iterate(table, space, ZERO, cells, x, ZERO, ZERO, jac, image, counts)
             used += 1
     return known, used

@@ -23,7 +23,6 @@ from dynamics.kernels.compiling import (
     IntArray,
     Table,
     helper,
-    shared,
 )
 from dynamics.kernels.flow import basis, expand
 from dynamics.kernels.regions import clear, drag_jump, enter, leave, note_extremum, start
@@ -178,11 +177,7 @@ def pass_boundary(
         lin[0, k] += (old - region) * play(ways, k)
 
 
-@shared(
-    "UniTuple(i8, 2)(Tuple((f8[::1], f8[:, :, ::1], f8[:, ::1])), Tuple((f8[:, :, :, ::1], f8[:, :, ::1])),"
-    " f8[:, ::1], f8[::1], i8, f8[:, ::1], f8[:, :, ::1], i8[::1], f8[:, ::1], f8[::1],"
-    " f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[:, :, ::1])"
-)
+@helper
 def probe(
     table: Table, slopes: tuple[FloatArray, FloatArray], ways: FloatArray, state: FloatArray, periods: int,
     lin: FloatArray, bend: FloatArray, counts: IntArray, turns: FloatArray, clock: FloatArray,

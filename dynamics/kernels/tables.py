@@ -24,14 +24,11 @@ from dynamics.kernels.compiling import (
     ZETA,
     FloatArray,
     Room,
-    called,
     helper,
     plain_kernel,
-    shared,
 )
 
 EDGE = 30  # numbers of a cell's map
-ROOM = "Tuple((f8[:, :, ::1], f8[:, :, :, ::1], f8[:, :, :, ::1], f8[:, ::1], f8[:, ::1]))"
 
 
 def tables_of(cells: int, degree: int) -> tuple[FloatArray, FloatArray]:
@@ -122,7 +119,7 @@ def first_touched(par: FloatArray, ways: FloatArray) -> int:
     return touched
 
 
-@shared(f"void(f8[::1], f8[::1], b1, f8[:, :, ::1], {ROOM})")
+@helper
 def excite(par: FloatArray, way: FloatArray, derived: bool, series: FloatArray, room: Room) -> None:
     """Stiffness series[0] and force series[1], both times h^2, about the middles of all cells.
 
@@ -152,7 +149,7 @@ def excite(par: FloatArray, way: FloatArray, derived: bool, series: FloatArray, 
         add_harmonic(series[0 if stiff else 1], n, a * c - b * s, a * s + b * c, roots, waves)
 
 
-@shared("void(f8[:, ::1], f8[:, ::1], f8, f8[:, :, ::1], i8, f8[:, ::1], f8, f8[:, :, ::1])")
+@helper
 def solve(
     stiff: FloatArray, push: FloatArray, drag: float, y: FloatArray, first: int,
     more_stiff: FloatArray, more_drag: float, base: FloatArray,
@@ -183,7 +180,7 @@ def solve(
                 new[cell] *= share
 
 
-@shared("void(f8[:, :, ::1], f8[:, :, ::1], i8)")
+@helper
 def survey(y: FloatArray, rim: FloatArray, first: int) -> None:
     """Values and speeds at both ends, and bounds of |d2y/ds2|/8 and |d3y/ds3|/8 with a last digit for rounding.
 
@@ -301,7 +298,7 @@ def edge_derivative(edge: FloatArray, rim: FloatArray, dedge: FloatArray, kind: 
             dedge[row, 2 + j if j < 2 else 5] = lower
 
 
-@shared("void(f8[::1], f8[:, ::1], f8[:, ::1], " + ROOM + ", " + ROOM + ", f8[:, :, :, ::1], f8[:, :, ::1])")
+@helper
 def differentiate(
     par: FloatArray, ways: FloatArray, edge: FloatArray, room: Room, more: Room, dcoef: FloatArray, dedge: FloatArray
 ) -> None:  # fmt: skip
@@ -332,6 +329,3 @@ def differentiate(
             survey(dy[kind], drim[kind], first)
             edge_derivative(edge, drim[kind], dedge[p], kind, first)
             hand_over(dy[kind], dcoef[p], kind, first)
-
-
-fill_there = called(fill, f"void(f8[::1], f8[:, :, ::1], f8[:, ::1], {ROOM}, i8)")

@@ -6,17 +6,14 @@ import dataclasses
 import functools
 import itertools
 import os
-import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-import dynamics
 from base import InputError
 from dynamics import FourierStiffness, GearOscillator, period_map, trajectory
 from dynamics.flow.exact_flow import DEGREE, exact_flow
@@ -50,13 +47,10 @@ states = st.tuples(unit, unit)
 
 @functools.cache
 def callable_helper(name):
-    """A helper of the kernels, which is compiled for kernels alone, made callable from here."""
-    import numba
-
+    """A helper of the kernels."""
     from dynamics.kernels import flow, roots
 
-    helper = getattr(roots if hasattr(roots, name) else flow, name)
-    return numba.njit(lambda *arguments: helper(*arguments))
+    return getattr(roots if hasattr(roots, name) else flow, name)
 
 
 def size(image) -> float:
@@ -444,43 +438,6 @@ def test_one_sided_play_is_a_matter_of_origin(osc, state, shift):
     image, moved = period_map(near, state, 2), period_map(far, (state[0] + shift, state[1]), 2)
     np.testing.assert_allclose(moved.state - [shift, 0.0], image.state, rtol=0, atol=1e-12 * size(image))
     assert np.array_equal(moved.counts, image.counts)
-
-
-@pytest.mark.parametrize("how", ["helper", 'shared("f8(f8)")'])
-@pytest.mark.parametrize("kept", [True, False])
-def test_a_changed_helper_is_compiled_again(tmp_path, kept, how):
-    """Compiled code on disk is good as long as no kernel source changes, not only the caller's own file.
-
-    What a kernel calls where it lies is there before the kernel is loaded, or the process would end.
-    """
-    package = tmp_path / "dynamics" / "kernels"
-    package.mkdir(parents=True)
-    for source in ("compiling.py", "pipeline.py"):
-        shutil.copy(Path(dynamics.__file__).parent / "kernels" / source, package)
-    for folder in (package.parent, package):
-        (folder / "__init__.py").touch()
-    head = "from dynamics.kernels.compiling import helper, kernel, shared\n"
-    (package / "aid.py").write_text(f"{head}@{how}\ndef twice(x):\n    return 2.0 * x\n")
-    (package / "work.py").write_text(
-        f"{head}from dynamics.kernels.aid import twice\n@kernel\ndef more(x):\n    return twice(x) + 1.0\n"
-    )
-    code = (
-        "import sys; sys.path.insert(0, sys.argv[1]); from dynamics.kernels.work import more;"
-        "print(more(3.0), sum(more.stats.cache_hits.values()))"
-    )
-
-    def run() -> list[str]:
-        env = {k: v for k, v in os.environ.items() if k not in ("NUMBA_CACHE_DIR", "PYTHONPATH")}
-        done = subprocess.run(
-            [sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, check=True, env=env
-        )
-        return done.stdout.split()
-
-    assert run() == ["7.0", "0"]
-    if not kept:
-        aid = package / "aid.py"
-        aid.write_text(aid.read_text().replace("2.0", "3.0"))
-    assert run() == (["7.0", "1"] if kept else ["10.0", "0"])
 
 
 @pytest.mark.parametrize("kept", [False, True])

@@ -18,7 +18,6 @@ from dynamics.kernels.compiling import (
     helper,
     kernel,
     maker,
-    shared,
 )
 from dynamics.kernels.drives import STRIDE
 from dynamics.kernels.drives.columns import multiply, scale_rows, straighten
@@ -31,10 +30,6 @@ Drive = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatA
 Room = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 """A motion and its push (m, degree + 1), six rows of as many, a state (2 m,), what `binomials` gives; motions of many
 columns (degree + 1, m, 2 m), as many states (2 m, 2 m), and the end of a stride."""
-
-
-DRIVE = "Tuple((f8[::1], f8[:, :, ::1], f8[:, ::1], f8[:, :, ::1], f8[:, :, ::1], f8[:, ::1], f8[:, :, ::1]))"
-ROOM = "Tuple((f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[::1], f8[:, ::1], f8[:, :, ::1], f8[:, ::1], f8[::1]))"
 
 
 @maker
@@ -147,7 +142,7 @@ def take_stride(par: FloatArray, stride: FloatArray, region: int, z: FloatArray,
     return True
 
 
-@shared(f"UniTuple(i8, 2)({DRIVE}, i8, i8, i8, f8[::1], i8, f8[:, ::1], {ROOM}, i8[::1])")
+@helper
 def some_cells(
     table: Drive, first: int, number: int, region: int, z: FloatArray, want: int, jac: FloatArray, room: Room,
     count: IntArray,

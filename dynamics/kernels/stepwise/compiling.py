@@ -7,10 +7,10 @@ from typing import Any, TypeVar, cast
 
 from numba import cfunc, njit, types
 
-from dynamics.kernels.compiling import LINKED, WHOLE, FloatArray, IntArray, kept
+from dynamics.kernels.compiling import FloatArray, IntArray
 
 F = TypeVar("F", bound=Callable[..., Any])
-_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True}
 # own parameters, law, parameters and data of the law, places of the parameters to differentiate by; a tuple that
 # began with a function would not be typed as one
 Model = tuple[FloatArray, Any, FloatArray, FloatArray, IntArray]
@@ -22,23 +22,18 @@ MAX_EVENTS = 100_000  # in one call, which is a period at most
 MAX_STEPS = 1_000_000  # likewise: seconds of work
 VECTOR = types.Array(types.float64, 1, "C")
 LAW = types.void(types.float64, types.float64, types.float64, types.int64, VECTOR, VECTOR, VECTOR)
-NUMBERS, ROWS = types.Array(types.int64, 1, "C"), types.Array(types.float64, 2, "C")
-PROPAGATE = types.int64(
-    types.Tuple((VECTOR, types.FunctionType(LAW), VECTOR, VECTOR, NUMBERS)), ROWS,
-    types.float64, types.float64, types.float64, types.float64, VECTOR, VECTOR, NUMBERS, NUMBERS, ROWS, types.int64,
-)  # fmt: skip
 
 
 def helper(function: F) -> F:
     """Compile when first called by a kernel; not kept on disk, because its callers hold it."""
-    return cast(F, njit(no_cpython_wrapper=True, **_OPTIONS, **LINKED)(function))
+    return cast(F, njit(**_OPTIONS)(function))
 
 
 def kernel(function: F) -> F:
-    """Compile when first called, keep the result on disk until any kernel source changes."""
-    return kept(function, **_OPTIONS)
+    """Compile when first called, keep the result on disk."""
+    return cast(F, njit(cache=True, **_OPTIONS)(function))
 
 
 def law_kernel(function: Callable[..., None]) -> Any:
     """Compile a law of this package; kept on disk until its file changes."""
-    return cfunc(LAW, cache=True, error_model="numpy", **WHOLE)(function)
+    return cfunc(LAW, cache=True, error_model="numpy")(function)

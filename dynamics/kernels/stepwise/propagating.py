@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from dynamics.kernels.compiling import ONE, ZERO, FloatArray, IntArray, called
+from dynamics.kernels.compiling import ONE, ZERO, FloatArray, IntArray
 from dynamics.kernels.roots import copy, first_exit
 from dynamics.kernels.stepwise.compiling import (
     CROWDED,
@@ -13,7 +13,6 @@ from dynamics.kernels.stepwise.compiling import (
     FREQUENCY,
     MAX_EVENTS,
     MAX_STEPS,
-    PROPAGATE,
     STUCK,
     TINY,
     Model,
@@ -225,9 +224,6 @@ def propagate(
     return FINE
 
 
-propagate_there = called(propagate, PROPAGATE)
-
-
 @kernel
 def iterate(
     model: Model, surfaces: FloatArray, tol: float, size: float, y: FloatArray, going: FloatArray, on: IntArray,
@@ -236,13 +232,11 @@ def iterate(
     """Carry y over `skip` periods and then over len(states), keeping state and falls of each; 0 or why it failed."""
     unseen = np.zeros(2, dtype=np.int64)
     for p in range(skip):
-        flag = propagate_there(model, surfaces, tol, size, 0.0, TURN, y, going, on, unseen, events, p)
+        flag = propagate(model, surfaces, tol, size, 0.0, TURN, y, going, on, unseen, events, p)
         if flag != FINE:
             return flag
     for p in range(len(states)):
-        flag = propagate_there(
-            model, surfaces, tol, size, 0.0, TURN, y, going, on, falls[p], events, skip + p
-        )
+        flag = propagate(model, surfaces, tol, size, 0.0, TURN, y, going, on, falls[p], events, skip + p)
         if flag != FINE:
             return flag
         states[p, 0], states[p, 1] = y[0], y[1]
@@ -263,7 +257,7 @@ def stretch(
         for piece in range(pieces):
             y[2] = 0.0
             start, stop = TURN * piece / pieces, TURN * (piece + 1) / pieces
-            flag = propagate_there(model, surfaces, tol, size, start, stop, y, going, on, unseen, events, p)
+            flag = propagate(model, surfaces, tol, size, start, stop, y, going, on, unseen, events, p)
             if flag != FINE:
                 return flag
             first = math.hypot(y[3], y[4])
