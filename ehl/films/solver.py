@@ -12,18 +12,17 @@ from base import Cost
 from ehl.discrete.contact import LineContact
 from ehl.discrete.method import METHOD
 from ehl.discrete.regressions import moes_central
-from ehl.discrete.supply import Meniscus, OilLayer, Supply
+from ehl.discrete.supply import OilLayer, Supply
 from ehl.films.film import Film
 from ehl.films.refined import refined
 from ehl.films.result import GridSolution
+from ehl.films.supplied import supplied
 from ehl.solving.grid_search import GridSearch
 from ehl.solving.levels import Level, State
 from ehl.solving.options import Options, warn_of_range
 from ehl.solving.plan import Plan
 
 _MOST_FIRST_NODES = 257
-SURELY = 0.7
-"""Share of the expected flooded flow below which a layer starves the contact for certain."""
 
 
 def solve(
@@ -147,51 +146,52 @@ def solve_checked(
     return _solve(run, options, start)
 
 
+class _Films:
+    """Isothermal films of a contact, flooded or starved."""
+
+    def __init__(self, contact: LineContact, options: Options, supply: Supply) -> None:
+        self.contact, self.options, self.supply = contact, options, supply
+        self.spent: Cost | None = None
+        self.last: GridSolution
+
+    def flooded(self, near: State | None) -> GridSolution | None:
+        """Film that takes what oil it wants."""
+        alone = replace(self.options, supply=None, spike=None)
+        self.last = solve_checked(self.contact, alone, near)
+        self.spent = self.last.run.cost()
+        return self.last if self.last.converged else None
+
+    def starved(self, near: State | None, full: State | None, flow: float | None) -> GridSolution | None:
+        """Film that the supply holds."""
+        contact, options = self.contact, self.options
+        plan = Plan.fed(contact, options.grid, self.supply, moes_flow(contact) if flow is None else flow)
+        flooded = None if full is None else full.bare()
+        whole = options.spike is not None
+        run = GridSearch(contact, plan, self.supply, whole_spike=whole, flooded=flooded, spent=self.spent)
+        self.last = _solve(run, options, near)
+        return self.last if self.last.converged else None
+
+    def expected(self, full: State) -> float:
+        """Flow of the flooded film [m], by that of a similar contact."""
+        return full.fine.flow * moes_flow(self.contact) / moes_flow(full.fine.contact)
+
+
 def _starved(contact: LineContact, options: Options, supply: Supply, start: State | None) -> GridSolution:
-    """Solve with a supply: a layer may be thicker than what the contact takes, which the flooded one shows."""
-    held = start if start is not None and start.plan.fixed else None
-    full = start if held is None else held.flooded
-    if isinstance(supply, Meniscus):
-        return _held(contact, options, supply, moes_flow(contact), held, full, None)
-    if held is not None and full is not None:
-        expected = full.fine.flow * moes_flow(contact) / moes_flow(full.fine.contact)
-        if supply.thickness < SURELY * expected:
-            starved = _held(contact, options, supply, expected, held, full, None)
-            if starved.converged:
-                return starved
-    flooded = solve_checked(contact, replace(options, supply=None, spike=None), full)
-    if not flooded.converged:
-        return flooded
-    if supply.thickness >= flooded.fine.flow * (1.0 - flooded.error):
-        if options.spike is not None:
-            sharp = replace(options, supply=None)
-            flooded = solve_checked(contact, sharp, flooded.state, flooded.run.cost())
-        note = "converged; the layer is thicker than what the inlet takes: flooded"
-        return replace(flooded, supply=supply, note=note)
-    full = flooded.state.bare()
-    return _held(contact, options, supply, flooded.fine.flow, held, full, flooded.run.cost())
+    """Solve with a supply; a layer that is thicker than what the contact takes leaves it flooded."""
+    films = _Films(contact, options, supply)
+    solution = supplied(films, supply, start) or films.last
+    if solution.failure or solution.run.supply is not None:
+        return solution
+    if options.spike is not None:
+        solution = solve_checked(contact, replace(options, supply=None), solution.state, films.spent)
+    note = "converged; the layer is thicker than what the inlet takes: flooded"
+    return replace(solution, supply=supply, note=note)
 
 
 def moes_flow(contact: LineContact) -> float:
     """Flow of a flooded contact by Moes' formula, at the density that the oil has under Hertz's pressure [m]."""
     density = contact.lubricant.density_ratio(np.array([contact.peak_pressure]))[0]
     return moes_central(contact) * float(density[0])
-
-
-def _held(
-    contact: LineContact,
-    options: Options,
-    supply: Supply,
-    flow: float,
-    held: State | None,
-    flooded: State | None,
-    spent: Cost | None,
-) -> GridSolution:
-    """Solve a starved contact, whose flooded flow would be about ``flow`` [m]."""
-    plan = Plan.fed(contact, options.grid, supply, flow)
-    whole = options.spike is not None
-    run = GridSearch(contact, plan, supply, whole_spike=whole, flooded=flooded, spent=spent)
-    return _solve(run, options, held)
 
 
 def _solve(run: GridSearch, options: Options, old: State | None) -> GridSolution:

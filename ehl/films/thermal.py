@@ -16,9 +16,10 @@ from ehl.discrete.supply import Supply
 from ehl.discrete.thermal_oil import ThermalOil
 from ehl.films.film import Film, FilmErrors, unsolved
 from ehl.films.result import above
+from ehl.films.supplied import supplied
 from ehl.films.thermal_errors import Compared
 from ehl.films.thermal_search import Search
-from ehl.films.thermal_supply import supplied
+from ehl.films.thermal_supply import ThermalFilms
 from ehl.solving.heat_balance import losses, rises, rolling, stresses, traction
 from ehl.solving.levels import WarmLevel, figures
 from ehl.solving.options import Options, warn_of_range
@@ -166,7 +167,8 @@ def solve_thermal(
     warn_of_range(contact)
     watch = Stopwatch()
     search = Search(contact, solids, np.array(bulk), tolerance)
-    compared = supplied(search, supply, None if start is None else start.state, nodes)
+    films = ThermalFilms(search, supply, nodes)
+    compared = supplied(films, supply, None if start is None else start.state)
     if compared is not None and compared.oil.temperature.max() > METHOD.hottest:
         hottest = compared.oil.temperature.max()
         search.reason, compared = f"the oil would reach {hottest:.0f} K, which no liquid does", None

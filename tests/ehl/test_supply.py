@@ -130,7 +130,7 @@ def test_a_layer_as_thick_as_wanted_is_flooded_whatever_the_start_was(monkeypatc
     thick = OilLayer(1.02 * FLOODED.flow)
     assert "flooded" in quiet(PITCH, supply=thick, start=before).message
     # even where the flow expected from the neighbour's is far too large
-    monkeypatch.setattr("ehl.films.solver.SURELY", 2.0)
+    monkeypatch.setattr("ehl.films.supplied._SURELY", 2.0)
     film = sound(quiet(PITCH, supply=thick, start=before))
     assert "flooded" in film.message
     assert film.central_thickness == pytest.approx(FLOODED.central_thickness, rel=2 * FLOODED.error)
