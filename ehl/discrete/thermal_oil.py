@@ -18,7 +18,7 @@ from ehl.discrete.solids import Solid, surface_heating
 _COLD = 1e-3  # mean rise below which changes are not looked at in proportion [K]
 _NEWTONIAN = 1e12  # Eyring stress that no oil reaches [Pa]; with more, sums across the film lose digits
 _UNLIMITED = 1e30  # [Pa]
-_LEAST_STRESS = 1e3  # of the limiting stress where hardly any pressure stands [Pa]
+_LEAST_STRESS = 1e6  # of the limiting stress: where hardly any pressure stands no liquid yields to less [Pa]
 
 
 class Sheared(NamedTuple):

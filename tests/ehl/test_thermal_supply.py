@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from base import InputError
-from ehl import Meniscus, OilLayer, solve, solve_thermal
+from ehl import LineContact, Lubricant, Meniscus, OilLayer, solve, solve_thermal
 from tests.ehl.test_thermal import OIL, SLIDING
 
 pytestmark = pytest.mark.filterwarnings("ignore:Hertz pressure", "ignore:mean shear stress")
@@ -70,3 +70,24 @@ def test_a_near_meniscus_thins_the_film_and_keeps_its_place():
 def test_bad_supplies_are_refused():
     with pytest.raises(InputError, match="edge of the dry contact"):
         solve_thermal(SLIDING, supply=Meniscus(-0.5 * SLIDING.half_width))
+
+
+@pytest.mark.parametrize("supply", ["near meniscus", "flooded"])
+def test_a_limit_that_follows_the_pressure_takes_none_of_the_inlet(supply):
+    """Pressure builds up from zero as if nothing yielded, on the grid of the tolerance and on a finer one."""
+    oil = Lubricant(
+        0.016,
+        15e-9,
+        831.0,
+        temperature=373.15,
+        viscosity_slope=0.029,
+        eyring_stress=9.8e6,
+        limiting_shear_ratio=0.047,
+    )
+    contact = LineContact(3.65e5, 8.65, 6.67e-3, 2.26e11, oil, sliding=-5.38)
+    near = Meniscus(-1.275 * contact.half_width) if supply == "near meniscus" else None
+    free = replace(contact, lubricant=replace(oil, limiting_shear_ratio=None))
+    for nodes in (129, 257):
+        limited, whole = (solve_thermal(c, nodes=nodes, supply=near) for c in (contact, free))
+        assert limited.minimum_thickness == pytest.approx(whole.minimum_thickness, rel=1e-4)
+        assert limited.central_thickness == pytest.approx(whole.central_thickness, rel=1e-4)
