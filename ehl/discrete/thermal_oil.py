@@ -18,7 +18,7 @@ from ehl.discrete.solids import Solid, surface_heating
 _COLD = 1e-3  # mean rise below which changes are not looked at in proportion [K]
 _NEWTONIAN = 1e12  # Eyring stress that no oil reaches [Pa]; with more, sums across the film lose digits
 _UNLIMITED = 1e30  # [Pa]
-_LEAST_STRESS = 1e6  # of the limiting stress: where hardly any pressure stands no liquid yields to less [Pa]
+_LEAST_STRESS = 3e6  # of the limiting stress: where hardly any pressure stands no liquid yields to less [Pa]
 
 
 class Sheared(NamedTuple):
@@ -148,17 +148,18 @@ class ThermalOil:
 
     def on(self, contact: LineContact, grid: Grid) -> ThermalOil:
         """Return the oil of a contact nearby, on a grid whose nodes have moved a little: cell by cell as it is here."""
-        other = ThermalOil(contact, grid, Groups.on(contact, grid), self.solids, self.bulk)
+        groups = Groups.on(contact, grid)
+        other = ThermalOil(contact, grid, groups, self.solids, self.bulk, inlet_gap=self.inlet_gap)
         other.temperature, other.into, other.sigma = (
             values.copy() for values in (self.temperature, self.into, self.sigma)
         )
         other.before = self.before
         return other
 
-    def farther(self, P: Array, H: Array) -> ThermalOil:
-        """Return the oil with heat followed from twice the gap, swept once under the same pressures and gaps."""
+    def swept(self, P: Array, H: Array, wider_by: float) -> ThermalOil:
+        """Return the oil with heat followed from a wider gap, swept once under the same pressures and gaps."""
         wider = copy(self)
-        wider.inlet_gap = 2.0 * self.inlet_gap
+        wider.inlet_gap = wider_by * self.inlet_gap
         wider.temperature, wider.into, wider.sigma = (
             values.copy() for values in (self.temperature, self.into, self.sigma)
         )

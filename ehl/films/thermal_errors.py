@@ -6,15 +6,13 @@ from functools import cached_property
 
 import numpy as np
 
+from ehl.discrete.equations import fluxes
 from ehl.discrete.method import METHOD
+from ehl.discrete.thermal_oil import ThermalOil
 from ehl.films.result import film_error
 from ehl.solving.heat_balance import losses, rises, traction
-from ehl.solving.levels import State, WarmLevel, figures
+from ehl.solving.levels import State, WarmLevel
 
-_LEAST = 0.6  # the minimum under a spike falls with the cells' size, not with its square: as much more of its change
-_INLET_SHARE = (
-    0.04  # of the film by which the central film changes where heat ahead is left out, times that gap
-)
 _CLIMB_LEFT = 0.25  # share of the climb to a spike that grids leave out
 
 
@@ -35,14 +33,9 @@ class Compared:
         mu_0, mu = traction(self.before), traction(self.oil)
         self.rest, self.inlet = rest, self.fine.plan.inlet_error
         self.traction_error = rest + abs(mu_0 - mu) / max(abs(mu), 1e-4)
-        oil = self.oil.contact.lubricant
-        cut = (
-            0.0 if self.oil.solids is None or oil.viscosity_slope == 0.0 else _INLET_SHARE / METHOD.heat_reach
-        )
-        lowest_0, lowest = (figures(level).minimum_thickness for level in (self.coarse, self.fine))
-        film = film_error(self.coarse, self.fine) + _LEAST * abs(lowest_0 / lowest - 1.0)
         # what the hottest oil does to film and traction is in these; itself it may stand at the spike
-        self.error = max(film, METHOD.grid_factor * self.traction_error) + self.inlet + cut + rest
+        grid = max(film_error(self.coarse, self.fine), METHOD.grid_factor * self.traction_error)
+        self.error = grid + self.inlet + self._thinned_ahead() + rest
         # a grid that is asked for has no tolerance to meet, nor do coarser ones end the search for it
         self.enough = self.error <= tolerance if nodes is None else fine.grid.nodes.size == nodes
 
@@ -53,18 +46,39 @@ class Compared:
         change = float(np.max(np.abs(warm_0 - warm) / np.maximum(warm, 1.0)))
         return self.rest + change + self._spike_left() / max(float(warm[0]), 1.0) + self._heat_ahead()
 
+    @cached_property
+    def _wider(self) -> ThermalOil:
+        """Oil of the coarser grid with heat followed from twice the gap.
+
+        What heat ahead does falls with the gap from which it is followed: as much again as this adds is left beyond.
+        """
+        solution = self.coarse.solution
+        with np.errstate(all="ignore"):
+            return self.before.swept(solution.P, solution.H, 2.0)
+
+    def _thinned_ahead(self) -> float:
+        """Relative change of the film that heat ahead of where it is followed would make, by one Newton step."""
+        if self.before.solids is None:
+            return 0.0
+        grid, groups, solution = self.coarse.grid, self.coarse.groups, self.coarse.solution
+        P, H, factors = solution.P, solution.H, solution.factors
+        assert factors is not None  # the level was solved for this comparison
+        with np.errstate(all="ignore"):
+            oils = self.before.swept(P, H, 1.0), self._wider
+        as_it_is, warmed = (fluxes(grid, groups, P, H, grid.quick, oil.before)[0] for oil in oils)
+        dP, dH0 = factors.solve(np.diff(as_it_is - warmed), 0.0, P.size)
+        thinned = (dH0 - groups.compliance * (grid.potential @ dP)) / H
+        middle, lowest = np.argmin(np.abs(grid.nodes)), np.argmin(H)
+        return 2.0 * max(abs(float(thinned[middle])), abs(float(thinned[lowest])))
+
     def _heat_ahead(self) -> float:
         """Share of the rises that heat ahead of where it is followed would add.
 
-        It falls with the gap from which heat is followed, so that as much again as twice the gap adds is left beyond.
         What oil that turns back carries off unseen is the heat by which the balance does not close.
         """
         if self.before.solids is None:
             return 0.0
-        solution = self.coarse.solution
-        with np.errstate(all="ignore"):
-            wider = np.array(rises(self.before.farther(solution.P, solution.H)))
-        warm = np.array(rises(self.before))
+        warm, wider = np.array(rises(self.before)), np.array(rises(self._wider))
         ahead = 2.0 * np.abs(wider - warm) / np.maximum(warm, 1.0)
         return float(np.max(ahead)) + abs(losses(self.oil)["closure"])
 

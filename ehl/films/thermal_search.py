@@ -27,6 +27,7 @@ from ehl.solving.plan import Plan
 from ehl.solving.refinement import doubled, refine
 
 _MOST_STEPS = 60  # of Newton's on one grid
+_FARTHER = 0.005  # tolerance below which heat is followed from farther ahead, as much as it is smaller
 _SHARES = (0.25, 0.5, 0.75, 1.0)  # of the sliding, where all of it at once fails
 
 
@@ -77,6 +78,7 @@ class Search:
         )
         self.isothermal = at_bulk(contact, bulk)
         self.reach = max(METHOD.inlet_reach, (10.0 / tolerance) ** (1.0 / 3.0))
+        self.heat_reach = METHOD.heat_reach * max(1.0, _FARTHER / tolerance)
         self.iterations, self.restarts, self.nodes, self.reason = 0, 0, 0, ""
 
     def from_nothing(self, nodes: int | None) -> Compared | None:
@@ -204,7 +206,8 @@ class Search:
     def _oil(self, level: Level, share: float, known: ThermalOil | None) -> ThermalOil:
         """Oil on a level's grid, with a share of the sliding."""
         contact = replace(self.contact, sliding=share * self.contact.sliding)
-        oil = ThermalOil(contact, level.grid, Groups.on(contact, level.grid), self.solids, self.bulk)
+        groups = Groups.on(contact, level.grid)
+        oil = ThermalOil(contact, level.grid, groups, self.solids, self.bulk, inlet_gap=self.heat_reach)
         if known is not None:
             oil.start_from(known)
         return oil
