@@ -119,7 +119,7 @@ def outcomes(supply: str, hot: bool, seed: int, numbers: range, tolerance: float
 
 def main(contacts: int, seed: int, *tolerances: float) -> None:
     """Print a row for each supply and tolerance."""
-    print("films | tolerance | solved, within it | in .5 to 5 | least | median | most | nodes | s")
+    print("films | tolerance | solved, within it | in .5 to 5 | smallest | median | largest | nodes | s")
     for hot in (False, True):
         for supply in SUPPLIES:
             for tolerance in tolerances:
