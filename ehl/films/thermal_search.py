@@ -27,7 +27,8 @@ from ehl.solving.plan import Plan
 from ehl.solving.refinement import doubled, refine
 
 _MOST_STEPS = 60  # of Newton's on one grid
-_FARTHER = 0.005  # tolerance below which heat is followed from farther ahead, as much as it is smaller
+_FARTHER = 0.005  # tolerance below which heat is followed from farther ahead, as much as it is smaller,
+_FARTHEST = 2.5  # up to so many times as far: beyond, oil that goes round settles with few films
 _SHARES = (0.25, 0.5, 0.75, 1.0)  # of the sliding, where all of it at once fails
 
 
@@ -78,7 +79,7 @@ class Search:
         )
         self.isothermal = at_bulk(contact, bulk)
         self.reach = max(METHOD.inlet_reach, (10.0 / tolerance) ** (1.0 / 3.0))
-        self.heat_reach = METHOD.heat_reach * max(1.0, _FARTHER / tolerance)
+        self.heat_reach = METHOD.heat_reach * min(max(1.0, _FARTHER / tolerance), _FARTHEST)
         self.iterations, self.restarts, self.nodes, self.reason = 0, 0, 0, ""
 
     def from_nothing(self, nodes: int | None) -> Compared | None:

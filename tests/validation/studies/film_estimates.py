@@ -3,7 +3,7 @@
     python tests/validation/studies/film_estimates.py [contacts] [seed] [tolerance ...]
 
 True: the larger error of central and minimum film against grids of two and four times as many cells, extrapolated by
-the order that they show (between 1 and 2), with heat followed from at least five times as far ahead.
+the order that they show (between 1 and 2), with heat followed from 2.5 times as far ahead.
 """
 
 from __future__ import annotations
