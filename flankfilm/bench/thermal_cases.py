@@ -125,7 +125,7 @@ def face_table() -> Levels:
         least, central = (
             table.thickness(name, *cells) for name in ("minimum_thickness", "central_thickness")
         )
-        errors = np.hypot([table.error, table.central_error], table.film_error or 0.0).tolist()
+        errors = np.hypot([table.grid_error, table.central_error], table.film_error or 0.0).tolist()
         return answer(
             table.load.size,
             {"minimum films": value(least, errors[0]), "central films": value(central, errors[1])},

@@ -1,4 +1,4 @@
-"""The cells of a mesh cycle whose load varies along the face: what they bear, and at which places."""
+"""The cells of a mesh cycle: what they bear, and at which places; a load that is even along the face has one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from base import Array
 if TYPE_CHECKING:
     from flankfilm.coupling.cycle import MeshCycle
 
-__all__ = ["Cells", "cells_of"]
+__all__ = ["Cells", "cells_of", "line_loads"]
 
 
 class Cells(NamedTuple):
@@ -45,3 +45,9 @@ def cells_of(cycle: MeshCycle) -> Cells:
     assert face is not None
     rho1 = np.broadcast_to(cycle.rho1[..., None], face.line_load.shape)
     return Cells(face, rho1, np.isfinite(rho1) & (face.line_load > 0.0))
+
+
+def line_loads(cycle: MeshCycle, face_width: float) -> Array:
+    """Line loads of all cells (positions, pairs, cells) [N/m]: of one, as wide as the face [m], where they are even."""
+    face = cycle.face
+    return cycle.forces[..., None] / face_width if face is None else face.line_load

@@ -78,7 +78,7 @@ class FaceFilms(FaceCells):
     @property
     def error(self) -> float | None:
         """Relative error of a cell's film under its line load; None by formula."""
-        return None if self.film_error is None else float(np.hypot(self.film_error, self.table_error))
+        return self.table.error
 
     @property
     def central_error(self) -> float | None:
@@ -149,7 +149,7 @@ def face_films(cycle: MeshCycle, table: FilmTable, seconds: float) -> FaceFilms:
         lightest_load=float(table.load[0]),
         films=table.separation.size,
         film_error=table.film_error,
-        table_error=table.error,
+        table_error=table.grid_error,
         table=table,
         cost=Cost(seconds),
     )

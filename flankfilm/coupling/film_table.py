@@ -23,14 +23,20 @@ import numpy as np
 import ehl
 import gears
 from base import Array, InputError, RangeWarning
-from flankfilm.coupling.cells import cells_of
-from flankfilm.coupling.films import FilmModel, PathFilms, PlacedMeniscus, Solved, film_inside, films_of
+from flankfilm.coupling.cells import line_loads
+from flankfilm.coupling.film_field import FilmField
+from flankfilm.coupling.films import (
+    FilmModel,
+    PlacedMeniscus,
+    Solved,
+    film_inside,
+    films_under,
+    separations_of,
+)
 from flankfilm.coupling.line_contacts import line_contacts
 from gears.pair.hertz import half_width
 
 if TYPE_CHECKING:
-    from scipy.interpolate import RectBivariateSpline
-
     from flankfilm.coupling.cycle import MeshCycle
 
 PLACES = 9
@@ -58,15 +64,14 @@ FIGURES = ("separation", "minimum_thickness", "central_thickness")
 
 
 @dataclass(frozen=True, eq=False)
-class FilmTable:
-    """Films over place and line load, as load sharing over pairs and cells takes them.
+class FilmTable(FilmField):
+    """Films without heat over place and rising line loads, as load sharing over pairs and cells takes them.
+
+    Logarithms of the figures are interpolated by bicubic splines. Below the lightest load the law goes on along its
+    tangent, above the heaviest along its power.
 
     Attributes
     ----------
-    rho1 : ndarray, shape (places,)
-        Curvature radius of the pinion's flank, rising [m].
-    load : ndarray, shape (loads,)
-        Force per length of face, rising [N/m].
     face_width : float
         By which a whole face's force is its line load [m].
     separation, minimum_thickness, central_thickness : ndarray, shape (places, loads)
@@ -77,8 +82,9 @@ class FilmTable:
         Relative errors of the separations, with the sign of the last refinement; None by formula.
     """
 
-    rho1: Array
-    load: Array
+    figures = FIGURES
+    degree_along = 3
+
     face_width: float
     separation: Array
     minimum_thickness: Array
@@ -86,10 +92,30 @@ class FilmTable:
     film_error: float | None
     separation_shift: Array | None = None
 
+    def at(self, figure: str, rho1: Array, load: Array, slope: int = 0) -> Array:
+        """Separation or thickness [m], of a name in `FIGURES`, or its slope by the load [m2/N].
+
+        Parameters
+        ----------
+        figure : str
+        rho1, load : ndarray
+            Places [m] and line loads [N/m], of the same shape.
+        slope : int
+            0 for the figure, 1 for its slope.
+        """
+        return self._law(figure, rho1, load)[slope]
+
+    def _law(self, figure: str, rho1: Array, load: Array) -> tuple[Array, Array]:
+        """Figure and its slope by the load."""
+        least = np.maximum(load, self.load[0])
+        exponent = np.maximum(-self.within(figure, rho1, least, 1), 0.0)
+        beyond = np.maximum(np.log(least / self.load[-1]), 0.0)
+        value = np.exp(self.within(figure, rho1, least) - exponent * beyond)
+        slope = -exponent * value / least
+        return value + slope * np.minimum(load - least, 0.0), slope
+
     def __call__(self, rho1: Array, forces: Array) -> tuple[Array, Array]:
         """Separation [m] and its slope [m/N] at places and under forces that load a whole face evenly.
-
-        Below the lightest load the law goes on along its tangent, above the heaviest along its power.
 
         Parameters
         ----------
@@ -98,15 +124,9 @@ class FilmTable:
         forces : ndarray
             Of the same shape [N].
         """
-        load = np.maximum(forces / self.face_width, self.load[0])
-        log = np.log(load)
-        inside = np.minimum(log, np.log(self.load[-1]))
-        exponent = np.maximum(-self._of("separation", rho1, inside, 1), 0.0)
-        separation = np.exp(self._of("separation", rho1, inside) - exponent * (log - inside))
-        slope = -exponent * separation / (self.face_width * load)
-        lighter = np.minimum(forces - self.face_width * load, 0.0)
+        separation, slope = self._law("separation", rho1, forces / self.face_width)
         known = np.isfinite(rho1)
-        return np.where(known, separation + slope * lighter, 0.0), np.where(known, slope, 0.0)
+        return np.where(known, separation, 0.0), np.where(known, slope / self.face_width, 0.0)
 
     def thickness(self, figure: str, rho1: Array, load: Array) -> Array:
         """Thickness of films [m], of a name in `FIGURES`, at places under line loads [N/m].
@@ -114,8 +134,7 @@ class FilmTable:
         NaN below the lightest load, where films are thicker than the thickest that is known.
         """
         known = np.isfinite(rho1) & (load >= self.load[0])
-        log = np.log(np.where(known, load, self.load[0]))
-        return np.where(known, np.exp(self._of(figure, rho1, log)), np.nan)
+        return np.where(known, self.at(figure, rho1, load), np.nan)
 
     def corners(self, pair: gears.GearPair) -> Array:
         """No positions: the law is smooth along the path."""
@@ -132,9 +151,14 @@ class FilmTable:
             return grids
         return (replace(self, separation=self.separation * (1.0 + self.separation_shift)), 1.0), *grids
 
+    @property
+    def error(self) -> float | None:
+        """Relative error of minimum films and separation under a line load; None by formula."""
+        return None if self.film_error is None else float(np.hypot(self.film_error, self.grid_error))
+
     @cached_property
-    def error(self) -> float:
-        """Relative error of minimum films and separation by the grid of places and loads."""
+    def grid_error(self) -> float:
+        """The same by the grid of places and loads alone."""
         return max(self._missed("separation"), self._missed("minimum_thickness"))
 
     @cached_property
@@ -143,10 +167,10 @@ class FilmTable:
         return self._missed("central_thickness")
 
     def _missed(self, name: str) -> float:
-        missed, (rho1, log) = 0.0, np.meshgrid(self.rho1, np.log(self.load), indexing="ij")
+        missed, (rho1, load) = 0.0, np.meshgrid(self.rho1, self.load, indexing="ij")
         for along in (0, 1):
             omitted = np.arange(1, self.separation.shape[along], 2)
-            off = self._every_second(along)._of(name, rho1, log) - np.log(getattr(self, name))
+            off = self._every_second(along).within(name, rho1, load) - self.grid(name)
             missed = max(missed, LEFT_OUT[name] * float(np.abs(np.take(off, omitted, axis=along)).max()))
         return missed
 
@@ -158,19 +182,9 @@ class FilmTable:
             grid["separation_shift"] = self.separation_shift[kept]
         return replace(self, rho1=self.rho1[kept[0]], load=self.load[kept[1]], **grid)
 
-    @cached_property
-    def _splines(self) -> dict[str, RectBivariateSpline]:
-        from scipy.interpolate import RectBivariateSpline  # loads half of scipy
-
-        at = np.log(self.load)
-        return {
-            name: RectBivariateSpline(self.rho1, at, np.log(getattr(self, name)), s=0) for name in FIGURES
-        }
-
-    def _of(self, figure: str, rho1: Array, log: Array, slope: int = 0) -> Array:
-        """Logarithm of a figure, or its slope by that of the load; places beyond the first and last have theirs."""
-        place = np.clip(np.nan_to_num(rho1), self.rho1[0], self.rho1[-1])
-        return np.asarray(self._splines[figure].ev(place, log, dy=slope))
+    def grid(self, figure: str) -> Array:
+        """Logarithm of a figure of all films (places, loads)."""
+        return np.asarray(np.log(getattr(self, figure)))
 
 
 def film_table(
@@ -187,7 +201,6 @@ def film_table(
     ----------
     pair : gears.GearPair
     dry : MeshCycle
-        With cells of the face.
     speed : float
         Of the pinion [rad/s].
     lubricant : ehl.Lubricant
@@ -204,7 +217,7 @@ def film_table(
         Where a film has no solution.
     """
     _check(model)
-    greatest = cells_of(dry).face.greatest_line_load
+    greatest = line_loads(dry, pair.face_width).max()
     loaded = dry.rho1[np.isfinite(dry.rho1) & (dry.forces > 0.0)]
     half = 0.5 * pair.base_pitch / dry.position.size
     ends = max(float(loaded.min()) - half, pair.points.A), min(float(loaded.max()) + half, pair.points.E)
@@ -225,15 +238,12 @@ def table_on(
 ) -> FilmTable:
     """Solve films at places (places,) [m] under line loads (loads,) [N/m], both rising; else as of `film_table`."""
     rows: list[tuple[Solved, ...]] = []
-    before: PathFilms | None = None
     for place in rho1:
         at = np.full(load.size, place)
         contacts = line_contacts(pair, at, load[::-1], speed, lubricant)
         with warnings.catch_warnings():
-            if rows:  # what the first place has warned of
-                warnings.simplefilter("ignore", RangeWarning)
-            before = films_of(model, at, contacts, before, tolerance)
-        rows.append(before.films)
+            warnings.simplefilter("ignore", RangeWarning)  # films that are borne warn where they are shown
+            rows.append(films_under(model, at, contacts, rows[-1] if rows else (), tolerance))
 
     def each(figure: str) -> Array:
         return np.array([[getattr(film, figure) for film in row[::-1]] for row in rows])
@@ -245,7 +255,12 @@ def table_on(
         rho1,
         load,
         pair.face_width,
-        each("separation"),
+        np.array(
+            [
+                separations_of(np.full(load.size, place), row)[::-1]
+                for place, row in zip(rho1, rows, strict=True)
+            ]
+        ),
         each("minimum_thickness"),
         each("central_thickness"),
         None if shifts is None else float(each("error").max()),

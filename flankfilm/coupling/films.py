@@ -19,8 +19,12 @@ from flankfilm.coupling.line_contacts import line_contacts
 Solved: TypeAlias = "ehl.Film | ehl.MixedFilm | ehl.FormulaFilm"
 Supply: TypeAlias = "ehl.Meniscus | ehl.OilLayer | None"
 
-LEAST_SHARE = 1e-3
+FILM_POSITIONS = 40
+"""Positions of a base pitch at which films are solved by themselves."""
+
 _LEAST_PLANES = 0.5  # sigma: minimum distance of mean planes from which a power law of the load goes on
+
+LEAST_SHARE = 1e-3
 """Pairs with less than this part of the force get no film: they hardly touch, and what their film
 separates them by moves the load share by less than their own part."""
 
@@ -93,7 +97,20 @@ class FilmModel:
     @property
     def stiffness(self) -> str:
         """Definition of the film stiffness that goes in series with the teeth."""
-        return self.definition or ("dowson-central" if self.name == "dowson" else "approach")
+        return self.definition or self._own_stiffness
+
+    @property
+    def _own_stiffness(self) -> str:
+        return "dowson-central" if self.name == "dowson" else "approach"
+
+    @property
+    def follows_load(self) -> bool:
+        """Whether place and line load alone say how films separate the flanks, and yield.
+
+        Not so behind a meniscus, which lies where one load has put it when the load changes from there; nor by another
+        definition of the stiffness than the slope of the separation.
+        """
+        return self.stiffness == self._own_stiffness and self.held != "meniscus"
 
     @property
     def held(self) -> str:
@@ -245,17 +262,27 @@ def films_of(
     SolverError
         Where a film has no solution.
     """
-    if model.name == "dowson":
-        return PathFilms(rho1, tuple(ehl.dowson(contact) for contact in contacts))
     old = before if before is not None and len(before.films) == len(contacts) else PathFilms(rho1, ())
     flooded: tuple[ehl.Film, ...] = ()
     if model.supply is not None:
         smooth = replace(model, supply=None, roughness=None)
-        smooth_films = films_along(smooth, rho1, contacts, (None,) * len(contacts), old.flooded, tolerance)
-        flooded = tuple(map(film_inside, smooth_films))
+        flooded = tuple(map(film_inside, films_under(smooth, rho1, contacts, old.flooded, tolerance)))
+    return PathFilms(rho1, films_under(model, rho1, contacts, old.films, tolerance, beside), flooded, beside)
+
+
+def films_under(
+    model: FilmModel,
+    rho1: Array,
+    contacts: tuple[ehl.LineContact, ...],
+    before: tuple[Solved, ...],
+    tolerance: float,
+    beside: tuple[int, ...] = (),
+) -> tuple[Solved, ...]:
+    """Films of all contacts by the model; arguments as of `films_along`."""
+    if model.name == "dowson":
+        return tuple(ehl.dowson(contact) for contact in contacts)
     supplies = tuple(supply_of(model.supply, contact) for contact in contacts)
-    films = films_along(model, rho1, contacts, supplies, old.films, tolerance, beside)
-    return PathFilms(rho1, films, flooded, beside)
+    return films_along(model, rho1, contacts, supplies, before, tolerance, beside)
 
 
 def held_the_other_way(model: FilmModel, path: PathFilms, tolerance: float) -> PathFilms:
@@ -315,16 +342,10 @@ def law_of(path: PathFilms, face_width: float, definition: str) -> FilmLaw:
     Raises
     ------
     SolverError
-        Where a film separates the flanks by less than its error.
+        As of `separations_of`.
     """
     force = np.array([face_width * film.contact.load for film in path.films])
-    separations = np.array([_separation(film) for film in path.films])
-    if np.any(separations <= 0.0):
-        place = 1e3 * path.rho1[int(np.argmin(separations))]
-        raise SolverError(
-            f"the film at rho1 = {place:.3f} mm separates the flanks by less than its error: it is as good "
-            'as dry; take film.model = "none"'
-        )
+    separations = separations_of(path.rho1, path.films)
     exponent = np.array([_exponent(film, definition) for film in path.films])
     inside = [film_inside(film) for film in path.films]
     if not path.flooded or not any(type(film.supply).__name__ == "Meniscus" for film in inside):
@@ -365,6 +386,24 @@ def _exponent(film: Solved, definition: str) -> float:
     if definition != "approach" or slope is None:
         slope = -1.0 / film.stiffness(definition)
     return max(-slope * film.contact.load / _separation(film), 0.0)
+
+
+def separations_of(rho1: Array, films: tuple[Solved, ...]) -> Array:
+    """Separations of films at places [m] that laws of the load continue (n,) [m].
+
+    Raises
+    ------
+    SolverError
+        Where a film separates the flanks by less than its error.
+    """
+    separations = np.array([_separation(film) for film in films])
+    if np.any(separations <= 0.0):
+        place = 1e3 * rho1[int(np.argmin(separations))]
+        raise SolverError(
+            f"the film at rho1 = {place:.3f} mm separates the flanks by less than its error: it is as good "
+            'as dry; take film.model = "none"'
+        )
+    return separations
 
 
 def _separation(film: Solved) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,13 +11,12 @@ import ehl
 import gears
 from base import Array
 from flankfilm.coupling.cells import cells_of
+from flankfilm.coupling.film_field import FilmField
 from flankfilm.coupling.heated_films import HeatedFilms, HeatedOil, heated_films
 from flankfilm.coupling.line_contacts import line_contacts, with_sliding
 from flankfilm.coupling.mean_losses import Borne, Carried
 
 if TYPE_CHECKING:
-    from scipy.interpolate import RectBivariateSpline
-
     from flankfilm.coupling.cycle import MeshCycle
 
 __all__ = ["HeatedTable", "heated_table"]
@@ -42,15 +40,11 @@ FIGURES = ("friction", "rolling", "first_part", "minimum_thickness", "oil_rise",
 
 
 @dataclass(frozen=True, eq=False)
-class HeatedTable:
-    """Films with heat over place and line load: between loads cubic in their logarithm, between places linear.
+class HeatedTable(FilmField):
+    """Films with heat over place and falling line loads: between loads cubic in their logarithm, between places linear.
 
     Attributes
     ----------
-    rho1 : ndarray, shape (places,)
-        Curvature radius of the pinion's flank, rising [m].
-    load : ndarray, shape (loads,)
-        Force per length of face, falling [N/m].
     rows : tuple of HeatedFilms
         At each place, films under all loads.
     bulk : (float, float)
@@ -59,8 +53,9 @@ class HeatedTable:
         By which friction and rolling are other than those of the films, along the path.
     """
 
-    rho1: Array
-    load: Array
+    figures = FIGURES
+    degree_along = 1
+
     rows: tuple[HeatedFilms, ...]
     bulk: tuple[float, float]
     ratios: Carried | None = None
@@ -81,11 +76,9 @@ class HeatedTable:
         kept = (len(self.load) + 1) // 2
         return replace(self, load=self.load[::2], rows=tuple(row.thinned_to(kept) for row in self.rows))
 
-    def at(self, figure: str, rho1: Array, load: Array) -> Array:
-        """Figure of the films at places [m] under line loads [N/m]; those beyond the table have its nearest."""
-        place = np.clip(np.nan_to_num(rho1), self.rho1[0], self.rho1[-1])
-        log = np.log(np.clip(load, self.load[-1], self.load[0]))
-        return np.asarray(self._splines[figure].ev(place, log))
+    def at(self, figure: str, rho1: Array, load: Array, slope: int = 0) -> Array:
+        """Figure of the films at places [m] under line loads [N/m], or its slope by these; beyond of the nearest."""
+        return self.within(figure, rho1, load, slope) / load**slope
 
     def borne(self, cycle: MeshCycle, face_width: float) -> Borne:
         """What the cells of a cycle bear, with friction and rolling."""
@@ -100,17 +93,7 @@ class HeatedTable:
             friction, rolling = friction * by.friction, rolling * by.rolling
         return Borne(rho1, width * load, width, friction, rolling, first)
 
-    @cached_property
-    def _splines(self) -> dict[str, RectBivariateSpline]:
-        from scipy.interpolate import RectBivariateSpline  # loads half of scipy
-
-        log, order = np.log(self.load[::-1]), min(3, len(self.load) - 1)
-        return {
-            name: RectBivariateSpline(self.rho1, log, self._grid(name)[:, ::-1], kx=1, ky=order, s=0)
-            for name in FIGURES
-        }
-
-    def _grid(self, figure: str) -> Array:
+    def grid(self, figure: str) -> Array:
         """Figure of all films (places, loads)."""
         if figure in ("friction", "rolling", "first_part", "minimum_thickness"):
             return np.array([getattr(row, figure) for row in self.rows])

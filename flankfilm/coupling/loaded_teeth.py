@@ -7,20 +7,26 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 import fem
 import gears
-from base import Faults, Limit
+from base import Faults, Limit, SolverError
 from flankfilm.coupling.believed import believed
 from flankfilm.coupling.cycle import MeshCycle
-from flankfilm.coupling.film_law import FilmLaw
 from flankfilm.coupling.flanks import PLAIN_FLANKS, Flanks
 from flankfilm.coupling.references import MEANINGS
 from flankfilm.coupling.sharing_pairs import SharingPairs
 from flankfilm.coupling.single_pairs import CLOSED_FORMS, MODELS
 
 if TYPE_CHECKING:
-    from flankfilm.coupling.film_table import FilmTable
+    from flankfilm.coupling.film_field import FilmsInSeries
 
 POSITIONS = 120
 """Positions of curves; figures follow from arcs, whatever the positions."""
+
+
+SOFTER = (
+    "films softer than the teeth draw the load to the pair that has most of it; raise the torque, or lower speed and "
+    "viscosity"
+)
+"""Why films and load share do not agree, and what to do."""
 
 
 class TeethOptions(TypedDict, total=False):
@@ -120,9 +126,9 @@ class LoadedTeeth:
     def cycle(
         self,
         positions: int,
-        film: FilmLaw | FilmTable | None = None,
+        film: FilmsInSeries | None = None,
         tolerance: float = 1e-3,
-        varied: tuple[tuple[FilmLaw | FilmTable, float], ...] = (),
+        varied: tuple[tuple[FilmsInSeries, float], ...] = (),
     ) -> MeshCycle:
         """Mesh cycle at the midpoints of some equal intervals of one base pitch.
 
@@ -130,11 +136,11 @@ class LoadedTeeth:
         ----------
         positions : int
             Number of intervals.
-        film : FilmLaw or FilmTable, optional
+        film : FilmsInSeries, optional
             Films in series with the pairs; dry without.
         tolerance : float
             Relative, of means, extremes and harmonics.
-        varied : tuple of (FilmLaw or FilmTable, float)
+        varied : tuple of (FilmsInSeries, float)
             Other films, and how much of what they change of a figure is its error.
 
         Raises
@@ -143,10 +149,8 @@ class LoadedTeeth:
             Where the loaded contact did not converge.
         """
         if (self.model, self.pairs) != ("fem", "coupled"):
-            assert film is None or isinstance(film, FilmLaw)  # closed forms know no cells of the face
-            laws = tuple((law, share) for law, share in varied if isinstance(law, FilmLaw))
             arguments = self.pair, self.torque, self.model, self.pairs, self.compliance
-            return SharingPairs(*arguments, film, tolerance, laws).cycle(positions)
+            return SharingPairs(*arguments, film, tolerance, varied).cycle(positions)
         contact = fem.mesh_cycle(
             self.pair, self.torque, positions=positions, film=film, tolerance=tolerance, **self.setting
         )
@@ -156,6 +160,25 @@ class LoadedTeeth:
             problem = replace(contact.problem, corners=corners, film_yields=True, varied=varied)
             contact = replace(contact, problem=problem)
         return MeshCycle(label=MODELS["fem"], **MeshCycle.fields_of(contact), contact=contact)
+
+    def with_films(
+        self,
+        positions: int,
+        film: FilmsInSeries,
+        tolerance: float = 1e-3,
+        varied: tuple[tuple[FilmsInSeries, float], ...] = (),
+    ) -> MeshCycle:
+        """Mesh cycle with films, of teeth that have one without; arguments as of `cycle`.
+
+        Raises
+        ------
+        SolverError
+            Where films are so soft that no load share is found.
+        """
+        try:
+            return self.cycle(positions, film, tolerance, varied)
+        except (gears.LoadSharingError, SolverError) as fault:
+            raise SolverError(f"no load share with these films was found: {SOFTER}") from fault
 
     def sampled(self, sampling: float, transmission_error: float) -> MeshCycle:
         """Dry mesh cycle whose arcs leave out less than two tolerances.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from flankfilm.coupling.film_law import FilmLaw, Placed
 from flankfilm.coupling.single_pairs import MODELS, single_pair_stiffness
 from gears.sharing.events import Sampled, arcs_alike, arcs_between_events
 from gears.sharing.mesh_figures import CURVES, MeshArcs
+
+if TYPE_CHECKING:
+    from flankfilm.coupling.film_field import FilmsInSeries
 
 SAMPLING = 0.1
 """Part of a tolerance that what the arcs leave out may be."""
@@ -36,11 +40,11 @@ class SharingPairs:
         As of `LoadedTeeth`.
     compliance : fem.PairCompliance or None
         For finite elements.
-    film : FilmLaw or None
+    film : FilmsInSeries or None
         Films in series.
     tolerance : float
         Relative, of the figures.
-    varied : tuple of (FilmLaw, float)
+    varied : tuple of (FilmsInSeries, float)
         Other films, and how much of what they change is error.
     """
 
@@ -49,9 +53,9 @@ class SharingPairs:
     model: str
     pairs: str
     compliance: fem.PairCompliance | None = None
-    film: FilmLaw | None = None
+    film: FilmsInSeries | None = None
     tolerance: float = 1e-3
-    varied: tuple[tuple[FilmLaw, float], ...] = ()
+    varied: tuple[tuple[FilmsInSeries, float], ...] = ()
 
     @property
     def force(self) -> float:
@@ -153,6 +157,7 @@ class SharingPairs:
         k = single_pair_stiffness(self.pair, force, rho1, self.model, self.compliance)
         k = np.where(touching, k, 0.0)
         if self.pairs == "independent":
+            assert film is None or isinstance(film, FilmLaw)  # whose forces are those of these pairs
             share = gears.independent_pairs(force, k, None if film is None else film.stiffness(rho1))
             return share, np.asarray(share.stiffness)
         compliance = 1.0 / np.where(touching, k, 1.0)

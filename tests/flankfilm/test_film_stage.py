@@ -34,7 +34,7 @@ law = "greenwood-williamson"
 
 @pytest.fixture(autouse=True)
 def _few_films(monkeypatch):
-    monkeypatch.setattr("flankfilm.coupling.lubricated.FILM_POSITIONS", 8)
+    monkeypatch.setattr("flankfilm.coupling.films.FILM_POSITIONS", 8)
     monkeypatch.setattr("flankfilm.coupling.film_points.profiles", lambda *given: {})
 
 
@@ -45,7 +45,7 @@ def stage(film: str = "") -> LubricatedCycle:
 @pytest.fixture(scope="module")
 def flooded() -> LubricatedCycle:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flankfilm.coupling.lubricated.FILM_POSITIONS", 8)
+        patch.setattr("flankfilm.coupling.films.FILM_POSITIONS", 8)
         patch.setattr("flankfilm.coupling.film_points.profiles", lambda *given: {})
         return stage()
 
@@ -53,7 +53,7 @@ def flooded() -> LubricatedCycle:
 @pytest.fixture(scope="module")
 def starved() -> LubricatedCycle:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flankfilm.coupling.lubricated.FILM_POSITIONS", 8)
+        patch.setattr("flankfilm.coupling.films.FILM_POSITIONS", 8)
         patch.setattr("flankfilm.coupling.film_points.profiles", lambda *given: {})
         return stage('supply = "oil-layer"\noil_layer_um = 0.11\n')
 

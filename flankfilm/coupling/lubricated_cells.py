@@ -1,4 +1,8 @@
-"""The oil film over the face: films of all cells in series with the teeth, in the active set over pairs and cells."""
+"""Films of all cells in series with the teeth: a load that is even along the face has one cell.
+
+Where flanks bear on cells of a face, the active set is one over pairs and cells; flanks on the other side of the teeth
+have the same films, under whatever they bear.
+"""
 
 from __future__ import annotations
 
@@ -8,27 +12,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import ehl
-from base import Array, Stopwatch
+from base import Array, Integers, Stopwatch
 from fem.contact.shared_contacts import yielding_over_face
-from flankfilm.coupling.along_path import FilmAlongPath, gathered
-from flankfilm.coupling.cells import cells_of
+from flankfilm.coupling import films
+from flankfilm.coupling.along_path import gathered
+from flankfilm.coupling.cells import line_loads
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.face_films import face_films
 from flankfilm.coupling.film_table import film_table
-from flankfilm.coupling.films import FilmModel, contacts_of, films_of
+from flankfilm.coupling.films import FilmModel, PathFilms, contacts_of, films_of
+from flankfilm.coupling.lubricated_path import with_other_films
 from flankfilm.coupling.lubricated_record import LubricatedCycle
 
 if TYPE_CHECKING:
     from flankfilm.coupling.loaded_teeth import LoadedTeeth
     from flankfilm.coupling.resolution import Resolution
 
-__all__ = ["lubricate_face"]
-
-SHOWN = 40
-"""Positions of a base pitch at which the film of the most loaded cell is solved by itself."""
+__all__ = ["lubricate_cells"]
 
 
-def lubricate_face(
+def lubricate_cells(
     teeth: LoadedTeeth,
     dry: MeshCycle,
     speed: float,
@@ -44,19 +47,21 @@ def lubricate_face(
     load share and films agree to the last digit of the table. The film along the path is solved at the most loaded cell
     of each contact, where it is smallest.
     """
-    watch = Stopwatch()
-    table = film_table(teeth.pair, dry, speed, lubricant, model, resolution.films)
+    watch, pair = Stopwatch(), teeth.pair
+    table = film_table(pair, dry, speed, lubricant, model, resolution.films)
     seconds = watch.seconds
     tolerance = min(resolution.sampling, resolution.transmission_error)
-    cycle = teeth.cycle(dry.position.size, table, tolerance, table.varied())
-    face = cycle.face
-    assert face is not None
-    forces = face.line_load * teeth.pair.face_width / face.line_load.shape[-1]
+    cycle = teeth.with_films(dry.position.size, table, tolerance, table.varied())
+    load = line_loads(cycle, pair.face_width)
+    forces = load * pair.face_width / load.shape[-1]
     yields = yielding_over_face(table, cycle.rho1, forces, cycle.load_share)
     secant = teeth.force / (teeth.force / cycle.secant_stiffness + yields)
-    over = face_films(cycle, table, seconds)
-    unknown = 0.0 if over.error is None else over.error
     changed = float(np.max(np.abs(secant / dry.secant_stiffness - 1.0)))
+    unknown = 0.0 if table.error is None else table.error
+    least = table.thickness("minimum_thickness", np.broadcast_to(cycle.rho1[..., None], load.shape), load)
+    watch, shown = Stopwatch(), _shown(cycle.position.size)
+    path = _of_most_loaded(teeth, cycle, speed, lubricant, resolution, model)
+    others = (teeth, dry, speed, lubricant, resolution, model)
     return LubricatedCycle(
         **{
             **MeshCycle.fields_of(cycle),
@@ -64,13 +69,13 @@ def lubricate_face(
             "secant_stiffness": secant,
             "error": None if cycle.error is None else cycle.error + unknown * changed,
         },
-        least_film=_least(over.minimum_thickness),
+        least_film=_least(least),
         rounds=1,
         mismatch=0.0,
         dry=dry,
-        film=_along_path(teeth, cycle, speed, lubricant, resolution, model, profiles=profiles),
-        otherwise={},
-        over_face=over,
+        film=gathered(model, path, pair, cycle, watch.seconds, shown.size if profiles else None),
+        otherwise=with_other_films(*others, path) if cycle.face is None else {},
+        over_face=None if cycle.face is None else face_films(cycle, table, seconds),
     )
 
 
@@ -80,19 +85,22 @@ def _least(thickness: Array) -> Array:
     return np.where(np.isfinite(least), least, np.nan)
 
 
-def _along_path(
+def _shown(positions: int) -> Integers:
+    """Positions at which films are solved by themselves, at equal steps."""
+    step = max(1, positions // films.FILM_POSITIONS)
+    return np.arange(step // 2, positions, step)
+
+
+def _of_most_loaded(
     teeth: LoadedTeeth,
     cycle: MeshCycle,
     speed: float,
     lubricant: ehl.Lubricant,
     resolution: Resolution,
     model: FilmModel,
-    *,
-    profiles: bool,
-) -> FilmAlongPath:
+) -> PathFilms:
     """Films of the most loaded cells at some of the positions."""
-    watch, step = Stopwatch(), max(1, cycle.position.size // SHOWN)
-    kept = slice(step // 2, None, step)
+    kept = _shown(cycle.position.size)
     few = replace(
         cycle,
         rho1=cycle.rho1[kept],
@@ -100,8 +108,6 @@ def _along_path(
         load_share=cycle.load_share[kept],
         contact=None,
     )
-    greatest = cells_of(cycle).greatest[kept]
+    greatest = line_loads(cycle, teeth.pair.face_width).max(axis=-1)[kept]
     rho1, contacts = contacts_of(teeth.pair, few, speed, lubricant, greatest)
-    path = films_of(model, rho1, contacts, None, resolution.films)
-    positions = greatest.shape[0] if profiles else None
-    return gathered(model, path, teeth.pair, cycle, watch.seconds, positions)
+    return films_of(model, rho1, contacts, None, resolution.films)
