@@ -70,7 +70,7 @@ class FilmField(ABC):
         }
 
     def within(self, figure: str, rho1: Array, load: Array, slope: int = 0) -> Array:
-        """Figure as it is interpolated, or its slope by the logarithm of the load; of the nearest where there is none."""
+        """Figure as it is interpolated, or its slope by the load's logarithm; else that of the nearest."""
         place = np.clip(np.nan_to_num(rho1), self.rho1[0], self.rho1[-1])
         log = np.log(np.clip(load, self.load.min(), self.load.max()))
         return np.asarray(self._splines[figure].ev(place, log, dy=slope))

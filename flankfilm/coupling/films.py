@@ -113,6 +113,11 @@ class FilmModel:
         return self.stiffness == self._own_stiffness and self.held != "meniscus"
 
     @property
+    def smooth_and_flooded(self) -> FilmModel:
+        """Give the same between smooth flanks with oil enough."""
+        return replace(self, supply=None, roughness=None)
+
+    @property
     def held(self) -> str:
         """``"flooded"``, ``"meniscus"`` or ``"oil-layer"``."""
         if self.supply is None:
@@ -265,7 +270,7 @@ def films_of(
     old = before if before is not None and len(before.films) == len(contacts) else PathFilms(rho1, ())
     flooded: tuple[ehl.Film, ...] = ()
     if model.supply is not None:
-        smooth = replace(model, supply=None, roughness=None)
+        smooth = model.smooth_and_flooded
         flooded = tuple(map(film_inside, films_under(smooth, rho1, contacts, old.flooded, tolerance)))
     return PathFilms(rho1, films_under(model, rho1, contacts, old.films, tolerance, beside), flooded, beside)
 

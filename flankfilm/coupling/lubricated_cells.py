@@ -19,9 +19,9 @@ from flankfilm.coupling.along_path import gathered
 from flankfilm.coupling.cells import line_loads
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.face_films import face_films
-from flankfilm.coupling.film_table import film_table
+from flankfilm.coupling.film_table import FilmTable, film_table
 from flankfilm.coupling.films import FilmModel, PathFilms, contacts_of, films_of
-from flankfilm.coupling.lubricated_path import with_other_films
+from flankfilm.coupling.lubricated_path import FLOODED, held_otherwise
 from flankfilm.coupling.lubricated_record import LubricatedCycle
 
 if TYPE_CHECKING:
@@ -50,33 +50,42 @@ def lubricate_cells(
     watch, pair = Stopwatch(), teeth.pair
     table = film_table(pair, dry, speed, lubricant, model, resolution.films)
     seconds = watch.seconds
-    tolerance = min(resolution.sampling, resolution.transmission_error)
-    cycle = teeth.with_films(dry.position.size, table, tolerance, table.varied())
+    cycle = _in_series(teeth, dry, table, resolution, f"{dry.label} with film")
     load = line_loads(cycle, pair.face_width)
-    forces = load * pair.face_width / load.shape[-1]
-    yields = yielding_over_face(table, cycle.rho1, forces, cycle.load_share)
-    secant = teeth.force / (teeth.force / cycle.secant_stiffness + yields)
-    changed = float(np.max(np.abs(secant / dry.secant_stiffness - 1.0)))
-    unknown = 0.0 if table.error is None else table.error
     least = table.thickness("minimum_thickness", np.broadcast_to(cycle.rho1[..., None], load.shape), load)
     watch, shown = Stopwatch(), _shown(cycle.position.size)
     path = _of_most_loaded(teeth, cycle, speed, lubricant, resolution, model)
-    others = (teeth, dry, speed, lubricant, resolution, model)
+    otherwise = {}
+    if cycle.face is None and model.supply is not None:
+        smooth = film_table(pair, dry, speed, lubricant, model.smooth_and_flooded, resolution.films)
+        otherwise = {FLOODED: _in_series(teeth, dry, smooth, resolution, FLOODED)}
+        otherwise |= held_otherwise(teeth, dry, speed, lubricant, resolution, model, path)
     return LubricatedCycle(
-        **{
-            **MeshCycle.fields_of(cycle),
-            "label": f"{dry.label} with film",
-            "secant_stiffness": secant,
-            "error": None if cycle.error is None else cycle.error + unknown * changed,
-        },
+        **MeshCycle.fields_of(cycle),
         least_film=_least(least),
         rounds=1,
         mismatch=0.0,
         dry=dry,
         film=gathered(model, path, pair, cycle, watch.seconds, shown.size if profiles else None),
-        otherwise=with_other_films(*others, path) if cycle.face is None else {},
+        otherwise=otherwise,
         over_face=None if cycle.face is None else face_films(cycle, table, seconds),
     )
+
+
+def _in_series(
+    teeth: LoadedTeeth, dry: MeshCycle, table: FilmTable, resolution: Resolution, label: str
+) -> MeshCycle:
+    """Mesh cycle with films in series, whose secant counts what they yield, and whose error what they err by."""
+    tolerance = min(resolution.sampling, resolution.transmission_error)
+    cycle = teeth.with_films(dry.position.size, table, tolerance, table.varied())
+    load = line_loads(cycle, teeth.pair.face_width)
+    forces = load * teeth.pair.face_width / load.shape[-1]
+    yields = yielding_over_face(table, cycle.rho1, forces, cycle.load_share)
+    secant = teeth.force / (teeth.force / cycle.secant_stiffness + yields)
+    changed = float(np.max(np.abs(secant / dry.secant_stiffness - 1.0)))
+    unknown = 0.0 if table.error is None else table.error
+    error = None if cycle.error is None else cycle.error + unknown * changed
+    return replace(cycle, label=label, secant_stiffness=secant, error=error)
 
 
 def _least(thickness: Array) -> Array:

@@ -36,9 +36,12 @@ if TYPE_CHECKING:
     from flankfilm.coupling.loaded_teeth import LoadedTeeth
     from flankfilm.coupling.resolution import Resolution
 
-__all__ = ["lubricate_path", "with_other_films"]
+__all__ = ["FLOODED", "held_otherwise", "lubricate_path"]
 
 MOST_ROUNDS = 12
+
+FLOODED = "smooth and flooded"
+"""Label of the films that starved ones are compared with."""
 
 LIGHT_SHARE = 5e-3
 """Part of the force at which films are solved beside the loaded places, where pairs come and go."""
@@ -80,7 +83,7 @@ def lubricate_path(
     )
 
 
-def with_other_films(
+def held_otherwise(
     teeth: LoadedTeeth,
     dry: MeshCycle,
     speed: float,
@@ -89,8 +92,8 @@ def with_other_films(
     model: FilmModel,
     path: PathFilms,
 ) -> dict[str, MeshCycle]:
-    """Give the mesh with the films that starved ones of a path have to be compared with, by name; see `lubricate`."""
-    return _Run(teeth, dry, speed, lubricant, resolution, model).otherwise(path)
+    """Give the mesh with the same starved films of a path, held the other way, by name; see `lubricate`."""
+    return _Run(teeth, dry, speed, lubricant, resolution, model).held_otherwise(path)
 
 
 @dataclass(frozen=True)
@@ -170,9 +173,11 @@ class _Run:
         """Give the mesh with the films that a starved one has to be compared with."""
         if self.model.supply is None:
             return {}
-        held = "meniscus" if self.model.held == "oil-layer" else "oil layer"
-        others = {
-            "smooth and flooded": PathFilms(path.rho1, path.flooded),
-            f"same film, {held} held": held_the_other_way(self.model, path, self.resolution.films),
-        }
-        return {label: self.with_film(other, label) for label, other in others.items()}
+        flooded = self.with_film(PathFilms(path.rho1, path.flooded), FLOODED)
+        return {FLOODED: flooded, **self.held_otherwise(path)}
+
+    def held_otherwise(self, path: PathFilms) -> dict[str, MeshCycle]:
+        """Give the mesh with the same films, their layer held instead of the meniscus, or the meniscus instead of it."""
+        label = f"same film, {'meniscus' if self.model.held == 'oil-layer' else 'oil layer'} held"
+        other = held_the_other_way(self.model, path, self.resolution.films)
+        return {label: self.with_film(other, label)}
