@@ -177,7 +177,7 @@ class _Run:
         return {FLOODED: flooded, **self.held_otherwise(path)}
 
     def held_otherwise(self, path: PathFilms) -> dict[str, MeshCycle]:
-        """Give the mesh with the same films, their layer held instead of the meniscus, or the meniscus instead of it."""
+        """Give the mesh with the same films, their layer held instead of the meniscus, or the other way round."""
         label = f"same film, {'meniscus' if self.model.held == 'oil-layer' else 'oil layer'} held"
         other = held_the_other_way(self.model, path, self.resolution.films)
         return {label: self.with_film(other, label)}
