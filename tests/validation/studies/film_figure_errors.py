@@ -2,8 +2,8 @@
 
 Pairs of `tests/hard/random_pairs.py`, of steel, some with tip relief, at 2 to 100 % of 440 N/mm, pitch lines of 1 to
 30 m/s, oils of 0.01 to 0.3 Pa s. Twice: what films alone may err by (the mesh being the same), and all of it. True:
-films at twice as many places and loads to a tenth of the tolerance; then one refinement more of the mesh as well, and so
-many loads along the flanks and nodes on the arcs that their errors are none (`figure_errors.py`). Errors below a
+films at twice as many places and loads to a tenth of the tolerance; then one refinement more of the mesh as well, and
+so many loads along the flanks and nodes on the arcs that their errors are none (`figure_errors.py`). Errors below a
 thousandth of the tolerance count as that. Run from the root with
 ``PYTHONPATH=. python tests/validation/studies/film_figure_errors.py [pairs] [seed]``.
 """
