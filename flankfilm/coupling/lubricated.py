@@ -13,7 +13,7 @@ from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.films import FilmModel
 from flankfilm.coupling.loaded_teeth import LoadedTeeth, TeethOptions
 from flankfilm.coupling.lubricated_cells import lubricate_cells
-from flankfilm.coupling.lubricated_path import lubricate_path
+from flankfilm.coupling.lubricated_path import FilmRun, lubricate_path
 from flankfilm.coupling.lubricated_record import LubricatedCycle
 from flankfilm.coupling.mesh_cycles import resolved
 from flankfilm.coupling.resolution import Resolution
@@ -151,7 +151,8 @@ def lubricate(
     with pressures_unsaid():
         over_loads = dry.face is not None or (model.follows_load and teeth.pairs == "coupled")
         put_in = lubricate_cells if over_loads else lubricate_path
-        lubricated = put_in(teeth, dry, speed, lubricant, resolution, model, profiles=profiles)
+        run = FilmRun(teeth, dry, speed, lubricant, resolution, model)
+        lubricated = put_in(run, profiles=profiles)
     if model.name == "ehl":
         warn_of_pressure(lubricant, lubricated.film.greatest_pressure)
     return lubricated

@@ -7,11 +7,9 @@ have the same films, under whatever they bear.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-import ehl
 from base import Array, Integers, Stopwatch
 from fem.contact.shared_contacts import yielding_over_face
 from flankfilm.coupling import films
@@ -21,62 +19,51 @@ from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.face_films import face_films
 from flankfilm.coupling.film_table import FilmTable, film_table
 from flankfilm.coupling.films import FilmModel, PathFilms, contacts_of, films_of
-from flankfilm.coupling.lubricated_path import FLOODED, held_otherwise
+from flankfilm.coupling.lubricated_path import FLOODED, FilmRun
 from flankfilm.coupling.lubricated_record import LubricatedCycle
-
-if TYPE_CHECKING:
-    from flankfilm.coupling.loaded_teeth import LoadedTeeth
-    from flankfilm.coupling.resolution import Resolution
 
 __all__ = ["lubricate_cells"]
 
 
-def lubricate_cells(
-    teeth: LoadedTeeth,
-    dry: MeshCycle,
-    speed: float,
-    lubricant: ehl.Lubricant,
-    resolution: Resolution,
-    model: FilmModel,
-    *,
-    profiles: bool,
-) -> LubricatedCycle:
-    """Put films of all cells in series with the teeth; arguments as of `lubricate`.
+def lubricate_cells(run: FilmRun, *, profiles: bool) -> LubricatedCycle:
+    """Put films of all cells in series with the teeth; see `lubricate`.
 
     Films are functions of place and line load alone, so that a table of them is solved once and no rounds are needed:
     load share and films agree to the last digit of the table. The film along the path is solved at the most loaded cell
     of each contact, where it is smallest.
     """
-    watch, pair = Stopwatch(), teeth.pair
-    table = film_table(pair, dry, speed, lubricant, model, resolution.films)
+    watch, pair, dry = Stopwatch(), run.teeth.pair, run.dry
+    table = _table(run, run.model)
     seconds = watch.seconds
-    cycle = _in_series(teeth, dry, table, resolution, f"{dry.label} with film")
+    cycle = _in_series(run, table, f"{dry.label} with film")
     load = line_loads(cycle, pair.face_width)
     least = table.thickness("minimum_thickness", np.broadcast_to(cycle.rho1[..., None], load.shape), load)
     watch, shown = Stopwatch(), _shown(cycle.position.size)
-    path = _of_most_loaded(teeth, cycle, speed, lubricant, resolution, model)
+    path = _of_most_loaded(run, cycle, load)
     otherwise = {}
-    if cycle.face is None and model.supply is not None:
-        smooth = film_table(pair, dry, speed, lubricant, model.smooth_and_flooded, resolution.films)
-        otherwise = {FLOODED: _in_series(teeth, dry, smooth, resolution, FLOODED)}
-        otherwise |= held_otherwise(teeth, dry, speed, lubricant, resolution, model, path)
+    if cycle.face is None and run.model.supply is not None:
+        smooth = _in_series(run, _table(run, run.model.smooth_and_flooded), FLOODED)
+        otherwise = {FLOODED: smooth, **run.held_otherwise(path)}
     return LubricatedCycle(
         **MeshCycle.fields_of(cycle),
         least_film=_least(least),
         rounds=1,
         mismatch=0.0,
         dry=dry,
-        film=gathered(model, path, pair, cycle, watch.seconds, shown.size if profiles else None),
+        film=gathered(run.model, path, pair, cycle, watch.seconds, shown.size if profiles else None),
         otherwise=otherwise,
         over_face=None if cycle.face is None else face_films(cycle, table, seconds),
     )
 
 
-def _in_series(
-    teeth: LoadedTeeth, dry: MeshCycle, table: FilmTable, resolution: Resolution, label: str
-) -> MeshCycle:
+def _table(run: FilmRun, model: FilmModel) -> FilmTable:
+    return film_table(run.teeth.pair, run.dry, run.speed, run.lubricant, model, run.resolution.films)
+
+
+def _in_series(run: FilmRun, table: FilmTable, label: str) -> MeshCycle:
     """Mesh cycle with films in series, whose secant counts what they yield, and whose error what they err by."""
-    tolerance = min(resolution.sampling, resolution.transmission_error)
+    teeth, dry = run.teeth, run.dry
+    tolerance = min(run.resolution.sampling, run.resolution.transmission_error)
     cycle = teeth.with_films(dry.position.size, table, tolerance, table.varied())
     load = line_loads(cycle, teeth.pair.face_width)
     forces = load * teeth.pair.face_width / load.shape[-1]
@@ -100,14 +87,7 @@ def _shown(positions: int) -> Integers:
     return np.arange(step // 2, positions, step)
 
 
-def _of_most_loaded(
-    teeth: LoadedTeeth,
-    cycle: MeshCycle,
-    speed: float,
-    lubricant: ehl.Lubricant,
-    resolution: Resolution,
-    model: FilmModel,
-) -> PathFilms:
+def _of_most_loaded(run: FilmRun, cycle: MeshCycle, load: Array) -> PathFilms:
     """Films of the most loaded cells at some of the positions."""
     kept = _shown(cycle.position.size)
     few = replace(
@@ -117,6 +97,6 @@ def _of_most_loaded(
         load_share=cycle.load_share[kept],
         contact=None,
     )
-    greatest = line_loads(cycle, teeth.pair.face_width).max(axis=-1)[kept]
-    rho1, contacts = contacts_of(teeth.pair, few, speed, lubricant, greatest)
-    return films_of(model, rho1, contacts, None, resolution.films)
+    greatest = load.max(axis=-1)[kept]
+    rho1, contacts = contacts_of(run.teeth.pair, few, run.speed, run.lubricant, greatest)
+    return films_of(run.model, rho1, contacts, None, run.resolution.films)

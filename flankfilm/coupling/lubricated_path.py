@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from flankfilm.coupling.loaded_teeth import LoadedTeeth
     from flankfilm.coupling.resolution import Resolution
 
-__all__ = ["FLOODED", "held_otherwise", "lubricate_path"]
+__all__ = ["FLOODED", "FilmRun", "lubricate_path"]
 
 MOST_ROUNDS = 12
 
@@ -54,18 +54,9 @@ and a half (`FilmLaw.halves`); extremes lie where pairs come and go, where halvi
 """
 
 
-def lubricate_path(
-    teeth: LoadedTeeth,
-    dry: MeshCycle,
-    speed: float,
-    lubricant: ehl.Lubricant,
-    resolution: Resolution,
-    model: FilmModel,
-    *,
-    profiles: bool,
-) -> LubricatedCycle:
-    """Bring films and load share into agreement where the load is even along the face; arguments as of `lubricate`."""
-    run = _Run(teeth, dry, speed, lubricant, resolution, model)
+def lubricate_path(run: FilmRun, *, profiles: bool) -> LubricatedCycle:
+    """Bring films and load share into agreement where the load is even along the face; see `lubricate`."""
+    dry = run.dry
     agreed = run.agree(min(films.FILM_POSITIONS, dry.position.size))
     path, law = agreed.path, agreed.law
     cycle = run.with_film(path, f"{dry.label} with film")
@@ -77,23 +68,15 @@ def lubricate_path(
         mismatch=agreed.mismatch,
         dry=dry,
         film=gathered(
-            model, path.loaded, teeth.pair, dry, agreed.seconds, agreed.positions if profiles else None
+            run.model,
+            path.loaded,
+            run.teeth.pair,
+            dry,
+            agreed.seconds,
+            agreed.positions if profiles else None,
         ),
         otherwise=run.otherwise(path),
     )
-
-
-def held_otherwise(
-    teeth: LoadedTeeth,
-    dry: MeshCycle,
-    speed: float,
-    lubricant: ehl.Lubricant,
-    resolution: Resolution,
-    model: FilmModel,
-    path: PathFilms,
-) -> dict[str, MeshCycle]:
-    """Give the mesh with the same starved films of a path, held the other way, by name; see `lubricate`."""
-    return _Run(teeth, dry, speed, lubricant, resolution, model).held_otherwise(path)
 
 
 @dataclass(frozen=True)
@@ -109,8 +92,8 @@ class _Agreement:
 
 
 @dataclass(frozen=True)
-class _Run:
-    """What films and load share are computed from."""
+class FilmRun:
+    """What films and load share are computed from, as of `lubricate`."""
 
     teeth: LoadedTeeth
     dry: MeshCycle
