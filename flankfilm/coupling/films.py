@@ -105,17 +105,12 @@ class FilmModel:
 
     @property
     def follows_load(self) -> bool:
-        """Whether place and line load alone say how films separate the flanks, and yield.
+        """Whether flooded films, by the slope of their separation: then place and line load alone say what they do.
 
-        Not so behind a meniscus, which lies where one load has put it when the load changes from there; nor by another
-        definition of the stiffness than the slope of the separation.
+        A meniscus lies where one load has put it when the load changes from there, and the lightest films behind a
+        layer are not found.
         """
-        return self.stiffness == self._own_stiffness and self.held != "meniscus"
-
-    @property
-    def smooth_and_flooded(self) -> FilmModel:
-        """Give the same between smooth flanks with oil enough."""
-        return replace(self, supply=None, roughness=None)
+        return self.stiffness == self._own_stiffness and self.supply is None
 
     @property
     def held(self) -> str:
@@ -270,7 +265,7 @@ def films_of(
     old = before if before is not None and len(before.films) == len(contacts) else PathFilms(rho1, ())
     flooded: tuple[ehl.Film, ...] = ()
     if model.supply is not None:
-        smooth = model.smooth_and_flooded
+        smooth = replace(model, supply=None, roughness=None)
         flooded = tuple(map(film_inside, films_under(smooth, rho1, contacts, old.flooded, tolerance)))
     return PathFilms(rho1, films_under(model, rho1, contacts, old.films, tolerance, beside), flooded, beside)
 

@@ -18,8 +18,8 @@ from flankfilm.coupling.cells import line_loads
 from flankfilm.coupling.cycle import MeshCycle
 from flankfilm.coupling.face_films import face_films
 from flankfilm.coupling.film_table import FilmTable, film_table
-from flankfilm.coupling.films import FilmModel, PathFilms, contacts_of, films_of
-from flankfilm.coupling.lubricated_path import FLOODED, FilmRun
+from flankfilm.coupling.films import PathFilms, contacts_of, films_of
+from flankfilm.coupling.lubricated_path import FilmRun
 from flankfilm.coupling.lubricated_record import LubricatedCycle
 
 __all__ = ["lubricate_cells"]
@@ -33,17 +33,13 @@ def lubricate_cells(run: FilmRun, *, profiles: bool) -> LubricatedCycle:
     of each contact, where it is smallest.
     """
     watch, pair, dry = Stopwatch(), run.teeth.pair, run.dry
-    table = _table(run, run.model)
+    table = film_table(pair, dry, run.speed, run.lubricant, run.model, run.resolution.films)
     seconds = watch.seconds
     cycle = _in_series(run, table, f"{dry.label} with film")
     load = line_loads(cycle, pair.face_width)
     least = table.thickness("minimum_thickness", np.broadcast_to(cycle.rho1[..., None], load.shape), load)
     watch, shown = Stopwatch(), _shown(cycle.position.size)
     path = _of_most_loaded(run, cycle, load)
-    otherwise = {}
-    if cycle.face is None and run.model.supply is not None:
-        smooth = _in_series(run, _table(run, run.model.smooth_and_flooded), FLOODED)
-        otherwise = {FLOODED: smooth, **run.held_otherwise(path)}
     return LubricatedCycle(
         **MeshCycle.fields_of(cycle),
         least_film=_least(least),
@@ -51,13 +47,9 @@ def lubricate_cells(run: FilmRun, *, profiles: bool) -> LubricatedCycle:
         mismatch=0.0,
         dry=dry,
         film=gathered(run.model, path, pair, cycle, watch.seconds, shown.size if profiles else None),
-        otherwise=otherwise,
+        otherwise={},
         over_face=None if cycle.face is None else face_films(cycle, table, seconds),
     )
-
-
-def _table(run: FilmRun, model: FilmModel) -> FilmTable:
-    return film_table(run.teeth.pair, run.dry, run.speed, run.lubricant, model, run.resolution.films)
 
 
 def _in_series(run: FilmRun, table: FilmTable, label: str) -> MeshCycle:

@@ -1,8 +1,8 @@
 """Films in series with the teeth, solved along the path in rounds, where more than place and load say what they do.
 
-So are films behind a meniscus, films by another definition of their stiffness, and those of pairs that share the load
-by their secants: each stands for its neighbourhood by a law around the load under which it was solved, which is that
-of the load share that all of them bring about.
+So are films behind a meniscus or a layer of oil, films by another definition of their stiffness, and those of pairs
+that share the load by their secants: each stands for its neighbourhood by a law around the load under which it was
+solved, which is that of the load share that all of them bring about.
 """
 
 from __future__ import annotations
@@ -36,12 +36,9 @@ if TYPE_CHECKING:
     from flankfilm.coupling.loaded_teeth import LoadedTeeth
     from flankfilm.coupling.resolution import Resolution
 
-__all__ = ["FLOODED", "FilmRun", "lubricate_path"]
+__all__ = ["FilmRun", "lubricate_path"]
 
 MOST_ROUNDS = 12
-
-FLOODED = "smooth and flooded"
-"""Label of the films that starved ones are compared with."""
 
 LIGHT_SHARE = 5e-3
 """Part of the force at which films are solved beside the loaded places, where pairs come and go."""
@@ -156,11 +153,9 @@ class FilmRun:
         """Give the mesh with the films that a starved one has to be compared with."""
         if self.model.supply is None:
             return {}
-        flooded = self.with_film(PathFilms(path.rho1, path.flooded), FLOODED)
-        return {FLOODED: flooded, **self.held_otherwise(path)}
-
-    def held_otherwise(self, path: PathFilms) -> dict[str, MeshCycle]:
-        """Give the mesh with the same films, their layer held instead of the meniscus, or the other way round."""
-        label = f"same film, {'meniscus' if self.model.held == 'oil-layer' else 'oil layer'} held"
-        other = held_the_other_way(self.model, path, self.resolution.films)
-        return {label: self.with_film(other, label)}
+        held = "meniscus" if self.model.held == "oil-layer" else "oil layer"
+        others = {
+            "smooth and flooded": PathFilms(path.rho1, path.flooded),
+            f"same film, {held} held": held_the_other_way(self.model, path, self.resolution.films),
+        }
+        return {label: self.with_film(other, label) for label, other in others.items()}

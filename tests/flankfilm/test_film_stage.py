@@ -53,7 +53,7 @@ def flooded() -> LubricatedCycle:
 @pytest.fixture(scope="module")
 def starved() -> LubricatedCycle:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flankfilm.coupling.films.FILM_POSITIONS", 8)
+        patch.setattr("flankfilm.coupling.films.FILM_POSITIONS", 40)
         patch.setattr("flankfilm.coupling.film_points.profiles", lambda *given: {})
         return stage('supply = "oil-layer"\noil_layer_um = 0.11\n')
 

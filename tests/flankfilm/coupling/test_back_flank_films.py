@@ -67,13 +67,3 @@ def test_the_plane_is_one_cell_of_the_face(cycles, backlash):
     for name, error in face.errors.items():
         assert plane.errors[name] == pytest.approx(error, rel=1e-5)
     assert plane.over_face is None
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "given", [{"supply": ehl.OilLayer(5e-6)}, {"name": "dowson"}], ids=["layer", "formula"]
-)
-def test_other_films_in_the_plane_are_those_of_one_cell(cycles, given):
-    plane, face = (cycles(3e-6, 4, cells, **given) for cells in (None, 4))
-    assert plane.contact.opposite_force.mean() > 0.0
-    np.testing.assert_allclose(plane.contact.opposite_force, face.contact.opposite_force, rtol=1e-9)
