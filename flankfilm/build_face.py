@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypedDict
 
 import gears
 from base import Fault, Faults
-from flankfilm.coupling.loaded_teeth import POSITIONS
+from flankfilm.coupling.mesh.loaded_teeth import POSITIONS
 from flankfilm.scene.alignment import LEAD_KEYS
 from flankfilm.scene.dynamics import BY_FILM
 from flankfilm.scene.ground import in_keys

@@ -14,7 +14,7 @@ from base import InputError, SolverError
 from dynamics import FourierStiffness, GearOscillator, basins, continue_branch, find_orbit
 from ehl import LineContact, Lubricant, solve
 from flankfilm.coupling import lubricated_cycle
-from flankfilm.coupling.resolution import resolution_of
+from flankfilm.coupling.mesh.resolution import resolution_of
 from gears import Gear, GearDeviations, GearPair, Material, PitchDeviations
 
 THIN = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)

@@ -12,7 +12,7 @@ from flankfilm.bench.examples import contacts_along_path, example_pair, pitch_po
 
 if TYPE_CHECKING:
     from ehl import LineContact, ThermalFilm
-    from flankfilm.coupling.film_table import FilmTable
+    from flankfilm.coupling.films.film_table import FilmTable
 
 _NODES = "{} nodes".format
 _THICKNESS = "central and minimum film"
@@ -108,7 +108,7 @@ def face_table() -> Levels:
     values are minimum and central films of 200 cells at random places and loads.
     """
     from flankfilm.coupling import FilmModel
-    from flankfilm.coupling.film_table import table_on
+    from flankfilm.coupling.films.film_table import table_on
 
     pair, chance = example_pair(), np.random.default_rng(11)
     rho1, oil = np.linspace(pair.points.A, pair.points.E, 9), pitch_point().lubricant

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from fem.fields.stress_fields import GearField
-    from flankfilm.coupling.motion import Portrait
+    from flankfilm.coupling.speeds.speed_sweep import Portrait
     from gears import GearPair
 
 __all__ = ["SLIDING", "near_mesh", "outlines", "path", "points", "portraits"]

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from flankfilm.coupling import SpeedDiagram
-    from flankfilm.coupling.jump_errors import Jump
-    from flankfilm.coupling.truncation import MissedJump
+    from flankfilm.coupling.speeds.jump_errors import Jump
+    from flankfilm.coupling.speeds.truncation import MissedJump
 
 SOURCES = ("stiffness", "truncation", "flow")
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from base.results import figures
-from flankfilm.coupling.carried import PARTS
+from flankfilm.coupling.vibration.part_loads import PARTS
 from flankfilm.output.variables import of_record
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from base import Quantity
 from base.results import EXACT, figures, why_no_error
 from flankfilm.build import pinion_speed
 from flankfilm.build_flanks import deviations
-from flankfilm.coupling.carried import PARTS
+from flankfilm.coupling.vibration.part_loads import PARTS
 from flankfilm.figures import drawn
 from flankfilm.output import drives, heat
 from flankfilm.output.branches import branch_tables

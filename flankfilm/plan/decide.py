@@ -2,7 +2,7 @@
 
 The error of the mean stiffness is at most the sum of what the models' simplifications change and of what meshes,
 positions, films and a cut series leave. Each pair of a stiffness and a film model leaves another part of the
-tolerance to the stages it has, which split it for the lowest cost (`flankfilm.coupling.tolerance`); the
+tolerance to the stages it has, which split it for the lowest cost (`flankfilm.coupling.mesh.tolerance`); the
 cheapest pair is taken.
 """
 
@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 
 import gears
 from base import SolverError
-from flankfilm.coupling.resolution import COARSEST_FILMS, Resolution, film_tolerance
-from flankfilm.coupling.tolerance import CostLaw, split
+from flankfilm.coupling.mesh.resolution import COARSEST_FILMS, Resolution, film_tolerance
+from flankfilm.coupling.mesh.tolerance import CostLaw, split
 from flankfilm.plan.decisions import Candidate, Decision, per_cent, signed, stands
 from flankfilm.plan.film_choice import films
 from flankfilm.plan.options import FilmChange, Option, Options

@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from flankfilm.coupling.series import MOST_HARMONICS
+from flankfilm.coupling.vibration.series import MOST_HARMONICS
 
 if TYPE_CHECKING:
-    from flankfilm.coupling.jumps import SpeedDiagram
-    from flankfilm.coupling.lubricated_record import LubricatedCycle
-    from flankfilm.coupling.series import LeftOut, MeshSeries
+    from flankfilm.coupling.films.lubricated_record import LubricatedCycle
+    from flankfilm.coupling.speeds.jumps import SpeedDiagram
+    from flankfilm.coupling.vibration.series import LeftOut, MeshSeries
     from flankfilm.scene import Scene
 
 

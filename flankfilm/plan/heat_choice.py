@@ -10,11 +10,11 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from base import SolverError
-from flankfilm.coupling.hot_contacts import COARSEST
+from flankfilm.coupling.losses.hot_contacts import COARSEST
 from flankfilm.plan.decisions import Decision, per_cent, said, signed, stands
 
 if TYPE_CHECKING:
-    from flankfilm.coupling.hot_contacts import HeatScreen
+    from flankfilm.coupling.losses.hot_contacts import HeatScreen
     from flankfilm.scene import Scene
 
 SUBJECT = "heat in the film"

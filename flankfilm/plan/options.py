@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from flankfilm.coupling.tolerance import CostLaw
+from flankfilm.coupling.mesh.tolerance import CostLaw
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import gears
 from flankfilm.build import pinion_torque
-from flankfilm.coupling.resolution import stiffness_laws
+from flankfilm.coupling.mesh.resolution import stiffness_laws
 from flankfilm.plan.decisions import said
 from flankfilm.plan.options import Option, Options
 from flankfilm.scene.needs import needs_of_finite_elements

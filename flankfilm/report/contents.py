@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from flankfilm.coupling.cycle import MeshCycle
+from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 from flankfilm.figures.reading import read_figure
 from flankfilm.report import (
     drive_parts,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base.units import factor
-from flankfilm.coupling.carried import PARTS
+from flankfilm.coupling.vibration.part_loads import PARTS
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import counted, number, percent

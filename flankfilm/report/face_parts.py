@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flankfilm.coupling.face_models import LABELS
+from flankfilm.coupling.mesh.face_models import LABELS
 from flankfilm.figures.reading import read_figure
 from flankfilm.output.uncertainty import uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said

@@ -11,7 +11,7 @@ import numpy as np
 from base import Array
 from base.units import factor
 from ehl.discrete.regimes import MEASURED, regime
-from flankfilm.coupling.least_film import parts_of
+from flankfilm.coupling.films.least_film import parts_of
 from flankfilm.figures.reading import PER_FACE, read_figure, unit_text
 from flankfilm.output.run import held_as_it_is
 from flankfilm.output.uncertainty import Uncertainty, uncertainty

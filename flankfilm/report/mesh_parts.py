@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.coupling.references import MEANINGS, PARTS, RELATIVE, relative_to
+from flankfilm.coupling.mesh.references import MEANINGS, PARTS, RELATIVE, relative_to
 from flankfilm.figures.reading import PER_FACE, read, read_figure, unit_text
 from flankfilm.output.uncertainty import Uncertainty, uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said

@@ -10,7 +10,7 @@ import numpy as np
 
 from base import Array
 from base.units import factor
-from flankfilm.coupling.references import MEANINGS
+from flankfilm.coupling.mesh.references import MEANINGS
 from flankfilm.figures.motion import scale
 from flankfilm.figures.reading import read, read_figure
 from flankfilm.output.model_errors import first_harmonic
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from dynamics.branches.branch import Stretch
     from flankfilm.coupling import FilmDamping, MeshSeries, PairOscillator, SpeedDiagram, SpeedSweep
-    from flankfilm.coupling.jump_errors import Jump
+    from flankfilm.coupling.speeds.jump_errors import Jump
 
 LONGEST = 40
 """Maximum number of stable ranges listed; the data files hold all."""

@@ -13,8 +13,8 @@ import numpy as np
 
 from base import Booleans
 from flankfilm import figures
-from flankfilm.coupling.references import RELATIVE, relative_to
-from flankfilm.coupling.verification import UNITS
+from flankfilm.coupling.mesh.references import RELATIVE, relative_to
+from flankfilm.coupling.mesh.verification import UNITS
 from flankfilm.figures.optima import can_be_mapped
 from flankfilm.figures.reading import key_title, key_words, titled, unit_of, unit_text, words
 from flankfilm.figures.studies import varied_numbers
@@ -30,7 +30,7 @@ from flankfilm.studies.output_errors import ERROR_OF, MODEL_ERROR_OF, exact
 if TYPE_CHECKING:
     import xarray as xr
 
-    from flankfilm.coupling.verification import Difference, Verification
+    from flankfilm.coupling.mesh.verification import Difference, Verification
     from flankfilm.optimisation.optimum import Optimum
     from flankfilm.optimisation.task import Task
     from flankfilm.studies.plan import Plan

@@ -18,7 +18,7 @@ from flankfilm.build import gear_pair, pinion_speed, pinion_torque, supports, ti
 from flankfilm.build_face import even_along_face, face, varies_by
 from flankfilm.build_film import film_model, lubricant
 from flankfilm.build_flanks import deviations
-from flankfilm.coupling.believed import believed
+from flankfilm.coupling.mesh.require_converged import believed
 from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.film_choice import foreseen_change
 from flankfilm.plan.options import FilmChange

@@ -12,7 +12,7 @@ from typing import Any, Generic, TypeVar, get_type_hints
 
 from base import InputError, SolverError
 from flankfilm.cache import Cache
-from flankfilm.coupling.warned import distinct
+from flankfilm.coupling.mesh.warn_once import distinct
 from flankfilm.progress import Progress, rows_of, silent
 from flankfilm.scene import Scene
 from flankfilm.scene.section import Section

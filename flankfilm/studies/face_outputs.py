@@ -13,8 +13,8 @@ from base import Figure
 from base.results import figures
 from fem.stress.root_peaks import RootPeak
 from flankfilm.build_face import varies_by
-from flankfilm.coupling.face_models import LABELS, FaceLoadModels
-from flankfilm.coupling.face_tolerance import FaceTolerance
+from flankfilm.coupling.mesh.face_models import LABELS, FaceLoadModels
+from flankfilm.coupling.mesh.face_tolerance import FaceTolerance
 from flankfilm.figures.reading import GEARS
 from flankfilm.stages.catalogue import DRY_CYCLE, ROOT_STRESS
 from flankfilm.stages.engine import Engine

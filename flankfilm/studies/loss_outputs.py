@@ -10,8 +10,8 @@ import numpy as np
 from base import Figure
 from base.results import figures
 from ehl.discrete.regimes import NUMBERS, regime_number
-from flankfilm.coupling.losses_along_path import LossesAlongPath
-from flankfilm.coupling.losses_record import MeshLosses
+from flankfilm.coupling.losses.losses_along_path import LossesAlongPath
+from flankfilm.coupling.losses.losses_record import MeshLosses
 from flankfilm.stages.losses import LOSSES
 from flankfilm.studies.output import Named, Take, in_result, model_error_of, output_of, outputs_from
 

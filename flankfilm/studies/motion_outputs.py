@@ -11,12 +11,12 @@ import numpy as np
 
 from base import Array, Figure, InputError
 from base.results import figures
-from flankfilm.coupling.drive import PairDrive
-from flankfilm.coupling.drive_sweep import DriveSweep
-from flankfilm.coupling.dynamic_map import DynamicMap
-from flankfilm.coupling.oscillator import PairOscillator
-from flankfilm.coupling.run_ups import SpeedRunUp
-from flankfilm.coupling.sidebands import MotionSpectrum
+from flankfilm.coupling.drive.pair_drive import PairDrive
+from flankfilm.coupling.speeds.drive_sweep import DriveSweep
+from flankfilm.coupling.speeds.dynamic_map import DynamicMap
+from flankfilm.coupling.speeds.run_ups import SpeedRunUp
+from flankfilm.coupling.speeds.sidebands import MotionSpectrum
+from flankfilm.coupling.vibration.oscillator import PairOscillator
 from flankfilm.stages.drives import DRIVE, DRIVE_SWEEP
 from flankfilm.stages.engine import Engine, Stage
 from flankfilm.stages.motion import SCALING, SWEEP
@@ -24,8 +24,8 @@ from flankfilm.stages.speeds import DIAGRAM, DYNAMIC_MAP, RUN_UP, SPECTRUM
 from flankfilm.studies.output import Named, in_result, model_error_of, output_of, outputs_from
 
 if TYPE_CHECKING:
-    from flankfilm.coupling.jumps import SpeedDiagram
-    from flankfilm.coupling.motion import SpeedSweep
+    from flankfilm.coupling.speeds.jumps import SpeedDiagram
+    from flankfilm.coupling.speeds.speed_sweep import SpeedSweep
 
 _oscillator = outputs_from(lambda engine: engine[SCALING], PairOscillator, "fourier")
 _drive = outputs_from(lambda engine: engine[DRIVE], PairDrive, "sweep")

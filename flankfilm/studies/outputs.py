@@ -17,10 +17,10 @@ from base import Figure
 from base.results import figures
 from ehl.discrete.regimes import NUMBERS, regime_number
 from flankfilm.build import pinion_speed, pinion_torque
-from flankfilm.coupling.along_path import FilmAlongPath
-from flankfilm.coupling.cycle import MeshCycle
-from flankfilm.coupling.lubricated_record import LubricatedCycle
-from flankfilm.coupling.single_pairs import CLOSED_FORMS
+from flankfilm.coupling.films.along_path import FilmAlongPath
+from flankfilm.coupling.films.lubricated_record import LubricatedCycle
+from flankfilm.coupling.mesh.mesh_curves import MeshCycle
+from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS
 from flankfilm.figures.drawn import SLIDING
 from flankfilm.figures.reading import PER_FACE
 from flankfilm.output.variables import sentence

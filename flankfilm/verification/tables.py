@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from base.results import EXACT
-from flankfilm.coupling.verification import Curves, Verification
+from flankfilm.coupling.mesh.verification import Curves, Verification
 from flankfilm.figures.drawn import outlines, points
 from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.variables import identifier, merged, of_models, of_quantities, of_record

@@ -19,7 +19,7 @@ from scipy.interpolate import RectBivariateSpline
 
 from base.files import replacing
 from flankfilm.cache import PACKAGES, Cache, CacheWarning, code_digest, results_cache
-from flankfilm.coupling.heated_table import HeatedTable
+from flankfilm.coupling.losses.heated_table import HeatedTable
 from flankfilm.output.files import write_text
 from flankfilm.plain_data import NotPlainDataError, read, written
 

@@ -17,7 +17,7 @@ from dynamics import FourierStiffness
 from flankfilm.build import gear_pair
 from flankfilm.cache import Cache
 from flankfilm.check import check_scene
-from flankfilm.coupling.series import LeftOut, MeshSeries, least_order, left_out
+from flankfilm.coupling.vibration.series import LeftOut, MeshSeries, least_order, left_out
 from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.decisions import Decision, order_decision
 from flankfilm.plan.film_choice import FORMULA_OFF, MOST_OF_FORESEEN, FilmChange

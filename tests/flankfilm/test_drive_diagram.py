@@ -9,8 +9,9 @@ import dynamics
 from dynamics import FourierStiffness, GearOscillator
 from dynamics.orbits.starting import reach
 from flankfilm import coupling, figures
-from flankfilm.coupling import jump_errors, jumps, mesh_cycle, pair_drive, pair_oscillator
-from flankfilm.coupling.series import mesh_series
+from flankfilm.coupling import mesh_cycle, pair_drive, pair_oscillator
+from flankfilm.coupling.speeds import jump_errors, jumps
+from flankfilm.coupling.vibration.series import mesh_series
 from flankfilm.output.run import results_tables
 from flankfilm.report.contents import HEADLINES, PARTS
 from flankfilm.running import run_scene

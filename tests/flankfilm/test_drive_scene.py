@@ -18,7 +18,7 @@ from flankfilm import figures
 from flankfilm.beforehand import refuse
 from flankfilm.cache import Cache
 from flankfilm.coupling import drive_sweep, mesh_cycle, mesh_series, pair_drive
-from flankfilm.coupling.truncation import with_order
+from flankfilm.coupling.speeds.truncation import with_order
 from flankfilm.output.run import results_tables
 from flankfilm.report.contents import HEADLINES, PARTS
 from flankfilm.running import run_scene

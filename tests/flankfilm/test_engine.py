@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from flankfilm.cache import Cache
-from flankfilm.coupling.film_law import FilmLaw
+from flankfilm.coupling.films.film_law import FilmLaw
 from flankfilm.running import run_scene
 from flankfilm.scene import Scene, parse_scene, template
 from flankfilm.stages import catalogue, drives, motion, speeds
@@ -160,7 +160,7 @@ def test_the_film_law_meets_value_and_slope_and_stays_positive():
 def test_films_at_few_places_change_the_mesh_as_films_at_many(monkeypatch):
     changes = []
     for places in (9, 25):
-        monkeypatch.setattr("flankfilm.coupling.film_table.PLACES", places)
+        monkeypatch.setattr("flankfilm.coupling.films.film_table.PLACES", places)
         given = scene()
         dowson = given.film.model_copy(update={"model": "dowson", "stiffness": "dowson-central"})
         by_formula = given.model_copy(update={"film": dowson})

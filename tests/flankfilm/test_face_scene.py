@@ -16,7 +16,7 @@ from flankfilm.beforehand import refuse
 from flankfilm.build import gear_pair
 from flankfilm.build_face import even_along_face, face, varies_by
 from flankfilm.cache import Cache
-from flankfilm.coupling.face_models import _linear
+from flankfilm.coupling.mesh.face_models import _linear
 from flankfilm.output.run import results_dataset, results_tables
 from flankfilm.report import face_parts, film_parts, mesh_parts
 from flankfilm.scene import parse_scene

@@ -7,7 +7,7 @@ import pytest
 
 from ehl import LineContact, Lubricant, Meniscus, solve
 from flankfilm.cache import Cache
-from flankfilm.coupling.film_law import FilmLaw, HeldMeniscus
+from flankfilm.coupling.films.film_law import FilmLaw, HeldMeniscus
 from flankfilm.scene.reader import validated
 from flankfilm.stages.catalogue import FILM
 from flankfilm.stages.engine import Engine

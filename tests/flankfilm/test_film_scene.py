@@ -9,7 +9,7 @@ import pytest
 from base import InputError, RangeWarning
 from ehl import Barus, ConstantViscosity, LineContact, Meniscus, OilLayer
 from flankfilm.build_film import film_model, lubricant, roughness
-from flankfilm.coupling import films
+from flankfilm.coupling.films import films
 from flankfilm.scene import parse_scene, template
 from flankfilm.scene.ground import under_keys
 from flankfilm.stages.catalogue import PLAN

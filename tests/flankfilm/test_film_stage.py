@@ -34,8 +34,8 @@ law = "greenwood-williamson"
 
 @pytest.fixture(autouse=True)
 def _few_films(monkeypatch):
-    monkeypatch.setattr("flankfilm.coupling.films.FILM_POSITIONS", 8)
-    monkeypatch.setattr("flankfilm.coupling.film_points.profiles", lambda *given: {})
+    monkeypatch.setattr("flankfilm.coupling.films.films.FILM_POSITIONS", 8)
+    monkeypatch.setattr("flankfilm.coupling.films.film_points.profiles", lambda *given: {})
 
 
 def stage(film: str = "") -> LubricatedCycle:
@@ -45,16 +45,16 @@ def stage(film: str = "") -> LubricatedCycle:
 @pytest.fixture(scope="module")
 def flooded() -> LubricatedCycle:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flankfilm.coupling.films.FILM_POSITIONS", 8)
-        patch.setattr("flankfilm.coupling.film_points.profiles", lambda *given: {})
+        patch.setattr("flankfilm.coupling.films.films.FILM_POSITIONS", 8)
+        patch.setattr("flankfilm.coupling.films.film_points.profiles", lambda *given: {})
         return stage()
 
 
 @pytest.fixture(scope="module")
 def starved() -> LubricatedCycle:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flankfilm.coupling.films.FILM_POSITIONS", 40)
-        patch.setattr("flankfilm.coupling.film_points.profiles", lambda *given: {})
+        patch.setattr("flankfilm.coupling.films.films.FILM_POSITIONS", 40)
+        patch.setattr("flankfilm.coupling.films.film_points.profiles", lambda *given: {})
         return stage('supply = "oil-layer"\noil_layer_um = 0.11\n')
 
 
@@ -67,7 +67,7 @@ def test_plenty_of_oil_is_the_flooded_film(monkeypatch, flooded: LubricatedCycle
     The film changes the tangent by up to 1 %, so a tenth of that is what two such errors may make.
     """
     monkeypatch.setattr(
-        "flankfilm.coupling.films.FILM_POSITIONS", 24
+        "flankfilm.coupling.films.films.FILM_POSITIONS", 24
     )  # a meniscus has a law of films along the path
     plenty = stage(supply)
     same = np.argmin(np.abs(plenty.film.rho1 - flooded.film.rho1[:, None]), axis=1)

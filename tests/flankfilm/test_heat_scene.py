@@ -11,7 +11,7 @@ from base import InputError
 from flankfilm import coupling
 from flankfilm.build import gear_pair
 from flankfilm.cache import Cache
-from flankfilm.coupling.flanks import PLAIN_FLANKS
+from flankfilm.coupling.mesh.flanks import PLAIN_FLANKS
 from flankfilm.scene.reader import parse_scene
 from flankfilm.stages.catalogue import HEAT, PAIR, loaded_teeth
 from flankfilm.stages.engine import Engine

@@ -9,8 +9,8 @@ import xarray as xr
 
 import fem
 from base import InputError
-from flankfilm.coupling.loaded_teeth import LoadedTeeth
-from flankfilm.coupling.loads import torque_curves
+from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth
+from flankfilm.coupling.mesh.torque_curves import torque_curves
 from flankfilm.scene import parse_scene
 from gears import Gear, GearPair
 from tests.flankfilm.program import EXAMPLES, flankfilm

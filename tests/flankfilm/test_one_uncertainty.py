@@ -18,7 +18,7 @@ from base.results import figures
 from fem import FaceLoads, RootStress
 from fem.stress.gear_root import GearRootStress
 from flankfilm.coupling import MeshCycle, MeshLosses, MeshSeries, PairOscillator
-from flankfilm.coupling.drive_sweep import DriveSweep
+from flankfilm.coupling.speeds.drive_sweep import DriveSweep
 from flankfilm.output.model_errors import MODEL_ERRORS
 from flankfilm.output.uncertainty import Uncertainty, met
 from flankfilm.report.contents import headlines, misses, summary

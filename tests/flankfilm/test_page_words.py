@@ -11,7 +11,7 @@ import flankfilm as ff
 from base import RangeWarning
 from dynamics import diagram
 from flankfilm.check import check_scene
-from flankfilm.coupling.warned import distinct
+from flankfilm.coupling.mesh.warn_once import distinct
 from flankfilm.figures.reading import words
 from flankfilm.report.page import Head, Part, Table, render
 from flankfilm.report.pair_parts import printed

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from flankfilm.coupling.tolerance import CostLaw, split, step_below
+from flankfilm.coupling.mesh.tolerance import CostLaw, split, step_below
 from flankfilm.report.run_parts import decisions
 from flankfilm.running import run_scene
 from flankfilm.scene import parse_scene

@@ -9,7 +9,7 @@ import pytest
 
 from base import quantity, record
 from ehl.discrete import regimes
-from flankfilm.coupling.extreme_errors import of_greatest, of_least
+from flankfilm.coupling.mesh.extreme_errors import of_greatest, of_least
 from flankfilm.output.uncertainty import Uncertainty, met, uncertainty
 from flankfilm.output.variables import of_record, with_tolerance
 from flankfilm.report.film_parts import regime_said

@@ -7,7 +7,7 @@ import pytest
 
 from base import InputError
 from flankfilm.build import gear_pair
-from flankfilm.coupling.verification import POINTS, UNITS, mesh_figures, single_figures, stations
+from flankfilm.coupling.mesh.verification import POINTS, UNITS, mesh_figures, single_figures, stations
 from flankfilm.scene import parse_scene, read_scene
 from flankfilm.verification.run import unknown_over_face, verify_scene
 from flankfilm.verification.tables import face_table, write_verification

@@ -10,7 +10,7 @@ from scipy.linalg import eigh
 
 import dynamics
 from flankfilm.coupling import given_series, pair_drive
-from flankfilm.coupling.drive_reduced import drive_squares
+from flankfilm.coupling.drive.drive_reduced import drive_squares
 from gears import Bearing, Gear, GearPair, Material, Shaft, ShaftSegment
 
 PAIR = GearPair(Gear(36, bore_radius=0.01675), Gear(40, bore_radius=0.01875), 2e-3, 0.04).with_backlash(50e-6)

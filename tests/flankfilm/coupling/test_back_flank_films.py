@@ -11,7 +11,7 @@ import pytest
 import ehl
 import fem
 from flankfilm.coupling import FilmModel, Flanks, LoadedTeeth, LubricatedCycle, lubricate
-from flankfilm.coupling.resolution import resolution_of
+from flankfilm.coupling.mesh.resolution import resolution_of
 from gears import Alignment, Gear, GearPair
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3)

@@ -15,13 +15,14 @@ import fem
 import flankfilm as ff
 from ehl import Lubricant
 from flankfilm import coupling
-from flankfilm.coupling import given_series, jumps
-from flankfilm.coupling.film_points import stiffness_rows
-from flankfilm.coupling.films import PathFilms, contacts_of
-from flankfilm.coupling.flanks import Flanks
-from flankfilm.coupling.loaded_teeth import LoadedTeeth
-from flankfilm.coupling.loads import torque_curves
-from flankfilm.coupling.oscillator import pair_inertias
+from flankfilm.coupling import given_series
+from flankfilm.coupling.films.film_points import stiffness_rows
+from flankfilm.coupling.films.films import PathFilms, contacts_of
+from flankfilm.coupling.mesh.flanks import Flanks
+from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth
+from flankfilm.coupling.mesh.torque_curves import torque_curves
+from flankfilm.coupling.speeds import jumps
+from flankfilm.coupling.vibration.oscillator import pair_inertias
 from gears import Gear, GearPair
 
 PAIR = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)

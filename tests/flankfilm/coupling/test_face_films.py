@@ -14,19 +14,12 @@ import fem
 from base import InputError
 from fem.laws.local_law import film_yielding
 from flankfilm import coupling
-from flankfilm.coupling import (
-    FilmModel,
-    Flanks,
-    LoadedTeeth,
-    LubricatedCycle,
-    PlacedMeniscus,
-    film_table,
-    lubricate,
-)
-from flankfilm.coupling.film_table import HEAVIEST, LIGHTEST
-from flankfilm.coupling.films import contacts_of
-from flankfilm.coupling.least_film import least_of
-from flankfilm.coupling.resolution import resolution_of
+from flankfilm.coupling import FilmModel, Flanks, LoadedTeeth, LubricatedCycle, PlacedMeniscus, lubricate
+from flankfilm.coupling.films import film_table
+from flankfilm.coupling.films.film_table import HEAVIEST, LIGHTEST
+from flankfilm.coupling.films.films import contacts_of
+from flankfilm.coupling.films.least_film import least_of
+from flankfilm.coupling.mesh.resolution import resolution_of
 from gears import Alignment, Gear, GearPair, Lead
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(300e-6)

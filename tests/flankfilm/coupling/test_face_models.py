@@ -9,7 +9,7 @@ import pytest
 
 import fem
 from flankfilm.coupling import Flanks, LoadedTeeth, face_load_models
-from flankfilm.coupling.face_models import _linear, left_out_by_iso
+from flankfilm.coupling.mesh.face_models import _linear, left_out_by_iso
 from gears import Alignment, Gear, GearPair, Lead
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)

@@ -11,7 +11,7 @@ import pytest
 import ehl
 from base import InputError
 from flankfilm.coupling import FilmModel, MeshCycle, PlacedMeniscus, film_damping, mesh_cycle
-from flankfilm.coupling.film_damping import POSITIONS
+from flankfilm.coupling.vibration.film_damping import POSITIONS
 from tests.ehl.films import quiet
 from tests.validation.article import FACE, OIL, PAIR, PITCH
 

@@ -9,18 +9,12 @@ import numpy as np
 import pytest
 
 import ehl
-from flankfilm.coupling import (
-    LoadedTeeth,
-    LubricatedCycle,
-    film_table,
-    films,
-    lubricated,
-    resolution_of,
-)
-from flankfilm.coupling.film_law import FilmLaw, HeldMeniscus
-from flankfilm.coupling.film_table import OF_SLOPES
-from flankfilm.coupling.films import FilmModel, PlacedMeniscus
-from flankfilm.coupling.lubricated import lubricate
+from flankfilm.coupling import LoadedTeeth, LubricatedCycle, resolution_of
+from flankfilm.coupling.films import film_table, films, lubricated
+from flankfilm.coupling.films.film_law import FilmLaw, HeldMeniscus
+from flankfilm.coupling.films.film_table import OF_SLOPES
+from flankfilm.coupling.films.films import FilmModel, PlacedMeniscus
+from flankfilm.coupling.films.lubricated import lubricate
 from gears import Gear, GearPair
 from gears.sharing.mesh_figures import MeshArcs
 

@@ -12,7 +12,7 @@ import ehl
 import fem
 import flankfilm as ff
 from flankfilm.coupling import FilmModel, Flanks, LoadedTeeth, LubricatedCycle, MeshLosses, lubricate
-from flankfilm.coupling.resolution import resolution_of
+from flankfilm.coupling.mesh.resolution import resolution_of
 from gears import Alignment, Bearing, Gear, GearPair, Shaft, ShaftSegment
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(300e-6)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import ehl
-from flankfilm.coupling.heated_films import HeatedOil, _between, _by_way, heated_films
+from flankfilm.coupling.losses.heated_films import HeatedOil, _between, _by_way, heated_films
 
 COLD, HOT = (ehl.Lubricant(eta, 19e-9, 870.0) for eta in (0.1, 0.02))
 ONE = ehl.LineContact(1e5, 2.0, 5e-3, 2.2e11, COLD, sliding=-1.0)

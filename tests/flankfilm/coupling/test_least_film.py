@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flankfilm.coupling.least_film import least_of, parts_of
+from flankfilm.coupling.films.least_film import least_of, parts_of
 
 STEPS = 40
 MIDDLES = (np.arange(STEPS) + 0.5) / STEPS

@@ -10,8 +10,8 @@ import pytest
 import flankfilm as ff
 from base import RangeWarning
 from ehl import LineContact, Lubricant
-from flankfilm.coupling import film_table
-from flankfilm.coupling.films import FilmModel, PathFilms, films_of, with_light_ends
+from flankfilm.coupling.films import film_table
+from flankfilm.coupling.films.films import FilmModel, PathFilms, films_of, with_light_ends
 from gears import Gear, GearPair, TipRelief
 
 OIL = Lubricant(0.066, 20e-9, 910.0)

@@ -9,10 +9,10 @@ import ehl
 import fem
 import flankfilm as ff
 from flankfilm.coupling import Flanks, MeshLosses
-from flankfilm.coupling.heated_films import HeatedOil, heated_films
-from flankfilm.coupling.heated_table import HeatedTable, heated_table
-from flankfilm.coupling.line_contacts import line_contacts, with_sliding
-from flankfilm.coupling.loaded_teeth import LoadedTeeth
+from flankfilm.coupling.films.line_contacts import line_contacts, with_sliding
+from flankfilm.coupling.losses.heated_films import HeatedOil, heated_films
+from flankfilm.coupling.losses.heated_table import HeatedTable, heated_table
+from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth
 from gears import Alignment, Gear, GearPair
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(300e-6)

@@ -7,8 +7,8 @@ import pytest
 
 import fem
 from flankfilm.coupling import Flanks, LoadedTeeth
-from flankfilm.coupling.heated_films import thinned
-from flankfilm.coupling.mean_losses import Carried, means_of
+from flankfilm.coupling.losses.heated_films import thinned
+from flankfilm.coupling.losses.mean_losses import Carried, means_of
 from gears import Gear, GearPair, GeometryError
 from gears.closed_form import ohlendorf_loss_factor
 from tests.validation.article import PAIR

@@ -11,7 +11,7 @@ from scipy.linalg import eigh
 
 from flankfilm.build_shafts import drive_arguments
 from flankfilm.coupling import PairDrive, drive_sweep, given_series, pair_drive
-from flankfilm.coupling.drive_reduced import drive_squares
+from flankfilm.coupling.drive.drive_reduced import drive_squares
 from flankfilm.scene import read_scene
 from gears import Gear, GearPair
 

@@ -16,7 +16,7 @@ from fem.cycle.breakdown import deflection_parts
 from fem.pair.references import turns
 from flankfilm.cache import Cache
 from flankfilm.coupling import MeshCycle, mesh_series, stiffness_references
-from flankfilm.coupling.references import MEANINGS
+from flankfilm.coupling.mesh.references import MEANINGS
 from flankfilm.report.mesh_parts import references as report_part
 from flankfilm.report.motion_parts import scaling
 from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FILM, REFERENCES, TORQUES

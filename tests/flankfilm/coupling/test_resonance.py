@@ -11,10 +11,10 @@ import pytest
 
 from dynamics import FourierStiffness, GearOscillator, contact_grazing, sweep, trajectory
 from dynamics.flow.motions import force_range
-from flankfilm.coupling import first_loss
-from flankfilm.coupling.resonance import vibration, vibrations
-from flankfilm.coupling.swept_truncation import grazing_errors
-from flankfilm.coupling.truncation import Longer
+from flankfilm.coupling.speeds.swept_truncation import grazing_errors
+from flankfilm.coupling.speeds.truncation import Longer
+from flankfilm.coupling.vibration import contact_loss_error as first_loss
+from flankfilm.coupling.vibration.resonance import vibration, vibrations
 
 OSCILLATOR = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.65, half_backlash=0.2)
 

@@ -17,9 +17,9 @@ from flankfilm.coupling import (
     pair_drive,
     tilting_mesh,
 )
-from flankfilm.coupling.drive_side import GearBody, drive_side
-from flankfilm.coupling.tilting_mesh import resistance_and_place
-from flankfilm.coupling.train import joined
+from flankfilm.coupling.drive.drive_side import GearBody, drive_side
+from flankfilm.coupling.drive.tilting_mesh import resistance_and_place
+from flankfilm.coupling.drive.train import joined
 from gears import Bearing, Gear, GearPair, Shaft, ShaftSegment
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)

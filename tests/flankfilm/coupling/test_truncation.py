@@ -17,10 +17,10 @@ from flankfilm.coupling import (
     pair_oscillator,
     speed_sweep,
 )
-from flankfilm.coupling.jumps import jump_points
-from flankfilm.coupling.oscillator import PairOscillator
-from flankfilm.coupling.series import MeshSeries
-from flankfilm.coupling.truncation import Longer, longer_motion, missed_jumps, with_order
+from flankfilm.coupling.speeds.jumps import jump_points
+from flankfilm.coupling.speeds.truncation import Longer, longer_motion, missed_jumps, with_order
+from flankfilm.coupling.vibration.oscillator import PairOscillator
+from flankfilm.coupling.vibration.series import MeshSeries
 from gears import Gear, GearPair
 
 PAIR = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3).with_backlash(

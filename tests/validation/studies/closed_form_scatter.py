@@ -15,7 +15,7 @@ import numpy as np
 
 from base import InputError, SolverError
 from flankfilm.cache import Cache
-from flankfilm.coupling.single_pairs import CLOSED_FORMS
+from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS
 from flankfilm.scene import Scene
 from flankfilm.scene.reader import validated
 from flankfilm.stages.catalogue import DRY_CYCLE

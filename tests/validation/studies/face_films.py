@@ -16,7 +16,7 @@ import fem
 import flankfilm as ff
 from base import RangeWarning
 from flankfilm.coupling import Flanks, LoadedTeeth, LubricatedCycle, lubricate
-from flankfilm.coupling.resolution import resolution_of
+from flankfilm.coupling.mesh.resolution import resolution_of
 from gears import Alignment, Gear, GearPair
 
 PAIR = GearPair(

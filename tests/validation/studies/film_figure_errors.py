@@ -22,8 +22,9 @@ import numpy as np
 import ehl
 import fem
 from base import InputError, SolverError
-from flankfilm.coupling import LoadedTeeth, film_table, resolution_of
-from flankfilm.coupling.lubricated import lubricate
+from flankfilm.coupling import LoadedTeeth, resolution_of
+from flankfilm.coupling.films import film_table
+from flankfilm.coupling.films.lubricated import lubricate
 from gears import LoadSharingError
 from gears.sharing.mesh_figures import MeshArcs
 from tests.validation.studies import figure_errors

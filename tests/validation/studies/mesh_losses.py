@@ -20,7 +20,7 @@ import flankfilm as ff
 from base import RangeWarning, SolverError
 from ehl import Lubricant, Roughness
 from flankfilm.coupling import Flanks, LoadedTeeth, MeshLosses
-from flankfilm.coupling.mean_losses import Carried, means_of
+from flankfilm.coupling.losses.mean_losses import Carried, means_of
 from gears import BasicRack, Gear, GearPair, Material, TipRelief
 from gears.closed_form import ohlendorf_loss_factor, schlenk_friction
 from tests.validation.article import PAIR, TORQUE

@@ -1,0 +1,161 @@
+"""Films in series with the teeth, solved along the path in rounds, where more than place and load say what they do.
+
+So are films behind a meniscus or a layer of oil, films by another definition of their stiffness, and those of pairs
+that share the load by their secants: each stands for its neighbourhood by a law around the load under which it was
+solved, which is that of the load share that all of them bring about.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import ehl
+from base import Array, SolverError, Stopwatch
+from fem.laws.local_law import film_yielding
+from flankfilm.coupling.films import films
+from flankfilm.coupling.films.along_path import gathered
+from flankfilm.coupling.films.films import (
+    FilmModel,
+    PathFilms,
+    contacts_of,
+    films_of,
+    held_the_other_way,
+    law_of,
+    off_by_errors,
+    with_light_ends,
+)
+from flankfilm.coupling.films.lubricated_record import LubricatedCycle
+from flankfilm.coupling.mesh.loaded_teeth import SOFTER
+from flankfilm.coupling.mesh.mesh_curves import MeshCycle
+
+if TYPE_CHECKING:
+    from flankfilm.coupling.films.film_law import FilmLaw
+    from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth
+    from flankfilm.coupling.mesh.resolution import Resolution
+
+__all__ = ["FilmRun", "lubricate_path"]
+
+MOST_ROUNDS = 12
+
+LIGHT_SHARE = 5e-3
+"""Part of the force at which films are solved beside the loaded places, where pairs come and go."""
+
+BETWEEN = 0.5**0.5
+"""Part of what either half of the films alone changes that the films left out between those solved would.
+
+Changes are added as squares, so this is their mean. A smooth law is off by a third of it, at ends of the path by one
+and a half (`FilmLaw.halves`); extremes lie where pairs come and go, where halving the step halves the error.
+"""
+
+
+def lubricate_path(run: FilmRun, *, profiles: bool) -> LubricatedCycle:
+    """Bring films and load share into agreement where the load is even along the face; see `lubricate`."""
+    dry = run.dry
+    agreed = run.agree(min(films.FILM_POSITIONS, dry.position.size))
+    path, law = agreed.path, agreed.law
+    cycle = run.with_film(path, f"{dry.label} with film")
+    least = np.array([film.minimum_thickness for film in path.films])
+    return LubricatedCycle(
+        **MeshCycle.fields_of(cycle),
+        least_film=law.carried(least, cycle.rho1, cycle.forces),
+        rounds=agreed.rounds,
+        mismatch=agreed.mismatch,
+        dry=dry,
+        film=gathered(
+            run.model,
+            path.loaded,
+            run.teeth.pair,
+            dry,
+            agreed.seconds,
+            agreed.positions if profiles else None,
+        ),
+        otherwise=run.otherwise(path),
+    )
+
+
+@dataclass(frozen=True)
+class _Agreement:
+    """Films whose loads are those of the load share that they bring about, and the seconds that these took."""
+
+    path: PathFilms
+    law: FilmLaw
+    positions: int
+    rounds: int
+    mismatch: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class FilmRun:
+    """What films and load share are computed from, as of `lubricate`."""
+
+    teeth: LoadedTeeth
+    dry: MeshCycle
+    speed: float
+    lubricant: ehl.Lubricant
+    resolution: Resolution
+    model: FilmModel
+
+    def law(self, path: PathFilms) -> FilmLaw:
+        """Law of films, with the model's definition of stiffness."""
+        return law_of(path, self.teeth.pair.face_width, self.model.stiffness)
+
+    def agree(self, positions: int) -> _Agreement:
+        """Iterate films and load share until both agree."""
+        seconds, mismatch, rounds = 0.0, np.inf, 0
+        cycle = self.teeth.cycle(positions)
+        path: PathFilms | None = None
+        while mismatch > self.resolution.agreement:
+            if rounds == MOST_ROUNDS:
+                raise SolverError(
+                    f"films and load share did not agree within {MOST_ROUNDS} rounds (forces still change by "
+                    f"{mismatch:.1e} of the whole): {SOFTER}"
+                )
+            rounds += 1
+            watch = Stopwatch()
+            rho1, contacts, beside = self.contacts(cycle, positions)
+            path = films_of(self.model, rho1, contacts, path, self.resolution.films, beside)
+            law = self.law(path)
+            seconds += watch.seconds
+            before, cycle = cycle, self.teeth.with_films(positions, law)
+            mismatch = float(np.max(np.abs(cycle.load_share - before.load_share)))
+        assert path is not None
+        return _Agreement(path, law, positions, rounds, mismatch, seconds)
+
+    def contacts(
+        self, cycle: MeshCycle, positions: int
+    ) -> tuple[Array, tuple[ehl.LineContact, ...], tuple[int, ...]]:
+        """Give the contacts of a cycle that have films, and which of them are for the law alone."""
+        pair = self.teeth.pair
+        rho1, contacts = contacts_of(pair, cycle, self.speed, self.lubricant)
+        if self.model.name != "ehl" or self.model.supply is not None:
+            return rho1, contacts, ()
+        light = LIGHT_SHARE * self.teeth.force / pair.face_width
+        return with_light_ends(pair, rho1, contacts, self.speed, pair.base_pitch / positions, light)
+
+    def with_film(self, path: PathFilms, label: str) -> MeshCycle:
+        """Give the mesh cycle with films, at the positions of the dry one."""
+        law = self.law(path)
+        tolerance = min(self.resolution.sampling, self.resolution.transmission_error)
+        own = ((other, 1.0) for other in off_by_errors(law, path))
+        varied = (*own, *((half, BETWEEN) for half in law.halves()))
+        cycle = self.teeth.with_films(self.dry.position.size, law, tolerance, varied)
+        if self.teeth.pairs == "coupled":
+            yields = film_yielding(law, cycle.rho1, cycle.forces, cycle.load_share)
+            force = self.teeth.force
+            cycle = replace(cycle, secant_stiffness=force / (force / cycle.secant_stiffness + yields))
+        return replace(cycle, label=label)
+
+    def otherwise(self, path: PathFilms) -> dict[str, MeshCycle]:
+        """Give the mesh with the films that a starved one has to be compared with."""
+        if self.model.supply is None:
+            return {}
+        held = "meniscus" if self.model.held == "oil-layer" else "oil layer"
+        others = {
+            "smooth and flooded": PathFilms(path.rho1, path.flooded),
+            f"same film, {held} held": held_the_other_way(self.model, path, self.resolution.films),
+        }
+        return {label: self.with_film(other, label) for label, other in others.items()}

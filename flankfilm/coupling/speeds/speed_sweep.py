@@ -1,0 +1,327 @@
+"""The motion swept up and down, portraits of what the sweeps met, and where contact is first lost."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import dynamics
+from base import Array, Cost, InputError, Result, Stopwatch, part, quantity, record, unclocked
+from base.results import EXACT, ITSELF
+from flankfilm.coupling.speeds.swept_truncation import (
+    LEAST_HARMONICS,
+    checked_values,
+    grazing_errors,
+    motion_changes,
+)
+from flankfilm.coupling.speeds.truncation import longer_motion
+from flankfilm.coupling.vibration.contact_loss_error import grazing_budget
+from flankfilm.coupling.vibration.oscillator import PairOscillator
+from flankfilm.coupling.vibration.resonance import vibrations
+
+MOST_PORTRAITS = 6
+
+
+@dataclass(frozen=True)
+class Portrait:
+    """A settled motion at one parameter value.
+
+    Attributes
+    ----------
+    frequency : float
+        Mesh frequency over the natural frequency.
+    direction : str
+        Sweep that met it, ``"up"`` or ``"down"``.
+    label : str
+        Motion n-p-q.
+    displacement, velocity : ndarray
+        Trajectory, dimensionless.
+    section : ndarray, shape (points, 2)
+        States at tau = 0.
+    """
+
+    frequency: float
+    direction: str
+    label: str
+    displacement: Array
+    velocity: Array
+    section: Array
+
+
+SCALED = "not estimated: the backlash over the length scale, which follows from the mean stiffness"
+
+STRAIGHT = (
+    "not estimated: crossings between samples of a period are taken as straight; force_change is what a longer series "
+    "changes"
+)
+
+
+@record
+class SpeedSweep:
+    """Motion swept up and down in speed.
+
+    ``states`` and ``labels`` go by direction, ``"up"`` and ``"down"``.
+    """
+
+    headline = ("least_grazing", "half_backlash")
+
+    frequency: Array = quantity("1", "mesh frequency over natural frequency", "frequency")
+    speed: Array | None = quantity("rad/s", "pinion speed", "frequency", shown="rpm")
+    states: Mapping[str, Array] = quantity(
+        "1", "displacement and velocity at tau = 0", "frequency kept state", error="error"
+    )
+    labels: Mapping[str, Sequence[str]] = quantity("", "motion n-p-q", "frequency")
+    grazings: Array = quantity(
+        "1",
+        "where the orbit that never leaves contact touches the backlash",
+        "grazing",
+        error="grazing_error",
+        no_error="rounding of the exact flow, for the stiffness as given",
+    )
+    half_backlash: float = quantity("1", "half the backlash D", no_error=SCALED)
+    force_factor: Mapping[str, Array] = quantity(
+        "1", "maximum force over the mean force", "frequency", error="sampling_error"
+    )
+    separated: Mapping[str, Array] = quantity(
+        "1",
+        "part of the time without contact of the driving flanks",
+        "frequency",
+        shown="%",
+        no_error=STRAIGHT,
+    )
+    spread: Mapping[str, Array] = quantity(
+        "1", "root mean square of the displacement about its mean", "frequency", error="sampling_error"
+    )
+    operating_frequency: float = quantity(
+        "1", "mesh frequency over natural frequency of the oscillator at its own speed", no_error=SCALED
+    )
+    operating_force_factor: float = quantity(
+        "1",
+        "maximum force over the mean force at that speed, the motion settled from rest in contact",
+        error="sampling_error",
+    )
+    sampling_error: float = quantity(
+        "1", "largest relative change of force and spread with half as many samples of a period"
+    )
+    grazing_budget: Mapping[str, float] = part(
+        "source of error to relative error of the lowest speed at which contact is lost: stiffness, truncation, flow"
+    )
+    longer_order: int | None = quantity(
+        "1",
+        "harmonics of the longer series that the figures are held against; None for a given series",
+        no_error=EXACT,
+    )
+    grazing_error: Array | None = quantity(
+        "1",
+        "relative change of the frequency of the touch by the longer series; infinite where it has none near",
+        "grazing",
+    )
+    checked: Array | None = quantity(
+        "1",
+        "frequencies at which motions are computed with the longer series as well",
+        "checked",
+        no_error=EXACT,
+    )
+    force_change: Mapping[str, Array] | None = quantity(
+        "1",
+        "relative change of the maximum force there by the longer series; nan where the motion does not repeat, "
+        "infinite where there is none of the same label",
+        "checked",
+        no_error=ITSELF,
+    )
+    spread_change: Mapping[str, Array] | None = quantity(
+        "1",
+        "relative change of the displacement's root mean square there, likewise",
+        "checked",
+        no_error=ITSELF,
+    )
+    portraits: tuple[Portrait, ...] = part("settled motions at chosen values")
+    error: float
+    cost: Cost
+    messages: tuple[str, ...] = part("what the solvers have to report")
+
+    @property
+    def least_grazing(self) -> float | None:
+        """Lowest frequency at which contact is lost."""
+        return float(self.grazings.min()) if self.grazings.size else None
+
+    @property
+    def least_grazing_error(self) -> float | None:
+        """Relative error of the lowest speed at which contact is lost; None where there is none, or it is not known."""
+        known = self.grazing_budget
+        return math.fsum(known.values()) if "stiffness" in known or set(known) == {"flow"} else None
+
+    @property
+    def greatest_factor_error(self) -> float | None:
+        """Relative error of the maximum force by samples and the series' order, near it; None without a motion."""
+        factors = np.array([*self.force_factor.values()])
+        if not np.isfinite(factors).any():
+            return None
+        way, at = np.unravel_index(int(np.nanargmax(factors)), factors.shape)
+        change = 0.0
+        if self.force_change is not None and self.checked is not None:
+            nearest = int(np.argmin(np.abs(self.checked - self.frequency[at])))
+            change = float(self.force_change[[*self.force_factor][way]][nearest])
+        return self.sampling_error + change
+
+    @property
+    def converged(self) -> bool:
+        """Whether no solver has anything to report."""
+        return not self.messages
+
+    @property
+    def message(self) -> str:
+        """All messages in one."""
+        return "; ".join(self.messages)
+
+
+def speed_sweep(
+    motion: PairOscillator,
+    speed: ArrayLike | None = None,
+    *,
+    frequency: ArrayLike | None = None,
+    portraits: Sequence[float] = (),
+) -> SpeedSweep:
+    """Sweep the speed up and down.
+
+    Parameters
+    ----------
+    motion : PairOscillator
+    speed : array_like, shape (values,)
+        Pinion speeds [rad/s], rising.
+    frequency : array_like, shape (values,)
+        Instead of them: mesh frequencies over the natural one.
+    portraits : sequence of float
+        Frequencies of the portraits; one for each kind of motion where there are none.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> from flankfilm.coupling import PairOscillator, given_series
+    >>> series = given_series(1.0, [0.18], [0.0])
+    >>> oscillator = GearOscillator(series.stiffness, 0.05, 0.1, 0.2, 0.5, 0.2)
+    >>> swept = speed_sweep(PairOscillator(oscillator, None, series), frequency=[0.6, 0.65, 0.7])
+    >>> [label for label in swept.labels["up"]], round(swept.least_grazing, 4)
+    (['1-0-0', '1-1-0', '1-1-1'], 0.6335)
+    """
+    with unclocked():
+        from dynamics import contact_grazing, sweep
+        from dynamics.motion.up_and_down import up_and_down
+    watch = Stopwatch()
+    values, speeds = frequencies_of(motion, speed, frequency)
+    oscillator = motion.oscillator
+    sweeps = up_and_down(oscillator, "frequency", values)
+    grazing = contact_grazing(oscillator, "frequency", (float(values[0]), float(values[-1])))
+    settled = sweep(oscillator, "frequency", [oscillator.frequency])
+    operating = vibrations(oscillator, settled)
+    solved: list[Result] = [*sweeps.values(), grazing]
+    shaken = {direction: vibrations(oscillator, result) for direction, result in sweeps.items()}
+    touched = grazing.columns()
+    longer = longer_motion(motion, (float(values[0]), float(values[-1])), LEAST_HARMONICS)
+    at = np.zeros(0, dtype=np.int64)
+    beside, left_out = {}, None
+    if longer is not None:
+        at = checked_values(
+            len(values), {direction: response.force for direction, response in shaken.items()}
+        )
+        beside = {way: motion_changes(longer, motion, result, at) for way, result in sweeps.items()}
+        left_out = grazing_errors(longer, touched)
+    return SpeedSweep(
+        frequency=values,
+        speed=speeds,
+        states={direction: result.states for direction, result in sweeps.items()},
+        labels={direction: result.labels for direction, result in sweeps.items()},
+        portraits=tuple(
+            _portrait(oscillator, sweeps[direction], direction, index)
+            for direction, index in _choices(values, portraits, sweeps)
+        ),
+        grazings=touched,
+        half_backlash=oscillator.half_backlash,
+        force_factor={direction: response.force for direction, response in shaken.items()},
+        separated={direction: response.separated for direction, response in shaken.items()},
+        spread={direction: response.spread for direction, response in shaken.items()},
+        operating_frequency=oscillator.frequency,
+        operating_force_factor=float(operating.force[0]),
+        sampling_error=max(response.change for response in (*shaken.values(), operating)),
+        grazing_budget=_first_loss(motion, touched, left_out, grazing.error),
+        longer_order=None if longer is None else longer.order,
+        grazing_error=left_out,
+        checked=None if longer is None else values[at],
+        force_change={way: change.force for way, change in beside.items()} or None,
+        spread_change={way: change.spread for way, change in beside.items()} or None,
+        error=max(result.error for result in sweeps.values()),
+        cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in sweeps.values())),
+        messages=tuple(solution.message for solution in solved if not solution.converged),
+    )
+
+
+def _first_loss(
+    motion: PairOscillator, touched: Array, left_out: Array | None, flow: float
+) -> Mapping[str, float]:
+    """Error budget of the lowest speed at which contact is lost; empty where it never is."""
+    if not touched.size:
+        return {}
+    first = int(np.argmin(touched))
+    truncation = None if left_out is None else float(left_out[first])
+    return grazing_budget(motion, float(touched[first]), flow, truncation)
+
+
+def frequencies_of(
+    motion: PairOscillator, speed: ArrayLike | None, frequency: ArrayLike | None
+) -> tuple[Array, Array | None]:
+    """Frequencies of pinion speeds [rad/s], or those given, with the speeds where there are any.
+
+    Raises
+    ------
+    InputError
+        Where both are given, or neither; for speeds of an oscillator in its own units.
+    """
+    if (speed is None) == (frequency is None):
+        raise InputError.at("speed", "", "or frequency must be given, one of both")
+    if frequency is not None:
+        return np.asarray(frequency, dtype=np.float64), None
+    if motion.scales is None:
+        raise InputError.at("speed", "", "requires an oscillator with physical scales", "give frequency")
+    speeds = np.asarray(speed, dtype=np.float64)
+    return np.array([motion.scales.frequency(omega) for omega in speeds.tolist()]), speeds
+
+
+def _choices(
+    frequency: Array, wanted: Sequence[float], sweeps: Mapping[str, dynamics.SweepResult]
+) -> list[tuple[str, int]]:
+    """Choose direction and index of each portrait: those asked for, else one for each kind of motion."""
+    if wanted:
+        nearest = [int(np.argmin(np.abs(frequency - w))) for w in wanted]
+        return [(d, i) for i in nearest for d in _different(sweeps, i)]
+    longest: dict[str, tuple[int, str, int]] = {}
+    for direction, result in sweeps.items():
+        at = 0
+        for label, run in groupby(result.labels):
+            length = len(list(run))
+            if length > longest.get(label, (0, "", 0))[0]:
+                longest[label] = (length, direction, at + length // 2)
+            at += length
+    kept = sorted(longest.values(), reverse=True)[:MOST_PORTRAITS]
+    return sorted(((d, i) for _, d, i in kept), key=lambda choice: choice[1])
+
+
+def _different(sweeps: Mapping[str, dynamics.SweepResult], index: int) -> tuple[str, ...]:
+    """Directions whose motions differ at a value: one where both sweeps met the same."""
+    labels = {result.labels[index] for result in sweeps.values()}
+    return ("up",) if len(labels) == 1 else ("up", "down")
+
+
+def _portrait(
+    oscillator: dynamics.GearOscillator, result: dynamics.SweepResult, direction: str, index: int
+) -> Portrait:
+    frequency = float(result.values[index])
+    states = result.states[index]
+    periods = int(result.periods[index]) or 60
+    here = oscillator.with_parameter("frequency", frequency)
+    motion = dynamics.trajectory(here, states[-1], periods=periods)
+    return Portrait(frequency, direction, result.labels[index], motion.x, motion.v, motion.poincare)

@@ -1,0 +1,113 @@
+"""What a series leaves out of a sweep: some of its motions, and where contact is first lost, with more harmonics."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+import dynamics
+from base import Array, Integers
+from flankfilm.coupling.vibration.resonance import vibration
+
+if TYPE_CHECKING:
+    from flankfilm.coupling.drive.pair_drive import PairDrive
+    from flankfilm.coupling.speeds.truncation import Longer
+    from flankfilm.coupling.vibration.oscillator import PairOscillator
+
+CHECKED = 12
+"""Values of a sweep, evenly over the range, at which motions are computed with the longer series as well."""
+
+LEAST_HARMONICS = 32
+"""Lowest order of the longer series: forces follow the stiffness at every instant, and need more than displacements."""
+
+NEAR, POINTS = 0.1, 41
+"""Part of the frequency on both sides in which the longer series' loss of contact is looked for, and at how many."""
+
+
+def grazing_errors(longer: Longer, grazings: Array) -> Array:
+    """Relative errors of the frequencies at which contact is first lost; infinite where the longer series has none.
+
+    Parameters
+    ----------
+    longer : Longer
+    grazings : ndarray, shape (n,)
+        Frequencies with the series itself.
+    """
+    errors = []
+    for here in grazings.tolist():
+        bounds = ((1.0 - NEAR) * here, (1.0 + NEAR) * here)
+        near = dynamics.contact_grazing(longer.oscillator, "frequency", bounds, points=POINTS).columns()
+        errors.append(float(np.min(np.abs(near / here - 1.0), initial=np.inf)))
+    return np.array(errors)
+
+
+def checked_values(count: int, forces: Mapping[str, Array]) -> Integers:
+    """Values of a sweep that are computed once more: evenly, and where the forces of either direction are largest."""
+    evenly = np.linspace(0, count - 1, min(CHECKED, count)).round().astype(np.int64)
+    greatest = [int(np.nanargmax(force)) for force in forces.values() if np.isfinite(force).any()]
+    return np.unique(np.concatenate([evenly, np.array(greatest, dtype=np.int64)]))
+
+
+class MotionChanges(NamedTuple):
+    """What the longer series changes of swept motions, relatively.
+
+    nan where the motion does not repeat; infinite where Newton's method finds no motion of the same label.
+
+    Attributes
+    ----------
+    force, spread : ndarray, shape (n,)
+        Of the maximum force and of the displacement's root mean square.
+    parts : ndarray, shape (n, 3, parts)
+        Of mean, root mean square and largest of what each part of a drive train carries, all over the largest.
+    """
+
+    force: Array
+    spread: Array
+    parts: Array
+
+
+def motion_changes(
+    longer: Longer,
+    motion: PairOscillator | PairDrive,
+    swept: dynamics.SweepResult,
+    at: Integers,
+    began: Callable[[], None] = lambda: None,
+) -> MotionChanges:
+    """What the longer series changes of the figures of swept motions.
+
+    Parameters
+    ----------
+    longer : Longer
+    motion : PairOscillator or PairDrive
+        Of the sweep.
+    swept : SweepResult
+    at : ndarray of int, shape (n,)
+        Values that are looked at.
+    began : callable
+        Called as each of them begins.
+    """
+    changes = np.full((len(at), 2), np.nan)
+    parts = np.full((len(at), 3, len(motion.outputs)), np.nan)
+    arguments: Any = {"load": motion.mean_force, "outputs": motion.outputs}
+    for row, index in enumerate(at.tolist()):
+        began()
+        periods, frequency = int(swept.periods[index]), float(swept.values[index])
+        if not periods:
+            continue
+        state = swept.states[index][-1]
+        there = longer.oscillator.with_parameter("frequency", frequency)
+        orbit = dynamics.find_orbit(there, state, periods=periods)
+        if not orbit.converged or orbit.label != swept.labels[index]:
+            changes[row], parts[row] = np.inf, np.inf
+            continue
+        here = motion.oscillator.with_parameter("frequency", frequency)
+        before = vibration(here, state, periods, **arguments)
+        after = vibration(there, orbit.state, periods, **arguments)
+        for column, (figure, other) in enumerate(
+            ((before.force, after.force), (before.spread, after.spread))
+        ):
+            changes[row, column] = abs(figure / other - 1.0) if other > 0.0 else np.nan
+        parts[row] = np.abs(before.parts - after.parts) / np.maximum(after.parts[2], 1e-300)
+    return MotionChanges(changes[:, 0], changes[:, 1], parts)

@@ -1,0 +1,142 @@
+"""What a sweep's settled motions do to the teeth: maximum force, time without contact, vibration."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from base import Array
+from flankfilm.coupling.vibration.part_loads import DriveOutput, output_rows
+
+if TYPE_CHECKING:
+    import dynamics
+    from dynamics.model.protocol import PeriodicOscillator
+
+SAMPLES = 400
+"""Samples of a mesh period."""
+
+APERIODIC = 60
+"""Mesh periods over which a motion that does not repeat is followed."""
+
+
+class Vibration(NamedTuple):
+    """Figures of one motion; nan where it could not be followed, or of the force without a mean force.
+
+    Attributes
+    ----------
+    force : float
+        Maximum force over the mean force.
+    separated : float
+        Part of the time in which the driving flanks do not touch.
+    spread : float
+        Root mean square of the displacement about its mean; in several freedoms of what the backlash limits.
+    change : float
+        Largest relative change of force, spread and parts with half as many samples; parts over their largest.
+    parts : ndarray, shape (3, parts)
+        Mean, root mean square about it, and maximum modulus of what each part of a drive train carries.
+    """
+
+    force: float
+    separated: float
+    spread: float
+    change: float
+    parts: Array
+
+
+class Vibrations(NamedTuple):
+    """Figures of the motions of a sweep, as of `Vibration`; `parts` has the shape (values, 3, parts)."""
+
+    force: Array
+    separated: Array
+    spread: Array
+    change: float
+    parts: Array
+
+
+def vibrations(
+    oscillator: PeriodicOscillator,
+    swept: dynamics.SweepResult,
+    *,
+    load: float | None = None,
+    outputs: Sequence[DriveOutput] = (),
+) -> Vibrations:
+    """Force, time without contact and spread of all motions of a sweep, the error by sampling, and what parts carry.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator or DriveOscillator
+    swept : SweepResult
+        Over the frequency.
+    load, outputs
+        As of `vibration`.
+
+    Examples
+    --------
+    >>> from dynamics import FourierStiffness, GearOscillator, sweep
+    >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.5, half_backlash=0.2)
+    >>> found = vibrations(osc, sweep(osc, "frequency", [0.5, 0.65]))
+    >>> found.force.round(2), found.separated.round(2), found.change < 1e-3
+    (array([1.94, 5.68]), array([0.  , 0.61]), True)
+    """
+    each = [
+        vibration(
+            oscillator.with_parameter("frequency", float(value)),
+            states[-1],
+            int(periods),
+            load=load,
+            outputs=outputs,
+        )
+        for value, states, periods in zip(swept.values, swept.states, swept.periods, strict=True)
+    ]
+    force, separated, spread, change, parts = (np.array(figure) for figure in zip(*each, strict=True))
+    return Vibrations(force, separated, spread, float(change.max()), parts)
+
+
+def vibration(
+    oscillator: PeriodicOscillator,
+    state: Array,
+    periods: int,
+    *,
+    load: float | None = None,
+    outputs: Sequence[DriveOutput] = (),
+) -> Vibration:
+    """Figures of the settled motion from a state at tau = 0; `periods` 0 where it does not repeat.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator or DriveOscillator
+    state : ndarray, shape (dimension,)
+    periods : int
+    load : float, optional
+        Mean force of the mesh. Left out: that of a `GearOscillator`.
+    outputs : sequence of DriveOutput
+        What parts carry.
+    """
+    from dynamics.flow.motions import mesh_force, share_below, trajectory
+
+    if not np.all(np.isfinite(state)):
+        return Vibration(np.nan, np.nan, np.nan, 0.0, np.full((3, len(outputs)), np.nan))
+    motion = trajectory(oscillator, state, periods=periods or APERIODIC, points_per_period=SAMPLES)
+    force = mesh_force(oscillator, motion)
+    carried = output_rows(outputs, oscillator.dimension) @ motion.states[:-1].T
+    fine, coarse = (_figures(force[::step], motion.x[::step]) for step in (1, 2))
+    change = max(abs(there / here - 1.0) if here else 0.0 for here, there in zip(fine, coarse, strict=True))
+    parts, half = (_of_parts(carried[:, ::step]) for step in (1, 2))
+    off = float(np.max(np.abs(parts - half) / np.maximum(parts[2], 1e-300), initial=0.0))
+    mean = getattr(oscillator, "mean_force", 0.0) if load is None else load
+    greatest = fine[0] / mean if mean else np.nan
+    return Vibration(
+        greatest, share_below(motion.x - oscillator.half_backlash), fine[1], max(change, off), parts
+    )
+
+
+def _figures(force: Array, x: Array) -> tuple[float, float]:
+    """Maximum force, and root mean square of the displacement about its mean over whole periods."""
+    return float(np.max(force)), float(np.std(x[:-1]))
+
+
+def _of_parts(curves: Array) -> Array:
+    """Mean, root mean square about it, and maximum modulus of curves, one row each."""
+    return np.array([curves.mean(axis=1), curves.std(axis=1), np.abs(curves).max(axis=1)])
