@@ -10,8 +10,8 @@ from pathlib import Path
 
 from runs import save
 
+from flankfilm.bench import pictures as bench
 from flankfilm.bench.tables import read_bench
-from flankfilm.figures import bench
 
 CASES = ("compliance", "contact_free", "root_stress", "film_tolerance", "motion_flow")
 

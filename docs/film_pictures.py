@@ -8,7 +8,7 @@ from base import SolverError
 from flankfilm import figures
 from flankfilm.figures.reading import key_words
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import FILM, PAIR
+from flankfilm.stages.mesh import FILM, PAIR
 from flankfilm.studies.plan import read_plan
 
 

@@ -14,7 +14,7 @@ from flankfilm import figures
 def main() -> None:
     """Write docs/images/teeth.png, stiffness.png, tooth.webp and mesh_cycle.webp."""
     keep_compiled_code()
-    from flankfilm.running import run_scene
+    from flankfilm.runs.run_scene import run_scene
     from flankfilm.scene import read_scene
 
     with tempfile.TemporaryDirectory() as place:

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from flankfilm.cache import Cache, keep_compiled_code, user_cache
 from flankfilm.figures.style import styled
+from flankfilm.files.cache import Cache, keep_compiled_code, user_cache
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -1,4 +1,9 @@
 from . import figures as figures
+from .api import optimise as optimise
+from .api import run as run
+from .api import study as study
+from .api import verify as verify
+from .api import write_vtk as write_vtk
 from .coupling.films.films import FilmModel as FilmModel
 from .coupling.films.lubricated import film_along_path as film_along_path
 from .coupling.films.lubricated import lubricated_cycle as lubricated_cycle
@@ -15,13 +20,8 @@ from .coupling.speeds.speed_sweep import speed_sweep as speed_sweep
 from .coupling.vibration.excitation import error_series as error_series
 from .coupling.vibration.excitation import unloaded_error as unloaded_error
 from .coupling.vibration.oscillator import pair_oscillator as pair_oscillator
-from .front import optimise as optimise
-from .front import run as run
-from .front import study as study
-from .front import verify as verify
-from .front import write_vtk as write_vtk
-from .opened import open_results as open_results
-from .results import Results as Results
+from .files.io import open_results as open_results
+from .outcome.results import Results as Results
 from .scene import Scene as Scene
 from .scene import parse_scene as parse_scene
 from .scene import read_scene as read_scene

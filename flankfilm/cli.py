@@ -10,12 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter, Token
 
 from base import InputError, printable
-from flankfilm.guarded import BY_SIGNAL, PART_FAILED, SOLVER_FAULT, guarded, open_streams, say
+from flankfilm.processes.exit_status import BY_SIGNAL, PART_FAILED, SOLVER_FAULT, guarded, open_streams, say
 from flankfilm.studies.execution import Execution
 
 if TYPE_CHECKING:
@@ -66,13 +66,13 @@ RowsFolder = Annotated[Folder, Parameter(help="Folder for the rows and what is m
 
 def _prepare() -> None:
     """Say what must be said before numba is loaded."""
-    from flankfilm.cache import keep_compiled_code
+    from flankfilm.files.cache import keep_compiled_code
 
     keep_compiled_code()
 
 
 def _read(scene: Path, tolerance: str | None) -> Scene:
-    from flankfilm.reproduce import scene_in
+    from flankfilm.output.reproduce import scene_in
     from flankfilm.scene import parse_tolerance
 
     changed = {} if tolerance is None else {"tolerance": parse_tolerance(tolerance, "--tolerance")}
@@ -94,9 +94,9 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     _prepare()
     # a scene with faults is refused before what computes it is loaded
     wanted = _read(scene, options.tolerance)
-    from flankfilm.progress import console_progress
+    from flankfilm.processes.progress import console_progress
     from flankfilm.report.contents import summary
-    from flankfilm.running import run_scene
+    from flankfilm.runs.run_scene import run_scene
     from flankfilm.stages.failures import lines as not_computed
 
     # a results file is called like all others: its folder distinguishes it
@@ -124,7 +124,7 @@ def verify(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     wanted = _read(scene, options.tolerance)
     from rich.console import Console
 
-    from flankfilm.progress import console_progress
+    from flankfilm.processes.progress import console_progress
     from flankfilm.verification.run import verify_scene
     from flankfilm.verification.tables import costs, face_table, table, write_verification
 
@@ -150,7 +150,7 @@ def warm_up() -> int:
     """Compile now, on all cores, what would be compiled when it is first used."""
     _prepare()
     from flankfilm.studies.executors import default_workers
-    from flankfilm.warming import warm_up as compile_all
+    from flankfilm.warm_up import warm_up as compile_all
 
     compile_all(default_workers(), lambda part: print(printable(str(part)), flush=True))
     return 0
@@ -166,7 +166,7 @@ def study(study: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> int
         The study file (TOML): a scene, keys of it that vary, outputs.
     """
     _prepare()
-    from flankfilm.progress import console_rows
+    from flankfilm.processes.progress import console_rows
     from flankfilm.studies.files import summary, write_study
     from flankfilm.studies.plan import read_plan
     from flankfilm.studies.run import run_study
@@ -193,7 +193,7 @@ def optimise(task: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> i
     from flankfilm.optimisation.files import summary, write_optimum
     from flankfilm.optimisation.run import optimise as find
     from flankfilm.optimisation.task import read_task
-    from flankfilm.progress import console_rows
+    from flankfilm.processes.progress import console_rows
 
     asked = read_task(task)
     with console_rows() as progress:
@@ -238,7 +238,7 @@ def bench(
     from flankfilm.bench.page import write_page
     from flankfilm.bench.run import bench as measured
     from flankfilm.bench.tables import remarks, terminal, write_tables
-    from flankfilm.progress import console_progress
+    from flankfilm.processes.progress import console_progress
 
     with console_progress() as progress:
         measurements = measured(
@@ -261,7 +261,7 @@ def check(scene: Path, /) -> int:
     scene : Path
         The scene file (TOML).
     """
-    from flankfilm.check import check_scene
+    from flankfilm.runs.check import check_scene
 
     for line in check_scene(_read(scene, None)):
         print(printable(line))
@@ -277,13 +277,26 @@ def new(scene: Path, /) -> int:
     scene : Path
         The file to write.
     """
-    from flankfilm.folder import write_new
+    from flankfilm.files.folder import write_new
     from flankfilm.scene import template
 
     if scene.suffix != ".toml":
         raise InputError.at(scene, "", "must end in .toml", f"flankfilm new {scene.with_suffix('.toml')}")
     write_new(scene, template(), "Name another file")
     print(f"{scene} is written. Next: flankfilm run {scene}")
+    return 0
+
+
+@app.command
+def completion(shell: Literal["bash", "zsh", "fish"], /) -> int:
+    """Print the script that completes commands and options in SHELL.
+
+    Parameters
+    ----------
+    shell : {"bash", "zsh", "fish"}
+        Whose script.
+    """
+    print(app.generate_completion(prog_name="flankfilm", shell=shell))
     return 0
 
 
@@ -302,9 +315,8 @@ for _name, _where, _help in (
         "exchange.commands:export_traction",
         "Write friction of the oil of SCENE over sliding.",
     ),
-    ("completion", "exchange.commands:completion", "Print the script that completes commands in SHELL."),
-    ("view", "figures.commands:view", "Show the fields in RESULTS on the deformed teeth."),
-    ("animate", "figures.commands:animate", "Draw the mesh cycle in RESULTS, deformed."),
+    ("view", "figures.rendering.commands:view", "Show the fields in RESULTS on the deformed teeth."),
+    ("animate", "figures.rendering.commands:animate", "Draw the mesh cycle in RESULTS, deformed."),
 ):
     # the module is loaded when the command is called
     app.command(f"flankfilm.{_where}", name=_name, help=_help)

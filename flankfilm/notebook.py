@@ -21,7 +21,7 @@ from gears.notebook import table
 
 if TYPE_CHECKING:
     from flankfilm.optimisation.optimum import Optimum
-    from flankfilm.results import Results
+    from flankfilm.outcome.results import Results
     from flankfilm.studies.run import StudyResults
     from gears.closed_form.record import ClosedForm
 

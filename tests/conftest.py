@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from flankfilm.cache import keep_compiled_code
+from flankfilm.files.cache import keep_compiled_code
 from gears import GearPair
 from tests.processes import pytest_configure, pytest_sessionfinish
 from tests.seeds import seed_header

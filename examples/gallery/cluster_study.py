@@ -19,7 +19,7 @@ STUDY = Path(__file__).parents[1] / "studies" / "web.toml"
 HERE = {
     "n_workers": 2,
     "threads_per_worker": 1,  # rows share the cores, not threads within a row
-    "preload": "flankfilm.children",
+    "preload": "flankfilm.processes.worker_processes",
     "dashboard_address": ":0",
     "silence_logs": logging.ERROR,
 }

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from flankfilm.bench.case import Levels, case, work
-from flankfilm.children import module, python
+from flankfilm.processes.worker_processes import module, python
 
 STUDY = """
 title = "Geometry"
@@ -35,7 +35,7 @@ def work_application(quick: bool) -> Levels:
     the page of a run.
     """
     from flankfilm.report.contents import write_report
-    from flankfilm.running import run_scene
+    from flankfilm.runs.run_scene import run_scene
     from flankfilm.scene import read_scene, template
     from flankfilm.studies.plan import read_plan
     from flankfilm.studies.row import Row, compute_row

@@ -14,7 +14,7 @@ from math import nan
 from time import process_time
 
 from flankfilm.bench.process import output_of
-from flankfilm.children import module, python
+from flankfilm.processes.worker_processes import module, python
 
 
 @dataclass(frozen=True)

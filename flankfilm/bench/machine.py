@@ -9,7 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from flankfilm.cache import LIBRARIES
+from flankfilm.files.cache import LIBRARIES
 from flankfilm.studies.executors import THREADS, default_workers
 
 

@@ -8,12 +8,12 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from flankfilm.bench import pictures as figures
 from flankfilm.bench.machine import busy
 from flankfilm.bench.measuring import CaseResult
 from flankfilm.bench.peers import PeerRow
 from flankfilm.bench.run import Bench
 from flankfilm.bench.tables import HEADS, clock, known_ratios, number, summaries, summary_cells
-from flankfilm.figures import bench as figures
 from flankfilm.figures.style import to_svg
 from flankfilm.output.files import write_text
 from flankfilm.report.page import Drawing, Fact, Head, Headline, Part, Table, render

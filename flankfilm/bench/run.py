@@ -15,8 +15,8 @@ from flankfilm.bench.first_call import FirstCall, first_call
 from flankfilm.bench.machine import Machine, load, this_machine
 from flankfilm.bench.measuring import CaseResult, measure, quiet, steps
 from flankfilm.bench.peers import PeerRow, ask
-from flankfilm.folder import claim
-from flankfilm.progress import Progress, in_steps, silent
+from flankfilm.files.folder import claim
+from flankfilm.processes.progress import Progress, in_steps, silent
 
 REPEAT = {False: 3, True: 2}
 """Timed runs of each level, in full and quick."""

@@ -33,7 +33,7 @@ def import_gears(
         Basic rack of ISO 53, where the file names no tool.
     """
     from flankfilm.exchange.bring_in import imported
-    from flankfilm.folder import write_new
+    from flankfilm.files.folder import write_new
 
     target = out if out is not None else Path(f"{file.stem}.toml")
     brought = imported(file, stage=stage, rack=rack)
@@ -57,7 +57,7 @@ def export_rexs(scene: Path, /, *, out: Path | None = None) -> int:
     out : Path, optional
         The file, as XML (.rexs), JSON (.rexsj) or XML in an archive (.rexsz); SCENE.rexs beside you if left out.
     """
-    from flankfilm.build import gear_pair
+    from flankfilm.build.pair import gear_pair
     from flankfilm.exchange.rexs_write import rexs_file
     from flankfilm.output.files import write_bytes
     from flankfilm.scene import read_scene
@@ -99,7 +99,7 @@ def export_profile(
     out : Path, optional
         The file; SCENE-GEAR.FORMAT beside you if left out.
     """
-    from flankfilm.build import gear_pair
+    from flankfilm.build.pair import gear_pair
     from flankfilm.exchange.profile_files import write_drawing, write_points
     from flankfilm.scene import read_scene
     from gears.tooth.contour import contour
@@ -145,12 +145,12 @@ def export_mesh(
         How often every element is split in four, 0 to 4.
     """
     from fem.fields.export import export_position
-    from flankfilm.build import pinion_torque
-    from flankfilm.cache import results_cache
-    from flankfilm.folder import claim
-    from flankfilm.reproduce import scene_in
-    from flankfilm.stages.catalogue import COMPLIANCE, PAIR
+    from flankfilm.build.pair import pinion_torque
+    from flankfilm.files.cache import results_cache
+    from flankfilm.files.folder import claim
+    from flankfilm.output.reproduce import scene_in
     from flankfilm.stages.engine import Engine
+    from flankfilm.stages.mesh import COMPLIANCE, PAIR
 
     wanted, _ = scene_in(scene)
     claim(out)
@@ -182,13 +182,13 @@ def export_table(scene: Path, /, *, out: Path | None = None) -> int:
     out : Path, optional
         A table (.csv), or arrays in SI (.npz); SCENE-mesh.csv beside you if left out.
     """
-    from flankfilm.cache import results_cache
     from flankfilm.coupling import mesh_table
     from flankfilm.exchange.mesh_files import refuse_others, write_table
-    from flankfilm.reproduce import scene_in
-    from flankfilm.scene.section import required
-    from flankfilm.stages.catalogue import MESH, PAIR
+    from flankfilm.files.cache import results_cache
+    from flankfilm.output.reproduce import scene_in
+    from flankfilm.scene.sections.section import required
     from flankfilm.stages.engine import Engine
+    from flankfilm.stages.mesh import MESH, PAIR
 
     wanted, _ = scene_in(scene)
     target = out if out is not None else Path(f"{scene.stem}-mesh.csv")
@@ -255,17 +255,3 @@ def export_traction(
     write_traction(target, curve)
     print(f"{target} is written: {printable(repr(curve))}")
     return 0 if curve.converged else 1
-
-
-def completion(shell: Literal["bash", "zsh", "fish"], /) -> int:
-    """Print the script that completes commands and options in SHELL.
-
-    Parameters
-    ----------
-    shell : {"bash", "zsh", "fish"}
-        Whose script.
-    """
-    from flankfilm.cli import app
-
-    print(app.generate_completion(prog_name="flankfilm", shell=shell))
-    return 0

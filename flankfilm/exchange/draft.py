@@ -11,8 +11,8 @@ from pydantic import BaseModel
 
 from base import Fault
 from flankfilm.scene.explain import model_in
-from flankfilm.scene.gears import PairSection
-from flankfilm.scene.materials import MaterialSection
+from flankfilm.scene.sections.gears import PairSection
+from flankfilm.scene.sections.materials import MaterialSection
 from flankfilm.scene.toml import remarked, toml
 
 OPEN = math.nan

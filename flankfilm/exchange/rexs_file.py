@@ -8,7 +8,7 @@ from flankfilm.exchange.rexs_archive import LARGEST_FILE, MARK, unpacked
 from flankfilm.exchange.rexs_json import model_of_json
 from flankfilm.exchange.rexs_model import Model
 from flankfilm.exchange.rexs_xml import model_of_xml
-from flankfilm.folder import content_of
+from flankfilm.files.folder import content_of
 
 
 def read_model(path: Path) -> Model:

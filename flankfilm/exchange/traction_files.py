@@ -56,9 +56,9 @@ def traction_of(
         Relative, of films and friction.
     """
     import ehl
-    from flankfilm.build import gear_pair
-    from flankfilm.build_heat import shearing_oil
-    from flankfilm.scene.section import required
+    from flankfilm.build.heat import shearing_oil
+    from flankfilm.build.pair import gear_pair
+    from flankfilm.scene.sections.section import required
     from gears.pair.hertz import peak_pressure
 
     for name in ("pair", "material"):

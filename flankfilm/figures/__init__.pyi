@@ -1,8 +1,3 @@
-from .animation import Frame as Frame
-from .animation import animate_cycle as animate_cycle
-from .animation import teeth_scene as teeth_scene
-from .animation import tooth_picture as tooth_picture
-from .animation import view_cycle as view_cycle
 from .drives import drive_map as drive_map
 from .drives import drive_modes as drive_modes
 from .drives import drive_run_up as drive_run_up
@@ -34,6 +29,11 @@ from .motion import resonance as resonance
 from .motion import sweep as sweep
 from .optima import optimum as optimum
 from .optima import optimum_map as optimum_map
+from .rendering.animation import Frame as Frame
+from .rendering.animation import animate_cycle as animate_cycle
+from .rendering.animation import teeth_scene as teeth_scene
+from .rendering.animation import tooth_picture as tooth_picture
+from .rendering.animation import view_cycle as view_cycle
 from .speeds import dynamic_map as dynamic_map
 from .speeds import run_up as run_up
 from .speeds import waterfall as waterfall

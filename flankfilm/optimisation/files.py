@@ -128,7 +128,7 @@ def write_optimum(optimisation: Optimum, folder: Path) -> list[Path]:
     from flankfilm.figures import optimum, optimum_map
     from flankfilm.figures.optima import can_be_mapped
     from flankfilm.figures.style import save
-    from flankfilm.report.other_pages import write_optimum_page
+    from flankfilm.optimisation.page import write_optimum_page
 
     task = optimisation.task
     chosen = [optimisation.evaluations[place] for place in optimisation.best]

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base import Array, Cost, plot, view
+from flankfilm.figures.views import register
 from flankfilm.optimisation.polish import Polish
 from flankfilm.optimisation.search import FAILED
 from flankfilm.optimisation.task import Task
 from flankfilm.studies.output_errors import ERROR_OF, ROUNDING, exact
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.study_file import Value
-from flankfilm.views import register
 
 LAST = 0.25
 """Part of the fine points whose gain says whether a front still moves."""

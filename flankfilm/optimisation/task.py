@@ -15,7 +15,7 @@ from base import Fault, InputError
 from flankfilm.optimisation.start import Start, start_of
 from flankfilm.scene.reader import validated
 from flankfilm.scene.schema import Scene, parse_tolerance
-from flankfilm.scene.section import Section, refused
+from flankfilm.scene.sections.section import Section, refused
 from flankfilm.studies.design import following
 from flankfilm.studies.output_errors import ERROR_OF
 from flankfilm.studies.plan import base_scene, put, refuse_unknown_outputs

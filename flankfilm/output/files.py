@@ -83,7 +83,7 @@ def provenance(scene_json: str) -> dict[str, str]:
     import platform
     from importlib.metadata import version
 
-    from flankfilm.cache import LIBRARIES, PACKAGES, code_digest
+    from flankfilm.files.cache import LIBRARIES, PACKAGES, code_digest
 
     versions = {name: version(name) for name in ("flankfilm", *LIBRARIES)}
     return {

@@ -13,10 +13,10 @@ import numpy as np
 import gears
 from base import Quantity
 from base.results import EXACT, figures, why_no_error
-from flankfilm.build import pinion_speed
-from flankfilm.build_flanks import deviations
+from flankfilm.build.flanks import deviations
+from flankfilm.build.pair import pinion_speed
 from flankfilm.coupling.vibration.part_loads import PARTS
-from flankfilm.figures import drawn
+from flankfilm.output import drawing_data as drawn
 from flankfilm.output import drives, heat
 from flankfilm.output.branches import branch_tables
 from flankfilm.output.convergence import with_convergence

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     import fem
     from flankfilm.coupling import LubricatedCycle
-    from flankfilm.results import Results
+    from flankfilm.outcome.results import Results
     from flankfilm.scene import Scene
 
 ALONG_FLANKS = ("diameter", "face_place")

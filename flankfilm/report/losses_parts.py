@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehl.discrete.regimes import MEASURED, regime
-from flankfilm.build_heat import shearing_oil, warmth
+from flankfilm.build.heat import shearing_oil, warmth
 from flankfilm.figures.reading import read_figure
 from flankfilm.output.uncertainty import Uncertainty, uncertainty
 from flankfilm.report.film_parts import LEAST_WITH_HEAT, regime_said
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent, plain
-from flankfilm.scene.key import ZERO_CELSIUS
+from flankfilm.scene.sections.key import ZERO_CELSIUS
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,14 +7,16 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from flankfilm.report.page import Part, Table, said
+from flankfilm.report.page import Fact, Part, Table, said
 from flankfilm.report.text import counted, percent, seconds
-from flankfilm.scene.flank_files import CURVES
+from flankfilm.scene.tables.flank_files import CURVES
 
 if TYPE_CHECKING:
+    import xarray as xr
+
+    from flankfilm.outcome.results import Results
     from flankfilm.plan.decide import Plan
     from flankfilm.plan.decisions import Decision
-    from flankfilm.results import Results
 
 LEAST_SECONDS = 0.005
 """Minimum time of a stage that is listed although it has no separate error [s]."""
@@ -204,6 +206,16 @@ def _shares(plan: Plan) -> Table:
             "estimated cost": lambda share: seconds(plan.costs[share[0]]),
         },
     )
+
+
+def inputs_of(data: xr.Dataset) -> Part:
+    """Show the scene and the versions that a file of data holds."""
+    return inputs(json.loads(data.attrs["scene_json"]), data.attrs["versions_json"])
+
+
+def work_of(data: xr.Dataset) -> Fact:
+    """Say how long the rows of a file of data took together."""
+    return Fact(f"{seconds(float(data['seconds'].sum()))} of work")
 
 
 def inputs(scene: Mapping[str, Any], versions_json: str) -> Part:

@@ -13,8 +13,8 @@ from pydantic.fields import FieldInfo
 
 from base import Fault, InputError, shorten
 from base.units import factor, unit_of
-from flankfilm.scene.key import Key, key_of
-from flankfilm.scene.section import Section
+from flankfilm.scene.sections.key import Key, key_of
+from flankfilm.scene.sections.section import Section
 from flankfilm.scene.toml import toml
 
 _ALLOWED = {

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from base import Fault, shorten
-from flankfilm.scene.alignment import LEAD_KEYS, faults_of_leads
 from flankfilm.scene.needs_of_shafts import faults_of_shafts
+from flankfilm.scene.sections.alignment import LEAD_KEYS, faults_of_leads
 
 BY_FINITE_ELEMENTS = {"vtk", "root-stress", "torques", "revolution"}
 """Wants that need the loaded contact by finite elements."""

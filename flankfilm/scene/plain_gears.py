@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from flankfilm.scene.alignment import LEAD_KEYS
-from flankfilm.scene.gears import GearSection
 from flankfilm.scene.schema import Scene
+from flankfilm.scene.sections.alignment import LEAD_KEYS
+from flankfilm.scene.sections.gears import GearSection
 
 
 def plain_flanks(scene: Scene) -> Scene:

@@ -10,11 +10,11 @@ from typing import Any
 from pydantic import ValidationError
 
 from base import Fault, InputError, shorten
-from flankfilm.folder import content_of
+from flankfilm.files.folder import content_of
 from flankfilm.scene.explain import explain_all
-from flankfilm.scene.flank_files import read_flank_files
 from flankfilm.scene.needs import faults_between_sections
 from flankfilm.scene.schema import Scene
+from flankfilm.scene.tables.flank_files import read_flank_files
 
 LARGEST_FILE = 1_000_000
 """Bytes; a scene is a few kilobytes, and a larger file is something else."""
@@ -40,7 +40,7 @@ def read_scene(path: Path | str) -> Scene:
     Returns
     -------
     Scene
-        Checked key by key and section by section; the geometry is checked by `flankfilm.build`.
+        Checked key by key and section by section; the geometry is checked by `flankfilm.build.pair`.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """The scene file: its sections and the keys of the scene itself.
 
-A key carries its unit (`module_mm`); values become SI by `flankfilm.build`. Bounds are the ground's, wide enough for
-every gear that is made and narrow enough to catch a wrong unit.
+A key carries its unit (`module_mm`); values become SI by `flankfilm.build.pair`. Bounds are the ground's, wide enough
+for every gear that is made and narrow enough to catch a wrong unit.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 
 from base import InputError, Limit
-from flankfilm.scene.alignment import AlignmentSection
-from flankfilm.scene.dynamics import DynamicsSection
-from flankfilm.scene.film import FilmSection, LubricantSection, RoughnessSection
-from flankfilm.scene.gears import PairSection
-from flankfilm.scene.heat import HeatSection
-from flankfilm.scene.key import key
-from flankfilm.scene.materials import MaterialSection
-from flankfilm.scene.operating import OperatingSection, StiffnessSection
-from flankfilm.scene.section import Section
-from flankfilm.scene.shafts import ShaftsSection
+from flankfilm.scene.sections.alignment import AlignmentSection
+from flankfilm.scene.sections.dynamics import DynamicsSection
+from flankfilm.scene.sections.film import FilmSection, LubricantSection, RoughnessSection
+from flankfilm.scene.sections.gears import PairSection
+from flankfilm.scene.sections.heat import HeatSection
+from flankfilm.scene.sections.key import key
+from flankfilm.scene.sections.materials import MaterialSection
+from flankfilm.scene.sections.operating import OperatingSection, StiffnessSection
+from flankfilm.scene.sections.section import Section
+from flankfilm.scene.sections.shafts import ShaftsSection
 
 __all__ = ["Scene", "Want", "parse_tolerance"]
 

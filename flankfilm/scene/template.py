@@ -9,8 +9,8 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from flankfilm.scene.explain import model_in
-from flankfilm.scene.key import key_of
 from flankfilm.scene.schema import Scene
+from flankfilm.scene.sections.key import key_of
 from flankfilm.scene.toml import remarked, toml
 
 __all__ = ["template"]

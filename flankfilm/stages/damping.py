@@ -7,13 +7,13 @@ from typing import Any
 
 from base import InputError
 from flankfilm import coupling
-from flankfilm.build import pinion_speed, pinion_torque
-from flankfilm.build_film import film_model, lubricant
-from flankfilm.scene.dynamics import BY_FILM
-from flankfilm.scene.ground import under_keys
-from flankfilm.scene.section import required
-from flankfilm.stages.catalogue import MESH, PAIR
+from flankfilm.build.film import film_model, lubricant
+from flankfilm.build.pair import pinion_speed, pinion_torque
+from flankfilm.scene.sections.dynamics import BY_FILM
+from flankfilm.scene.sections.ground import under_keys
+from flankfilm.scene.sections.section import required
 from flankfilm.stages.engine import Engine, stage
+from flankfilm.stages.mesh import MESH, PAIR
 
 _SECTIONS = ("film", "lubricant", "operating", "heat")
 

@@ -7,13 +7,13 @@ import math
 import numpy as np
 
 from flankfilm import coupling
-from flankfilm.build import pinion_torque
-from flankfilm.build_shafts import drive_arguments
-from flankfilm.scene.section import required
-from flankfilm.stages.catalogue import PAIR
+from flankfilm.build.pair import pinion_torque
+from flankfilm.build.shafts import drive_arguments
+from flankfilm.scene.sections.section import required
 from flankfilm.stages.damping import FILM_DAMPING
 from flankfilm.stages.engine import Engine, stage
 from flankfilm.stages.excitation import EXCITATION
+from flankfilm.stages.mesh import PAIR
 from flankfilm.stages.motion import FOURIER, SCALING, of_the_pair
 from flankfilm.stages.ranges import speeds_looked_at
 

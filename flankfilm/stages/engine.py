@@ -11,11 +11,11 @@ from functools import reduce
 from typing import Any, Generic, TypeVar, get_type_hints
 
 from base import InputError, SolverError
-from flankfilm.cache import Cache
 from flankfilm.coupling.mesh.warn_once import distinct
-from flankfilm.progress import Progress, rows_of, silent
+from flankfilm.files.cache import Cache
+from flankfilm.processes.progress import Progress, rows_of, silent
 from flankfilm.scene import Scene
-from flankfilm.scene.section import Section
+from flankfilm.scene.sections.section import Section
 from flankfilm.stages.failures import Failure, failure_of
 
 T = TypeVar("T")

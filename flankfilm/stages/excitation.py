@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from flankfilm import coupling
-from flankfilm.build import pinion_torque, tip_roundings
-from flankfilm.build_flanks import deviations
-from flankfilm.scene.section import required
-from flankfilm.stages.catalogue import MESH, PAIR
+from flankfilm.build.flanks import deviations
+from flankfilm.build.pair import pinion_torque, tip_roundings
+from flankfilm.scene.sections.section import required
 from flankfilm.stages.damping import FILM_DAMPING, damping_ratio
 from flankfilm.stages.engine import Engine, stage
+from flankfilm.stages.mesh import MESH, PAIR
 from flankfilm.stages.ranges import deflection, frequency_range
 
 KEYS = "operating dynamics pair material heat stiffness.contact_beyond_path tolerance"

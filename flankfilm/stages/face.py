@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from flankfilm import coupling
-from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, TEETH, loaded_teeth
 from flankfilm.stages.engine import Engine, stage
+from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, TEETH, loaded_teeth
 
 
 @stage("load over the face", "load over the face by other models", TEETH, DRY_CYCLE)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from flankfilm.build_face import varies_by
+from flankfilm.build.face import varies_by
 from flankfilm.scene import Scene, needs
-from flankfilm.scene.dynamics import BY_FILM
-from flankfilm.stages import catalogue as of
+from flankfilm.scene.sections.dynamics import BY_FILM
 from flankfilm.stages import losses, motion
+from flankfilm.stages import mesh as of
 from flankfilm.stages.damping import FILM_DAMPING
 from flankfilm.stages.drives import DRIVE, DRIVE_SWEEP
 from flankfilm.stages.engine import Stage

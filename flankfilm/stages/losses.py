@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import ehl
 from flankfilm import coupling
-from flankfilm.build import pinion_speed, pinion_torque
-from flankfilm.build_film import boundary_friction, roughness, supply
-from flankfilm.build_heat import shearing_oil, solids, warmth
+from flankfilm.build.film import boundary_friction, roughness, supply
+from flankfilm.build.heat import shearing_oil, solids, warmth
+from flankfilm.build.pair import pinion_speed, pinion_torque
 from flankfilm.plan.decisions import Decision
 from flankfilm.plan.heat_choice import heat_choice
-from flankfilm.scene.ground import under_keys
-from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FILM, PAIR, TEETH, decided, loaded_teeth
+from flankfilm.scene.sections.ground import under_keys
 from flankfilm.stages.engine import Engine, stage
+from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FILM, PAIR, TEETH, decided, loaded_teeth
 
 SUPPLY = "film.supply film.meniscus_mm film.meniscus_half_widths film.oil_layer_um"
 """What is held at the inlets."""

@@ -10,15 +10,15 @@ import numpy as np
 
 import dynamics
 from flankfilm import coupling
-from flankfilm.build import pinion_torque
-from flankfilm.scene.dynamics import OSCILLATOR, DiagramSection, DynamicsSection
-from flankfilm.scene.operating import GIVEN
-from flankfilm.scene.section import required
-from flankfilm.slow_motion import followed_speed
-from flankfilm.stages.catalogue import MESH, PAIR, PLAN, decided
+from flankfilm.build.followed_speeds import followed_speed
+from flankfilm.build.pair import pinion_torque
+from flankfilm.scene.sections.dynamics import OSCILLATOR, DiagramSection, DynamicsSection
+from flankfilm.scene.sections.operating import GIVEN
+from flankfilm.scene.sections.section import required
 from flankfilm.stages.damping import FILM_DAMPING, damping_ratio
 from flankfilm.stages.engine import Engine, stage
 from flankfilm.stages.excitation import EXCITATION
+from flankfilm.stages.mesh import MESH, PAIR, PLAN, decided
 from flankfilm.stages.ranges import frequency_range
 
 

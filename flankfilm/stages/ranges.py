@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from flankfilm import coupling
-from flankfilm.build import pinion_torque
-from flankfilm.scene.dynamics import DynamicsSection
-from flankfilm.scene.section import required
-from flankfilm.stages.catalogue import MESH, PAIR
+from flankfilm.build.pair import pinion_torque
+from flankfilm.scene.sections.dynamics import DynamicsSection
+from flankfilm.scene.sections.section import required
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import MESH, PAIR
 
 
 def frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, float] | None:

@@ -9,16 +9,16 @@ import numpy as np
 
 from base import InputError
 from flankfilm import coupling
-from flankfilm.build import pinion_speed, pinion_torque
-from flankfilm.build_film import film_model, lubricant
-from flankfilm.build_shafts import drive_arguments
-from flankfilm.scene.dynamics import OSCILLATOR
-from flankfilm.scene.section import required
-from flankfilm.stages.catalogue import DRY_CYCLE, FILM, MESH, PAIR, PLAN, TEETH, loaded_teeth, with_arcs
+from flankfilm.build.film import film_model, lubricant
+from flankfilm.build.pair import pinion_speed, pinion_torque
+from flankfilm.build.shafts import drive_arguments
+from flankfilm.scene.sections.dynamics import OSCILLATOR
+from flankfilm.scene.sections.section import required
 from flankfilm.stages.damping import FILM_DAMPING, damping_ratio
 from flankfilm.stages.drives import DRIVE, moving
 from flankfilm.stages.engine import Engine, stage
 from flankfilm.stages.excitation import EXCITATION, REVOLUTION_ERROR
+from flankfilm.stages.mesh import DRY_CYCLE, FILM, MESH, PAIR, PLAN, TEETH, loaded_teeth, with_arcs
 from flankfilm.stages.motion import BRANCHES, FOURIER, SCALING, by_jumps, dynamics_of, ranged
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from flankfilm.progress import Progress, silent
-from flankfilm.stages.catalogue import COMPLIANCE, PAIR, loaded_contact
+from flankfilm.processes.progress import Progress, silent
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import COMPLIANCE, PAIR, loaded_contact
 
 STEPS = 20
 """Positions of the time series: enough for a smooth film of one base pitch."""

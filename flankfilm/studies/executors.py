@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from base import InputError
-from flankfilm.children import ends_later, environment, on_its_way, work_until_told
+from flankfilm.processes.worker_processes import ends_later, environment, on_its_way, work_until_told
 
 if TYPE_CHECKING:
     from dask.distributed import Client
@@ -104,7 +104,11 @@ def _dask(workers: int) -> Iterator[Pool]:
     # an address of no letters, which dask would take for one, is none
     address = os.environ.get("DASK_SCHEDULER_ADDRESS") or config.get("scheduler-address", None) or None
     with environment(**ONE_THREAD), _logging_as_before(), config.set({"scheduler-address": address}):
-        here = {"n_workers": workers, "threads_per_worker": 1, "preload": "flankfilm.children"}
+        here = {
+            "n_workers": workers,
+            "threads_per_worker": 1,
+            "preload": "flankfilm.processes.worker_processes",
+        }
         try:
             with Client(address) if address else Client(**here) as client:
                 try:

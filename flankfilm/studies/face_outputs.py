@@ -12,13 +12,13 @@ import fem
 from base import Figure
 from base.results import figures
 from fem.stress.root_peaks import RootPeak
-from flankfilm.build_face import varies_by
+from flankfilm.build.face import varies_by
 from flankfilm.coupling.mesh.face_models import LABELS, FaceLoadModels
 from flankfilm.coupling.mesh.face_tolerance import FaceTolerance
 from flankfilm.figures.reading import GEARS
-from flankfilm.stages.catalogue import DRY_CYCLE, ROOT_STRESS
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.face import FACE_MODELS, FACE_TOLERANCE
+from flankfilm.stages.mesh import DRY_CYCLE, ROOT_STRESS
 from flankfilm.studies.output import Named, Take, model_error_of, output_of
 from gears.closed_form import Iso6336FaceLoad
 

@@ -70,7 +70,7 @@ def write_study(study_results: StudyResults, folder: Path) -> list[Path]:
     from flankfilm.figures import study
     from flankfilm.figures.studies import varied_numbers
     from flankfilm.figures.style import save
-    from flankfilm.report.other_pages import write_study_page
+    from flankfilm.studies.page import write_study_page
 
     files = [folder / "study.nc"]
     content = dataset(study_results)

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 from base import InputError
-from flankfilm.cache import PACKAGES, code_digest
-from flankfilm.folder import claim, locked, refuse_irregular
+from flankfilm.files.cache import PACKAGES, code_digest
+from flankfilm.files.folder import claim, locked, refuse_irregular
 from flankfilm.output.files import write_text
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.table import ROWS, Columns, Line, append, forget, read_lines

@@ -16,16 +16,16 @@ import gears
 from base import Figure
 from base.results import figures
 from ehl.discrete.regimes import NUMBERS, regime_number
-from flankfilm.build import pinion_speed, pinion_torque
+from flankfilm.build.pair import pinion_speed, pinion_torque
 from flankfilm.coupling.films.along_path import FilmAlongPath
 from flankfilm.coupling.films.lubricated_record import LubricatedCycle
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS
-from flankfilm.figures.drawn import SLIDING
 from flankfilm.figures.reading import PER_FACE
+from flankfilm.output.drawing_data import SLIDING
 from flankfilm.output.variables import sentence
-from flankfilm.stages.catalogue import FILM, HEAT, MESH, PAIR, ROOT_STRESS, VERIFICATION
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import FILM, HEAT, MESH, PAIR, ROOT_STRESS, VERIFICATION
 from flankfilm.studies.face_outputs import FACE_OUTPUTS
 from flankfilm.studies.loss_outputs import LOSS_OUTPUTS
 from flankfilm.studies.motion_outputs import MOTION_OUTPUTS

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from base import Fault, Faults, InputError
-from flankfilm.scene.flank_files import names_a_file, read_flank_files, without_curves
 from flankfilm.scene.reader import parse_toml, read_text, validated
+from flankfilm.scene.tables.flank_files import names_a_file, read_flank_files, without_curves
 from flankfilm.studies.design import following, rows_of
 from flankfilm.studies.outputs import OUTPUTS
 from flankfilm.studies.study_file import StudyFile, Value, in_file, read_rows_file

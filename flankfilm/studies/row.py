@@ -74,7 +74,7 @@ def failed(row: Row, fault: str, seconds: float = 0.0) -> RowResult:
 def compute_row(row: Row) -> RowResult:
     """Compute the outputs of a row; whatever goes wrong becomes its fault, and leaves the other outputs."""
     from base import InputError, SolverError
-    from flankfilm.cache import keep_compiled_code, results_cache
+    from flankfilm.files.cache import keep_compiled_code, results_cache
 
     keep_compiled_code()
     from flankfilm.scene.reader import validated

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from base import Faults, plot, view
+from flankfilm.figures.views import register
 from flankfilm.output.files import cell
 from flankfilm.studies.execution import Execution, Progress
 from flankfilm.studies.kept import Work, kept_rows
 from flankfilm.studies.plan import Plan
 from flankfilm.studies.row import Row, RowResult
 from flankfilm.studies.table import ROWS, WITHOUT_IT, Columns, Line
-from flankfilm.views import register
 
 
 def refuse_unknown(folder: Path, lines: Iterable[Line], plan: Plan) -> None:

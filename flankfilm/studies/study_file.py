@@ -13,7 +13,7 @@ from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 from base import Fault, Faults, InputError
 from flankfilm.scene.explain import explain_all
 from flankfilm.scene.reader import parse_toml, read_text, refuse_long_lists
-from flankfilm.scene.section import Section, refused
+from flankfilm.scene.sections.section import Section, refused
 
 MOST_ROWS = 1_000_000
 

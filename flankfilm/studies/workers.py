@@ -8,7 +8,7 @@ from contextlib import ExitStack
 from queue import SimpleQueue
 from types import TracebackType
 
-from flankfilm.children import ends_later
+from flankfilm.processes.worker_processes import ends_later
 from flankfilm.studies.executors import Kind, Pool, executor
 from flankfilm.studies.row import NOT_COMPUTED, Row, RowResult, compute_row, failed
 

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import gears
 from base import Fault, InputError
-from flankfilm.build_face import faults_of_face, varies_by
-from flankfilm.cache import results_cache
+from flankfilm.build.face import faults_of_face, varies_by
 from flankfilm.coupling import Verification
-from flankfilm.folder import claim
-from flankfilm.progress import Progress, in_steps, silent
+from flankfilm.files.cache import results_cache
+from flankfilm.files.folder import claim
+from flankfilm.processes.progress import Progress, in_steps, silent
 from flankfilm.scene import Scene
-from flankfilm.stages.catalogue import PAIR, VERIFICATION
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.face import FACE_MODELS
+from flankfilm.stages.mesh import PAIR, VERIFICATION
 
 OF_OTHERS = ("wants", "film.meniscus_half_widths", "film.stiffness", "dynamics.damping_ratio")
 """Where faults of a face stand that no verification is concerned with."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from base.results import EXACT
 from flankfilm.coupling.mesh.verification import Curves, Verification
-from flankfilm.figures.drawn import outlines, points
+from flankfilm.output.drawing_data import outlines, points
 from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.variables import identifier, merged, of_models, of_quantities, of_record
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def table(verification: Verification, reference: Curves) -> Table:
     """Tabulate every model against one reference: a row for each figure."""
     from flankfilm.figures.reading import unit_text
-    from flankfilm.report.other_pages import compared, compared_with
+    from flankfilm.verification.page import compared, compared_with
 
     name = reference.label
     heads = "figure", "unit", "finite elements", *(model.label for model in verification.models)
@@ -99,7 +99,7 @@ def write_verification(comparison: Verification, scene: Scene, folder: Path) -> 
     """Write curves and differences as netCDF and CSV, the figure, and a page with all; return the files."""
     from flankfilm.figures import verification
     from flankfilm.figures.style import save
-    from flankfilm.report.other_pages import write_verification_page
+    from flankfilm.verification.page import write_verification_page
 
     held, files = dataset(comparison, scene), [folder / f"verify.{suffix}" for suffix in ("nc", "svg")]
     write_netcdf(files[0], held)

@@ -23,7 +23,8 @@ WORK = (
     "@kernel\ndef more(x):\n    return twice(x) + 1.0\n"
 )
 MORE = (
-    "import sys; sys.path.insert(0, sys.argv[1]); from flankfilm.cache import keep_compiled_code; keep_compiled_code();"
+    "import sys; sys.path.insert(0, sys.argv[1]);"
+    "from flankfilm.files.cache import keep_compiled_code; keep_compiled_code();"
     "from dynamics.kernels.work import more; print(more(3.0), sum(more.stats.cache_hits.values()))"
 )
 

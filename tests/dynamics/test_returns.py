@@ -68,7 +68,7 @@ def test_the_picture_of_a_branch_draws_all_points_of_an_orbit(found: dynamics.Di
 
 def points_of(record: Any) -> set[tuple[float, ...]]:
     """All points of a record's picture, rounded."""
-    from flankfilm.views import register
+    from flankfilm.figures.views import register
 
     register()
     lines = record.plot().axes[0].lines

@@ -12,7 +12,7 @@ import time
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 
-from flankfilm.children import answering_signals
+from flankfilm.processes.worker_processes import answering_signals
 from flankfilm.studies import workers
 from flankfilm.studies.executors import Pool
 from flankfilm.studies.row import Row, RowResult

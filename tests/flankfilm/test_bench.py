@@ -22,12 +22,12 @@ from flankfilm.bench.gear_cases import enclosed_area, independent_pairs
 from flankfilm.bench.machine import this_machine
 from flankfilm.bench.measuring import Row, gain, measure, timed
 from flankfilm.bench.peers import ask
+from flankfilm.bench.pictures import error_against_cost
 from flankfilm.bench.run import Bench, bench
 from flankfilm.bench.stepwise_cases import stepwise
 from flankfilm.bench.tables import clock, number, read_bench, remarks, summaries, write_tables
 from flankfilm.bench.work_cases import work_contact, work_film, work_geometry
 from flankfilm.coupling import mesh_cycle
-from flankfilm.figures.bench import error_against_cost
 from tests.flankfilm.program import flankfilm
 
 

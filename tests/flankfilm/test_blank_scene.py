@@ -5,15 +5,15 @@ from __future__ import annotations
 import pytest
 
 from base import InputError
-from flankfilm.build import gear_pair
-from flankfilm.cache import Cache
+from flankfilm.build.pair import gear_pair
+from flankfilm.files.cache import Cache
 from flankfilm.plan.stiffness_choice import teeth
 from flankfilm.scene import parse_scene
-from flankfilm.scene.gears import HubSection
 from flankfilm.scene.plain_gears import held_on_hubs
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import COMPLIANCE
+from flankfilm.scene.sections.gears import HubSection
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import COMPLIANCE
 from flankfilm.studies.plan import read_plan
 from tests.flankfilm.program import EXAMPLES
 

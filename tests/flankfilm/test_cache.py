@@ -18,10 +18,10 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from scipy.interpolate import RectBivariateSpline
 
 from base.files import replacing
-from flankfilm.cache import PACKAGES, Cache, CacheWarning, code_digest, results_cache
 from flankfilm.coupling.losses.heated_table import HeatedTable
+from flankfilm.files.cache import PACKAGES, Cache, CacheWarning, code_digest, results_cache
+from flankfilm.files.plain_data import NotPlainDataError, read, written
 from flankfilm.output.files import write_text
-from flankfilm.plain_data import NotPlainDataError, read, written
 
 
 def test_a_kept_value_comes_back(tmp_path):
@@ -103,7 +103,7 @@ def test_no_entry_runs_code(tmp_path):
     [
         ("os", "system"),
         ("subprocess", "Popen"),
-        ("flankfilm.cache", "Path"),
+        ("flankfilm.files.cache", "Path"),
         ("base.units", "factor"),
         ("gears", "x"),
     ],

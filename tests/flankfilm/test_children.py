@@ -12,7 +12,14 @@ from pathlib import Path
 
 import pytest
 
-from flankfilm.children import Ended, answering_signals, ends_later, environment, module, python
+from flankfilm.processes.worker_processes import (
+    Ended,
+    answering_signals,
+    ends_later,
+    environment,
+    module,
+    python,
+)
 from tests.flankfilm.program import SCRIPT
 from tests.processes import MARK, PATIENCE, left_after, marked, new_mark
 
@@ -182,7 +189,7 @@ def test_an_end_that_a_destructor_swallowed_is_asked_for_again(monkeypatch, name
 
 
 def test_an_end_that_something_else_swallowed_is_asked_for_again(monkeypatch):
-    monkeypatch.setattr("flankfilm.children.AGAIN", 0.2)
+    monkeypatch.setattr("flankfilm.processes.worker_processes.AGAIN", 0.2)
 
     def work() -> None:
         with answering_signals():
@@ -209,7 +216,7 @@ def test_an_end_waits_for_what_must_not_be_left_half_way():
 
 
 def test_an_end_that_is_asked_for_again_waits_too(monkeypatch):
-    monkeypatch.setattr("flankfilm.children.AGAIN", 0.1)
+    monkeypatch.setattr("flankfilm.processes.worker_processes.AGAIN", 0.1)
     done = []
 
     def start() -> None:
@@ -270,7 +277,7 @@ READS = ("timeit", "-n", "1", "-s", "import time; print(1, flush=True)", "time.s
 def test_a_module_that_is_run_ends_with_its_parent():
     mark = new_mark()
     parent = (
-        "import subprocess, time; from flankfilm.children import module, python; "
+        "import subprocess, time; from flankfilm.processes.worker_processes import module, python; "
         f"child = subprocess.Popen(python(*module(*{READS}))); time.sleep(60)"
     )
     started = subprocess.Popen(
@@ -288,7 +295,9 @@ def test_a_module_that_is_run_ends_with_its_parent():
 def test_a_module_whose_parent_died_before_it_began_ends_at_once():
     parent, *rest = module(*READS)[2:]
     assert parent == str(os.getpid())
-    begun = subprocess.run(python("-m", "flankfilm.children", "1", *rest), timeout=PATIENCE, check=False)
+    begun = subprocess.run(
+        python("-m", "flankfilm.processes.worker_processes", "1", *rest), timeout=PATIENCE, check=False
+    )
     assert begun.returncode == 1
 
 
@@ -297,8 +306,8 @@ def test_a_worker_of_dask_says_nothing_of_a_scheduler_that_has_gone():
     said = subprocess.run(
         python(
             "-c",
-            "import logging, flankfilm.children\n"
-            "flankfilm.children.dask_setup(None)\n"
+            "import logging, flankfilm.processes.worker_processes\n"
+            "flankfilm.processes.worker_processes.dask_setup(None)\n"
             "for error in (ConnectionResetError('gone'), MemoryError('full')):\n"
             "    try:\n"
             "        raise error\n"

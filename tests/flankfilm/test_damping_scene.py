@@ -10,13 +10,13 @@ import pytest
 import ehl
 import gears
 from base import InputError
-from flankfilm.cache import Cache
 from flankfilm.coupling import film_damping, pair_drive
-from flankfilm.running import run_scene
+from flankfilm.files.cache import Cache
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import MESH, PAIR
 from flankfilm.stages.damping import FILM_DAMPING
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import MESH, PAIR
 from flankfilm.stages.motion import SCALING
 from tests.flankfilm.scenes import PAIR_WITH_BACKLASH
 

@@ -14,20 +14,20 @@ from scipy.integrate import solve_ivp
 
 from base import Cost, SolverError
 from dynamics import FourierStiffness
-from flankfilm.build import gear_pair
-from flankfilm.cache import Cache
-from flankfilm.check import check_scene
+from flankfilm.build.pair import gear_pair
 from flankfilm.coupling.vibration.series import LeftOut, MeshSeries, least_order, left_out
+from flankfilm.files.cache import Cache
 from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.decisions import Decision, order_decision
 from flankfilm.plan.film_choice import FORMULA_OFF, MOST_OF_FORESEEN, FilmChange
 from flankfilm.plan.stiffness_choice import LARGEST_DIFFERENCE
 from flankfilm.report.contents import summary
-from flankfilm.running import run_scene
+from flankfilm.runs.check import check_scene
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import Scene, parse_scene, read_scene, template
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import BODIES, DRY_CYCLE, FILM, FILM_FORESEEN, PLAN
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import BODIES, DRY_CYCLE, FILM, FILM_FORESEEN, PLAN
 
 TOLERANCES = (0.4, 0.2, 0.05, 0.01, 0.005, 0.001, 1e-4)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from flankfilm.running import run_scene
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from tests.flankfilm.scenes import PAIR_WITH_BACKLASH
 

@@ -23,8 +23,8 @@ import xarray as xr
 from rich.console import Console
 
 from base import Fault
-from flankfilm.check import check_scene
 from flankfilm.cli import app
+from flankfilm.runs.check import check_scene
 from flankfilm.scene import read_scene
 from tests.flankfilm.program import EXAMPLES, SCRIPT, flankfilm
 from tests.validation.article import ISHIKAWA_MEAN, PER_MM_UM

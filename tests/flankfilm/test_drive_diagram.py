@@ -14,7 +14,7 @@ from flankfilm.coupling.speeds import jump_errors, jumps
 from flankfilm.coupling.vibration.series import mesh_series
 from flankfilm.output.run import results_tables
 from flankfilm.report.contents import HEADLINES, PARTS
-from flankfilm.running import run_scene
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from gears import Bearing, Shaft, ShaftSegment
 from tests.dynamics.test_drives import same_as

@@ -15,18 +15,18 @@ import dynamics.motion.run_ups
 import fem
 from base import InputError
 from flankfilm import figures
-from flankfilm.beforehand import refuse
-from flankfilm.cache import Cache
+from flankfilm.build.preflight import refuse
 from flankfilm.coupling import drive_sweep, mesh_cycle, mesh_series, pair_drive
 from flankfilm.coupling.speeds.truncation import with_order
+from flankfilm.files.cache import Cache
 from flankfilm.output.run import results_tables
 from flankfilm.report.contents import HEADLINES, PARTS
-from flankfilm.running import run_scene
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import Scene, parse_scene
-from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FILM
-from flankfilm.stages.catalogue import PAIR as PAIR_STAGE
 from flankfilm.stages.drives import DRIVE, DRIVE_SWEEP
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FILM
+from flankfilm.stages.mesh import PAIR as PAIR_STAGE
 from flankfilm.studies.outputs import OUTPUTS
 from flankfilm.studies.plan import plan_of
 from flankfilm.studies.study_file import StudyFile
@@ -150,7 +150,7 @@ def test_a_train_is_in_tables_report_and_outputs(train):
 
 def test_a_sweep_shows_what_it_has_done(train, monkeypatch):
     """Speeds up and down, then parts whose peaks are sought, then motions with the longer series, each to its end."""
-    monkeypatch.setattr("flankfilm.progress.PATIENCE", 0.0)
+    monkeypatch.setattr("flankfilm.processes.progress.PATIENCE", 0.0)
     shown: list[tuple[str, int, int]] = []
     engine = Engine(parse_scene(TRAIN), Cache(None), progress=lambda *one: shown.append(one))
     engine._values.update({name: one for name, one in train.values.items() if name != "drive sweep"})

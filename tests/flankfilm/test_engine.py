@@ -8,14 +8,15 @@ import warnings
 import numpy as np
 import pytest
 
-from flankfilm.cache import Cache
 from flankfilm.coupling.films.film_law import FilmLaw
-from flankfilm.running import run_scene
+from flankfilm.files.cache import Cache
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import Scene, parse_scene, template
-from flankfilm.stages import catalogue, drives, motion, speeds
-from flankfilm.stages.catalogue import FILM
+from flankfilm.stages import drives, motion, speeds
+from flankfilm.stages import mesh as catalogue
 from flankfilm.stages.engine import Engine, KeptPart, Stage, StageRun
 from flankfilm.stages.goals import goals
+from flankfilm.stages.mesh import FILM
 from tests.flankfilm.scenes import CLOSED_FORMS_WITH_FILM
 
 

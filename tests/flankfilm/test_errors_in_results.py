@@ -7,7 +7,7 @@ import re
 import pytest
 
 from base import Cost
-from flankfilm.cache import Cache, results_cache
+from flankfilm.files.cache import Cache, results_cache
 from flankfilm.output.run import results_dataset
 from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine

@@ -11,7 +11,7 @@ import pytest
 
 from flankfilm.cli import app
 from flankfilm.exchange.profile_files import write_drawing, write_points
-from flankfilm.guarded import guarded
+from flankfilm.processes.exit_status import guarded
 from gears import Gear, GearPair
 from gears.tooth.contour import contour
 

@@ -9,8 +9,8 @@ import pytest
 
 from base import InputError
 from flankfilm import figures
-from flankfilm.cache import Cache
-from flankfilm.running import run_scene
+from flankfilm.files.cache import Cache
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.excitation import EXCITATION

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from base import InputError
-from flankfilm.cache import Cache
+from flankfilm.files.cache import Cache
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import COMPLIANCE
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import COMPLIANCE
 from tests.flankfilm.program import EXAMPLES, flankfilm
 
 EXAMPLE = EXAMPLES / "article.toml"

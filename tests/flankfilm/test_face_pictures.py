@@ -12,8 +12,8 @@ from PIL import Image
 
 from base import InputError
 from flankfilm.figures import Frame, animate_cycle, tooth_picture
-from flankfilm.figures.view import titled
-from flankfilm.running import run_scene
+from flankfilm.figures.rendering.view import titled
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from tests.flankfilm.test_report_animation import drawn
 

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from flankfilm.beforehand import refuse
-from flankfilm.cache import Cache
+from flankfilm.build.preflight import refuse
+from flankfilm.files.cache import Cache
 from flankfilm.output.run import results_dataset
 from flankfilm.report import mesh_parts
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import DRY_CYCLE, FILM, MESH, PAIR, ROOT_STRESS
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import DRY_CYCLE, FILM, MESH, PAIR, ROOT_STRESS
 from flankfilm.studies.outputs import OUTPUTS
 from tests.flankfilm.scenes import ishikawa
 

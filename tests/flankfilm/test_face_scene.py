@@ -12,19 +12,19 @@ import pytest
 from base import InputError
 from fem import forget_gears
 from flankfilm import figures
-from flankfilm.beforehand import refuse
-from flankfilm.build import gear_pair
-from flankfilm.build_face import even_along_face, face, varies_by
-from flankfilm.cache import Cache
+from flankfilm.build.face import even_along_face, face, varies_by
+from flankfilm.build.pair import gear_pair
+from flankfilm.build.preflight import refuse
 from flankfilm.coupling.mesh.face_models import _linear
+from flankfilm.files.cache import Cache
 from flankfilm.output.run import results_dataset, results_tables
 from flankfilm.report import face_parts, film_parts, mesh_parts
 from flankfilm.scene import parse_scene
 from flankfilm.scene.plain_gears import plain_flanks
-from flankfilm.stages.catalogue import DRY_CYCLE, FACE_GEARS, FILM, PAIR, ROOT_STRESS
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.face import FACE_MODELS
 from flankfilm.stages.goals import goals
+from flankfilm.stages.mesh import DRY_CYCLE, FACE_GEARS, FILM, PAIR, ROOT_STRESS
 from flankfilm.studies.outputs import OUTPUTS
 from gears import Alignment, Lead, closed_form
 from tests.flankfilm.scenes import ishikawa

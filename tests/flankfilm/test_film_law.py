@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from ehl import LineContact, Lubricant, Meniscus, solve
-from flankfilm.cache import Cache
 from flankfilm.coupling.films.film_law import FilmLaw, HeldMeniscus
+from flankfilm.files.cache import Cache
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import FILM
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import FILM
 
 
 def law(

@@ -8,12 +8,12 @@ import pytest
 
 from base import InputError, RangeWarning
 from ehl import Barus, ConstantViscosity, LineContact, Meniscus, OilLayer
-from flankfilm.build_film import film_model, lubricant, roughness
+from flankfilm.build.film import film_model, lubricant, roughness
 from flankfilm.coupling.films import films
 from flankfilm.scene import parse_scene, template
-from flankfilm.scene.ground import under_keys
-from flankfilm.stages.catalogue import PLAN
+from flankfilm.scene.sections.ground import under_keys
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import PLAN
 
 _OIL = ("viscosity_Pa_s", "pressure_viscosity_per_GPa", "density_kg_per_m3 = 910")
 NUMBERS = "".join(line for line in template().splitlines(keepends=True) if line.startswith(_OIL))
@@ -186,7 +186,7 @@ def test_auto_solves_what_no_formula_knows(film: str, monkeypatch):
     # the whole tolerance is the film's: no share of it for the order of a series
     assert 'fourier_order = "auto"' in text
     text = text.replace('fourier_order = "auto"', "fourier_order = 1")
-    from flankfilm.cache import Cache
+    from flankfilm.files.cache import Cache
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -195,7 +195,7 @@ def test_auto_solves_what_no_formula_knows(film: str, monkeypatch):
 
 
 def test_a_wanted_film_is_solved_without_a_film_section():
-    from flankfilm.cache import Cache
+    from flankfilm.files.cache import Cache
 
     text = template()
     scene = parse_scene(f"{text[: text.index('[film]')]}{text[text.index('[dynamics]') :]}")

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from base import InputError
-from flankfilm.cache import Cache
 from flankfilm.coupling import LubricatedCycle
+from flankfilm.files.cache import Cache
 from flankfilm.report.film_parts import headlines
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import FILM
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import FILM
 from tests.flankfilm.scenes import ARTICLE
 
 SCENE = f"""

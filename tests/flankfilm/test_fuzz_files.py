@@ -32,17 +32,17 @@ import xarray as xr
 
 from base import FlankfilmError
 from fem import forget_gears
-from flankfilm.cache import Cache
-from flankfilm.check import check_scene
 from flankfilm.exchange.bring_in import imported
-from flankfilm.exchange.trace_files import read_curves
-from flankfilm.figures.animation import Frame, _view
-from flankfilm.manifest import conclude
+from flankfilm.figures.rendering.animation import Frame, _view
+from flankfilm.files.cache import Cache
+from flankfilm.files.manifest import conclude
 from flankfilm.optimisation.task import read_task
 from flankfilm.output.files import write_netcdf
-from flankfilm.reproduce import scene_in
-from flankfilm.running import run_scene
+from flankfilm.output.reproduce import scene_in
+from flankfilm.runs.check import check_scene
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene, read_scene, template
+from flankfilm.scene.tables.trace_files import read_curves
 from flankfilm.studies.execution import Execution
 from flankfilm.studies.kept import Work, kept_rows
 from flankfilm.studies.plan import read_plan
@@ -285,7 +285,7 @@ class Results(Kind):
         with suppress(*suppressed):
             scene_in(path)
         # the files for ParaView are not looked into, which would take as long as a hundred reads
-        looked_into = patch("flankfilm.figures.animation._stress_where", return_value=1e8)
+        looked_into = patch("flankfilm.figures.rendering.animation._stress_where", return_value=1e8)
         with suppress(*suppressed), looked_into:
             _view(self.folder, Frame())
 

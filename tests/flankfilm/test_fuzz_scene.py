@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from pydantic import BaseModel
 
 from base import InputError
-from flankfilm.check import check_scene
+from flankfilm.runs.check import check_scene
 from flankfilm.scene import Scene, parse_scene, template
 from flankfilm.studies.plan import read_plan
 from flankfilm.studies.study_file import StudyFile

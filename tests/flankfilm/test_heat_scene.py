@@ -9,12 +9,12 @@ import pytest
 
 from base import InputError
 from flankfilm import coupling
-from flankfilm.build import gear_pair
-from flankfilm.cache import Cache
+from flankfilm.build.pair import gear_pair
 from flankfilm.coupling.mesh.flanks import PLAIN_FLANKS
+from flankfilm.files.cache import Cache
 from flankfilm.scene.reader import parse_scene
-from flankfilm.stages.catalogue import HEAT, PAIR, loaded_teeth
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import HEAT, PAIR, loaded_teeth
 
 WARM = """
 wants = ["geometry"]

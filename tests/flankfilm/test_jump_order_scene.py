@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import pytest
 
 from flankfilm import coupling
-from flankfilm.cache import Cache
+from flankfilm.files.cache import Cache
 from flankfilm.plan.decisions import decisions
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import FILM
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import FILM
 from flankfilm.stages.motion import BRANCHES, FOURIER, SCALING
 from flankfilm.stages.speeds import DIAGRAM
 from tests.flankfilm.scenes import PAIR_WITH_BACKLASH

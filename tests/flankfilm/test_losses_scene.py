@@ -14,19 +14,19 @@ import pytest
 import ehl
 from base import InputError, SolverError
 from flankfilm import coupling, figures
-from flankfilm.build import gear_pair
-from flankfilm.build_heat import shearing_oil, solids, warmth
-from flankfilm.cache import Cache
+from flankfilm.build.heat import shearing_oil, solids, warmth
+from flankfilm.build.pair import gear_pair
+from flankfilm.files.cache import Cache
 from flankfilm.output.run import results_dataset, results_tables
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.plan.heat_choice import heat_choice
 from flankfilm.report import losses_parts
 from flankfilm.report.text import percent
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import FILM, PAIR
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.goals import goals
 from flankfilm.stages.losses import HEAT_CHOICE, HOT_CONTACT, HOT_FILM, LOSSES
+from flankfilm.stages.mesh import FILM, PAIR
 from flankfilm.studies.output_errors import ERROR_OF
 from flankfilm.studies.outputs import OUTPUTS
 

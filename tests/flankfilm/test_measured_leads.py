@@ -9,9 +9,9 @@ import pytest
 import xarray as xr
 
 from base import InputError
-from flankfilm.build import gear_pair
-from flankfilm.build_face import varies_by
-from flankfilm.build_flanks import deviations
+from flankfilm.build.face import varies_by
+from flankfilm.build.flanks import deviations
+from flankfilm.build.pair import gear_pair
 from flankfilm.scene import parse_scene
 from gears import GeometryWarning
 from tests.flankfilm.program import flankfilm

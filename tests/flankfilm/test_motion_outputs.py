@@ -9,7 +9,7 @@ import pytest
 
 import dynamics
 from base import InputError
-from flankfilm.cache import Cache
+from flankfilm.files.cache import Cache
 from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine
 from flankfilm.studies.outputs import OUTPUTS

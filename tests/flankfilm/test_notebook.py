@@ -8,9 +8,8 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from flankfilm.cli import app
-from flankfilm.exchange.commands import completion
-from flankfilm.running import run_scene
+from flankfilm.cli import app, completion
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from flankfilm.studies.plan import plan_of
 from flankfilm.studies.row import RowResult

@@ -19,12 +19,12 @@ from fem import FaceLoads, RootStress
 from fem.stress.gear_root import GearRootStress
 from flankfilm.coupling import MeshCycle, MeshLosses, MeshSeries, PairOscillator
 from flankfilm.coupling.speeds.drive_sweep import DriveSweep
+from flankfilm.outcome.results import Results
 from flankfilm.output.model_errors import MODEL_ERRORS
 from flankfilm.output.uncertainty import Uncertainty, met
 from flankfilm.report.contents import headlines, misses, summary
 from flankfilm.report.mesh_parts import stiffness
 from flankfilm.report.text import off, percent
-from flankfilm.results import Results
 from flankfilm.stages.engine import Stage
 from flankfilm.studies.output_errors import ERROR_OF, MODEL_ERROR_OF
 from flankfilm.studies.outputs import OUTPUTS

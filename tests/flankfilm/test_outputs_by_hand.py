@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from flankfilm.cache import Cache
+from flankfilm.files.cache import Cache
 from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine
 from flankfilm.studies.outputs import OUTPUTS

@@ -10,12 +10,12 @@ import pytest
 import flankfilm as ff
 from base import RangeWarning
 from dynamics import diagram
-from flankfilm.check import check_scene
 from flankfilm.coupling.mesh.warn_once import distinct
 from flankfilm.figures.reading import words
 from flankfilm.report.page import Head, Part, Table, render
 from flankfilm.report.pair_parts import printed
 from flankfilm.report.text import percent, plus_minus
+from flankfilm.runs.check import check_scene
 from flankfilm.scene import parse_scene
 from flankfilm.studies.study_file import Range
 from tests.validation.article_motion import lubricated

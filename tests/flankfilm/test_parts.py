@@ -13,15 +13,15 @@ import xarray as xr
 import flankfilm as ff
 from base import PartWarning, SolverError
 from flankfilm import cli, coupling
-from flankfilm.cache import Cache
-from flankfilm.guarded import guarded
+from flankfilm.files.cache import Cache
 from flankfilm.output.uncertainty import Uncertainty
+from flankfilm.processes.exit_status import guarded
 from flankfilm.report.contents import headlines, misses, summary
 from flankfilm.report.page import Headline
-from flankfilm.running import run_scene
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import DRY_CYCLE, FILM, PAIR
 from flankfilm.stages.engine import Engine, Stage, StageRun
+from flankfilm.stages.mesh import DRY_CYCLE, FILM, PAIR
 from flankfilm.stages.motion import FOURIER
 from flankfilm.studies.row import Row, compute_row
 from tests.flankfilm.scenes import CLOSED_FORMS_WITH_FILM as SCENE
@@ -112,7 +112,7 @@ def test_a_run_without_any_result_raises_and_writes_nothing(without_film, tmp_pa
 
 
 def test_fields_that_cannot_be_written_leave_the_rest(tmp_path, monkeypatch):
-    import flankfilm.running as running
+    import flankfilm.runs.run_scene as running
 
     def write_fields(*_):
         raise SolverError("no field; refine")

@@ -10,8 +10,8 @@ from base.results import EXACT
 from fem import FaceLoads, MeshCycle, compliance, mesh_cycle
 from flankfilm.figures.face import FlankMap, face_load_factor, flank_map
 from flankfilm.figures.reading import Reading, read_figure
+from flankfilm.figures.views import register
 from flankfilm.output.variables import figure_of, of_quantities, of_record
-from flankfilm.views import register
 from gears import Alignment, Gear, GearPair
 
 register()

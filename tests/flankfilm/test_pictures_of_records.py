@@ -16,10 +16,10 @@ import flankfilm as ff
 from base import InputError, has_picture, plot
 from base.views import GROUP
 from flankfilm.figures.film import film_along_path
+from flankfilm.figures.views import MODULES, PICTURES, VIEWS, register
 from flankfilm.report.contents import _asked
-from flankfilm.running import run_scene
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
-from flankfilm.views import MODULES, PICTURES, VIEWS, register
 from gears import Gear, GearPair, closed_form, dimensions
 from tests.flankfilm.scenes import CLOSED_FORMS_WITH_FILM, ishikawa
 
@@ -129,7 +129,9 @@ def test_the_ground_packages_load_what_draws_by_an_entry_point_alone(tmp_path):
     about = tmp_path / "drawers-1.0.dist-info"
     about.mkdir()
     (about / "METADATA").write_text("Metadata-Version: 2.1\nName: drawers\nVersion: 1.0\n", encoding="utf-8")
-    (about / "entry_points.txt").write_text(f"[{GROUP}]\na = flankfilm.views:register\n", encoding="utf-8")
+    (about / "entry_points.txt").write_text(
+        f"[{GROUP}]\na = flankfilm.figures.views:register\n", encoding="utf-8"
+    )
     subprocess.run([sys.executable, "-c", ALONE.format(folder=str(tmp_path))], check=True)
 
 
@@ -156,7 +158,7 @@ import matplotlib
 matplotlib.use("agg")
 from matplotlib import pyplot as plt
 from gears import Gear, GearPair
-from flankfilm.views import register
+from flankfilm.figures.views import register
 register()
 pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=0.04)
 figure = pair.path_of_contact(9).plot()

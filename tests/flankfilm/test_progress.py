@@ -9,9 +9,9 @@ import xarray as xr
 from numba import njit
 
 from base import hide_compilation
-from flankfilm.progress import compiling_line, console_progress, console_rows, row_lines, rows_of
+from flankfilm.processes.progress import compiling_line, console_progress, console_rows, row_lines, rows_of
 from flankfilm.report.contents import summary
-from flankfilm.running import run_scene
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 
 GEOMETRY = """

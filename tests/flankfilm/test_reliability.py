@@ -17,11 +17,11 @@ import pytest
 import xarray as xr
 
 from base import InputError
-from flankfilm.folder import claim, locked
-from flankfilm.manifest import conclude
+from flankfilm.files.folder import claim, locked
+from flankfilm.files.manifest import conclude
+from flankfilm.output.reproduce import scene_in
 from flankfilm.report.contents import summary
-from flankfilm.reproduce import scene_in
-from flankfilm.running import run_scene
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene, read_scene
 from flankfilm.studies.kept import Work, kept_rows
 from flankfilm.studies.table import Columns
@@ -192,7 +192,7 @@ class TestAFolderThatSomebodyPrepared:
          ("csv", "new"), ("results.nc", "folder"), ("report.html", "folder"), ("files.json", "folder")],
     )  # fmt: skip
     def test_a_run_refuses_it_before_it_computes(self, begun, name, how, monkeypatch):
-        monkeypatch.setattr("flankfilm.running._computed", lambda *_: pytest.fail("computed"))
+        monkeypatch.setattr("flankfilm.runs.run_scene._computed", lambda *_: pytest.fail("computed"))
         self.put(begun / name, how)
         with pytest.raises(InputError, match=re.escape(name)) as refused:
             run_scene(parse_scene(SMALL), begun)
@@ -315,7 +315,7 @@ def test_an_install_that_cannot_be_written_works(tmp_path, monkeypatch, text):
 
 
 def test_compiled_code_finds_a_place_where_no_cache_can_be_kept(monkeypatch):
-    from flankfilm.cache import keep_compiled_code
+    from flankfilm.files.cache import keep_compiled_code
 
     monkeypatch.setenv("FLANKFILM_CACHE", "/proc/none")
     monkeypatch.setenv("NUMBA_CACHE_DIR", "")

@@ -19,7 +19,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from base import Fault, InputError
-from flankfilm.beforehand import refuse
+from flankfilm.build.preflight import refuse
 from flankfilm.scene.reader import validated
 
 BASE = {
@@ -384,7 +384,7 @@ def numbers_of(model, path=""):
     from typing import get_origin
 
     from flankfilm.scene.explain import model_in
-    from flankfilm.scene.key import key_of
+    from flankfilm.scene.sections.key import key_of
 
     for name, field in model.model_fields.items():
         inner, about = model_in(field.annotation), key_of(field)
@@ -421,9 +421,9 @@ ROOMS = (
     "gears/pair/mesh_checks.py",
     "gears/tooth/blank.py",
     "gears/pair/thermal_expansion.py",
-    "flankfilm/beforehand.py",
-    "flankfilm/build_face.py",
-    "flankfilm/slow_motion.py",
+    "flankfilm/build/preflight.py",
+    "flankfilm/build/face.py",
+    "flankfilm/build/followed_speeds.py",
     "flankfilm/scene/needs.py",
 )
 MAKERS = {"add", "Fault", "at"}

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from base import InputError
-from flankfilm.folder import locked
+from flankfilm.files.folder import locked
 from flankfilm.optimisation.task import read_task
 from flankfilm.studies.execution import Execution
 from flankfilm.studies.executors import default_workers

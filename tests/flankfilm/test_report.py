@@ -17,32 +17,29 @@ import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from flankfilm import figures
-from flankfilm.cache import Cache
 from flankfilm.figures.style import PHONE, narrow, to_svg
+from flankfilm.files.cache import Cache
 from flankfilm.optimisation.files import dataset as optimum_dataset
 from flankfilm.optimisation.optimum import Evaluation, Optimum
+from flankfilm.optimisation.page import write_optimum_page
 from flankfilm.optimisation.task import read_task
+from flankfilm.outcome.results import Results
 from flankfilm.output.run import results_dataset, write_data
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.contents import write_report
-from flankfilm.report.other_pages import (
-    reference_facts,
-    write_optimum_page,
-    write_study_page,
-    write_verification_page,
-)
 from flankfilm.report.page import Head, Headline, render
 from flankfilm.report.run_parts import merged
-from flankfilm.results import Results
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import FIELDS, VERIFICATION
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.goals import goals
+from flankfilm.stages.mesh import FIELDS, VERIFICATION
 from flankfilm.studies.files import dataset as study_dataset
+from flankfilm.studies.page import reference_facts, write_study_page
 from flankfilm.studies.plan import plan_of
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.run import StudyResults
 from flankfilm.studies.study_file import StudyFile
+from flankfilm.verification.page import write_verification_page
 from flankfilm.verification.tables import dataset as verify_dataset
 
 SCENE = """

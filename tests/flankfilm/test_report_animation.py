@@ -16,13 +16,14 @@ from PIL import Image
 import fem
 from base import InputError, SolverError
 from fem.fields.vtk import write_vtk_series
-from flankfilm.cache import Cache
-from flankfilm.figures import Frame, animate_cycle, animation, tooth_picture
-from flankfilm.manifest import conclude
+from flankfilm.figures import Frame, animate_cycle, tooth_picture
+from flankfilm.figures.rendering.teeth import animation
+from flankfilm.files.cache import Cache
+from flankfilm.files.manifest import conclude
 from flankfilm.output.run import results_dataset, write_data
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FIELDS, MESH, PAIR
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FIELDS, MESH, PAIR
 from tests.flankfilm.program import flankfilm
 
 SCENE = """

@@ -12,11 +12,11 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from base import Fault, InputError
-from flankfilm.build import gear_pair
+from flankfilm.build.pair import gear_pair
 from flankfilm.optimisation.task import Limit, OptimisationFile
 from flankfilm.scene import Scene, parse_scene, read_scene, template
 from flankfilm.scene.explain import model_in
-from flankfilm.scene.key import key_of
+from flankfilm.scene.sections.key import key_of
 from flankfilm.studies.study_file import Follow, Range, StudyFile
 
 

@@ -7,8 +7,8 @@ import math
 import pytest
 
 from base import InputError
-from flankfilm.build import gear_pair
-from flankfilm.check import check_scene
+from flankfilm.build.pair import gear_pair
+from flankfilm.runs.check import check_scene
 from flankfilm.scene import parse_scene, template
 
 TORQUE = "pinion_torque_Nm = 600"

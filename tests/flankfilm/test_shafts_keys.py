@@ -3,13 +3,13 @@
 import pytest
 
 from base import InputError
-from flankfilm.cache import Cache
+from flankfilm.files.cache import Cache
 from flankfilm.scene import parse_scene, template
-from flankfilm.scene.key import key_of
-from flankfilm.scene.shafts import BearingSection, SegmentSection
+from flankfilm.scene.sections.key import key_of
+from flankfilm.scene.sections.shafts import BearingSection, SegmentSection
 from flankfilm.scene.toml import toml
-from flankfilm.stages.catalogue import DRY_CYCLE
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import DRY_CYCLE
 
 BEARINGS = "[{ position_mm = 20, stiffness_N_per_m = 4e8 }, { position_mm = 180, stiffness_N_per_m = 4e8 }]"
 SHAFT = (

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from base import InputError, SolverError
-from flankfilm.cache import Cache
+from flankfilm.files.cache import Cache
 from flankfilm.output.run import results_dataset, results_tables
 from flankfilm.report import drive_parts, face_parts
 from flankfilm.report.text import number
 from flankfilm.scene import parse_scene
-from flankfilm.stages.catalogue import DRY_CYCLE, PAIR
 from flankfilm.stages.drives import DRIVE
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import DRY_CYCLE, PAIR
 from flankfilm.studies.outputs import OUTPUTS
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

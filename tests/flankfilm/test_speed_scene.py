@@ -6,9 +6,9 @@ import pytest
 
 from base import InputError
 from flankfilm import figures
-from flankfilm.cache import Cache
+from flankfilm.files.cache import Cache
 from flankfilm.report.contents import PARTS
-from flankfilm.running import run_scene
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine
 from flankfilm.studies.outputs import OUTPUTS

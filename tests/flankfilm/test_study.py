@@ -16,7 +16,7 @@ import pytest
 import xarray as xr
 
 from base import InputError
-from flankfilm.folder import locked
+from flankfilm.files.folder import locked
 from flankfilm.studies.execution import Execution
 from flankfilm.studies.outputs import OUTPUTS
 from flankfilm.studies.plan import read_plan
@@ -119,7 +119,7 @@ class TestDesign:
 
 class TestRows:
     def test_rows_are_those_of_single_runs(self, tmp_path):
-        from flankfilm.build import gear_pair
+        from flankfilm.build.pair import gear_pair
         from flankfilm.scene.reader import validated
 
         plan = read_plan(study_file(tmp_path, SHIFTS))

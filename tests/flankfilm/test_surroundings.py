@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from base import InputError
-from flankfilm.folder import claim
-from flankfilm.guarded import LONGEST, MOST_FAULTS, SOLVER_FAULT, USER_FAULT, guarded
+from flankfilm.files.folder import claim
+from flankfilm.processes.exit_status import LONGEST, MOST_FAULTS, SOLVER_FAULT, USER_FAULT, guarded
 from flankfilm.scene import parse_scene, template
 from flankfilm.studies.execution import Execution
 from flankfilm.studies.plan import read_plan

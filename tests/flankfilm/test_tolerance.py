@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from flankfilm.coupling.mesh.tolerance import CostLaw, split, step_below
 from flankfilm.report.run_parts import decisions
-from flankfilm.running import run_scene
+from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from tests.flankfilm.scenes import CLOSED_FORMS_WITH_FILM
 

@@ -15,8 +15,8 @@ from flankfilm.output.variables import of_record, with_tolerance
 from flankfilm.report.film_parts import regime_said
 from flankfilm.report.page import Headline
 from flankfilm.report.text import off
-from flankfilm.stages.catalogue import FILM
 from flankfilm.stages.losses import LOSSES
+from flankfilm.stages.mesh import FILM
 from flankfilm.studies.outputs import OUTPUTS
 
 

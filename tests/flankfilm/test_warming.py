@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from flankfilm.progress import compiling_line
-from flankfilm.warming import PARTS, Warmed, warmed
+from flankfilm.processes.progress import compiling_line
+from flankfilm.warm_up import PARTS, Warmed, warmed
 
 ROOT = Path(__file__).resolve().parents[2]
 KERNEL = re.compile(r"^@(?:kernel|law_kernel|njit\(cache=True.*)\ndef (\w+)", re.MULTILINE)

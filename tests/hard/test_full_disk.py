@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from flankfilm.front import run
+from flankfilm.api import run
 from flankfilm.scene import parse_scene
 from tests.flankfilm.scenes import ishikawa
 from tests.processes import unwatched

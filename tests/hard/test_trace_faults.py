@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base import InputError
-from flankfilm.check import check_scene
+from flankfilm.runs.check import check_scene
 from flankfilm.scene import parse_scene, read_scene
 from tests.flankfilm.program import EXAMPLES, flankfilm
 

@@ -14,12 +14,12 @@ import fem
 import flankfilm as ff
 from base import InputError
 from ehl import Meniscus, OilLayer, Roughness
-from flankfilm.build import gear_pair, pinion_speed
-from flankfilm.build_film import lubricant
-from flankfilm.cache import Cache
+from flankfilm.build.film import lubricant
+from flankfilm.build.pair import gear_pair, pinion_speed
 from flankfilm.coupling import FilmModel, Flanks, LoadedTeeth, LubricatedCycle, MeshCycle, torque_curves
-from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FILM, VERIFICATION
+from flankfilm.files.cache import Cache
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FILM, VERIFICATION
 from flankfilm.stages.motion import FOURIER, SCALING, SWEEP
 from flankfilm.stages.speeds import DIAGRAM
 from tests.flankfilm.scenes import ARTICLE

@@ -14,13 +14,13 @@ import flankfilm as ff
 from base import InputError
 from fem.cycle.breakdown import deflection_parts
 from fem.pair.references import turns
-from flankfilm.cache import Cache
 from flankfilm.coupling import MeshCycle, mesh_series, stiffness_references
 from flankfilm.coupling.mesh.references import MEANINGS
+from flankfilm.files.cache import Cache
 from flankfilm.report.mesh_parts import references as report_part
 from flankfilm.report.motion_parts import scaling
-from flankfilm.stages.catalogue import COMPLIANCE, DRY_CYCLE, FILM, REFERENCES, TORQUES
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FILM, REFERENCES, TORQUES
 from flankfilm.stages.motion import FOURIER, SCALING
 from tests.flankfilm.scenes import ARTICLE
 from tests.validation.article import PAIR

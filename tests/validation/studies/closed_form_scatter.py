@@ -14,12 +14,12 @@ import warnings
 import numpy as np
 
 from base import InputError, SolverError
-from flankfilm.cache import Cache
 from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS
+from flankfilm.files.cache import Cache
 from flankfilm.scene import Scene
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import DRY_CYCLE
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import DRY_CYCLE
 
 
 def ordinary(random: np.random.Generator) -> dict:

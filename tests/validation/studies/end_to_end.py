@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 
 import fem
-from flankfilm.cache import Cache, keep_compiled_code
+from flankfilm.files.cache import Cache, keep_compiled_code
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import FILM, MESH, PLAN
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import FILM, MESH, PLAN
 from flankfilm.stages.motion import FOURIER
 from flankfilm.stages.speeds import DIAGRAM
 

@@ -14,11 +14,11 @@ import numpy as np
 from closed_form_scatter import ordinary
 
 from base import InputError, SolverError
-from flankfilm.cache import Cache, keep_compiled_code
+from flankfilm.files.cache import Cache, keep_compiled_code
 from flankfilm.plan.film_choice import foreseen_change
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import DRY_CYCLE, FILM
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import DRY_CYCLE, FILM
 
 
 def lubricated(random: np.random.Generator) -> dict:

@@ -14,10 +14,10 @@ import warnings
 
 import numpy as np
 
-from flankfilm.cache import Cache, keep_compiled_code
+from flankfilm.files.cache import Cache, keep_compiled_code
 from flankfilm.scene.reader import validated
-from flankfilm.stages.catalogue import FILM, MESH, PLAN
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import FILM, MESH, PLAN
 from flankfilm.stages.motion import FOURIER
 
 TOLERANCES = (0.05, 0.01, 0.005, 0.001)

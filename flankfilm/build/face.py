@@ -1,0 +1,119 @@
+"""What of a scene makes the load vary along the face, and what such a scene cannot have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, TypedDict
+
+import gears
+from base import Fault, Faults
+from flankfilm.coupling.mesh.loaded_teeth import POSITIONS
+from flankfilm.scene.sections.alignment import LEAD_KEYS
+from flankfilm.scene.sections.dynamics import BY_FILM
+from flankfilm.scene.sections.ground import in_keys
+
+if TYPE_CHECKING:
+    from flankfilm.scene import Scene
+
+__all__ = ["even_along_face", "face", "faults_of_face", "varies_by"]
+
+
+class FaceOptions(TypedDict, total=False):
+    """Fields of `coupling.Flanks` that say how the face is looked at."""
+
+    alignment: gears.Alignment | None
+    cells: int | None
+    face_model: str
+    shafts: tuple[gears.Shaft | None, gears.Shaft | None] | None
+
+
+def face(scene: Scene) -> FaceOptions:
+    """How the face of a scene's pair is looked at; nothing without [alignment], where leads alone decide."""
+    section = scene.alignment
+    if section is None:
+        return {}
+    alignment = gears.Alignment(**section.si())
+    options: FaceOptions = {
+        "alignment": alignment,
+        "cells": section.cells,
+        "face_model": section.face_model,
+    }
+    if (under := scene.shafts_under_face) is not None:
+        first, second = (
+            None if shaft_section is None else shaft_section.shaft() for shaft_section in under.each
+        )
+        options["shafts"] = first, second
+    return options
+
+
+def even_along_face(pair: gears.GearPair) -> gears.GearPair:
+    """The pair without leads and without overhangs."""
+    return replace(pair, pinion=_even(pair.pinion), wheel=_even(pair.wheel))
+
+
+def _even(gear: gears.Gear) -> gears.Gear:
+    return replace(gear, lead=gears.Lead(), face_width=None, face_offset=0.0)
+
+
+def varies_by(scene: Scene) -> list[str]:
+    """Keys and sections of a scene by which the load varies along the face; empty where it is even."""
+    keys = [] if scene.alignment is None else ["[alignment]"]
+    for name in ("pinion", "wheel"):
+        gear = None if scene.pair is None else getattr(scene.pair, name)
+        if gear is None or scene.pair is None:
+            continue
+        if gear.face_width_mm not in (None, scene.pair.face_width_mm):
+            keys.append(f"pair.{name}.face_width_mm")
+        keys += [f"pair.{name}.{key}" for key in LEAD_KEYS if getattr(gear, key)]
+        if gear.deviations is not None:
+            keys += [f"pair.{name}.deviations.{key}" for key in gear.deviations.given_keys("lead", "map")]
+    return keys
+
+
+def faults_of_face(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
+    """Faults of a face along which the load varies, and of what is not known with it."""
+    by = " and ".join(varies_by(scene))
+    if not by or scene.stiffness.model == "given":
+        return
+    yield from _of_setting(scene, pair)
+    condition, drop = f"where the load varies along the face, by {by}", f"or drop {by}"
+    yield from _of_films(scene, condition, drop)
+    if scene.stiffness.plane != "strain":
+        remedy = f'Take stiffness.plane = "strain", {drop}'
+        yield Fault("stiffness.plane", f"{scene.stiffness.plane!r}", f'must be "strain" {condition}', remedy)
+
+
+def _of_films(scene: Scene, condition: str, drop: str) -> Iterator[Fault]:
+    """Faults of films that do not follow from place and line load alone, and of what has no films over the face."""
+    if scene.film.meniscus_half_widths is not None:
+        allowed = f"must be left out {condition}: every cell would hold the meniscus elsewhere"
+        value = f"{scene.film.meniscus_half_widths:g}"
+        yield Fault("film.meniscus_half_widths", value, allowed, f"Give meniscus_mm instead, {drop}")
+    if scene.film.stiffness is not None:
+        allowed = f"must be left out {condition}: films of cells have their own slope by the load"
+        yield Fault("film.stiffness", f"{scene.film.stiffness!r}", allowed, f"Leave it out, {drop}")
+    if scene.dynamics is not None and scene.dynamics.damping_ratio == BY_FILM:
+        allowed = f"must be a number {condition}: the damping of films is that of even loads"
+        yield Fault("dynamics.damping_ratio", "'film'", allowed, f"Give a number, {drop}")
+
+
+def _of_setting(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
+    """Faults of cells, alignment and leads, each under its key."""
+    from fem.pair.face_setting import FREE_ENDS, face_setting
+
+    options, faults = face(scene), Faults()
+    setting = face_setting(
+        pair,
+        options.get("alignment"),
+        options.get("cells"),
+        options.get("face_model", FREE_ENDS),
+        options.get("shafts"),
+    )
+    if setting is not None:
+        setting.check(faults, pair, POSITIONS)
+    for fault in faults.found:
+        if fault.where in ("cells", "face_model"):
+            yield in_keys(fault, scene.alignment, "alignment")
+        else:
+            yield in_keys(fault, scene.pair, "pair")

@@ -1,0 +1,4 @@
+"""What a run returns: the record, and its picture.
+
+Public, in `flankfilm`: `Results`.
+"""

@@ -1,0 +1,1 @@
+"""Processes of a command: how it ends, what it shows on the way, and those that it starts."""

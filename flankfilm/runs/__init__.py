@@ -1,0 +1,1 @@
+"""A scene checked, and run from its first stage to its report."""

@@ -1,0 +1,1 @@
+"""Tables that a scene names: measured flanks and transmission errors, read from files."""
