@@ -157,24 +157,50 @@ def warm_up() -> int:
 
 
 @app.command
-def study(study: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> int:
+def study(
+    study: Path,
+    /,
+    *,
+    out: RowsFolder,
+    part: str | None = None,
+    merge: Annotated[bool, Parameter(negative="")] = False,
+    how: HowRows = Execution(),
+) -> int:
     """Compute the rows of STUDY, each kept as it arrives, and write them as one dataset.
 
     Parameters
     ----------
     study : Path
         The study file (TOML): a scene, keys of it that vary, outputs.
+    part : str, optional
+        Compute one part of several alone, such as 3/16: jobs of a batch system need nothing but the common folder.
+    merge : bool
+        Gather the rows of all parts, and write the dataset.
     """
     _prepare()
     from flankfilm.processes.progress import console_rows
     from flankfilm.studies.files import summary, write_study
+    from flankfilm.studies.parts import Part
+    from flankfilm.studies.parts import merge as merged
     from flankfilm.studies.plan import read_plan
     from flankfilm.studies.run import run_study
 
+    if part is not None and merge:
+        raise InputError.at(
+            "--part", part, "does not go with --merge", "Compute all parts first, then merge them"
+        )
+    one_part = None if part is None else Part.read(part)
     plan = read_plan(study)
-    with console_rows() as progress:
-        study_results = run_study(plan, out, how, progress)
-    _conclude(summary(study_results), out, write_study(study_results, out))
+    if merge:
+        study_results = merged(plan, out)
+    else:
+        folder, rows = (out, None) if one_part is None else (one_part.folder(out), one_part.rows(plan))
+        with console_rows() as progress:
+            study_results = run_study(plan, folder, how, progress, rows)
+    if one_part is None:
+        _conclude(summary(study_results), out, write_study(study_results, out))
+    else:
+        _conclude(summary(study_results), one_part.folder(out), ())
     if study_results.failures:
         return SOLVER_FAULT if all(row.lost for row in study_results.rows) else PART_FAILED
     return 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -38,7 +38,7 @@ class StudyResults:
     ----------
     plan : Plan
     rows : tuple of RowResult
-        In the order of the plan.
+        In the order of the plan; of a part, its own.
     computed : int
         Rows computed by this run; the others were there.
     seconds : float
@@ -63,11 +63,17 @@ class StudyResults:
     plot = plot
 
 
+def work_of_plan(plan: Plan) -> Work:
+    """What the rows of a study's folder are of."""
+    return Work("study", plan.title, plan.identity(), Columns(plan.keys, plan.outputs))
+
+
 def run_study(
     plan: Plan,
     folder: Path,
     how: Execution = Execution(),
     progress: Progress = lambda done, total: None,
+    rows: Sequence[int] | None = None,
 ) -> StudyResults:
     """Compute the rows of a plan into ``rows.csv`` of a folder.
 
@@ -80,6 +86,8 @@ def run_study(
         Where rows are computed, and whether a study that was begun in the folder is taken up.
     progress : callable
         Called with rows done and rows in all.
+    rows : sequence of int, optional
+        Numbers of the rows of a part of the study; all of them if left out.
 
     Returns
     -------
@@ -91,21 +99,21 @@ def run_study(
         Where the folder holds another study, or rows of this one without ``resume``.
     """
     start = time.perf_counter()
-    work = Work("study", plan.title, plan.identity(), Columns(plan.keys, plan.outputs))
-    with kept_rows(folder, work, how.resume) as kept, how.staff() as staff:
+    numbers = range(len(plan.rows)) if rows is None else rows
+    with kept_rows(folder, work_of_plan(plan), how.resume) as kept, how.staff() as staff:
         done = {line.result.index: line.result for line in kept.lines}
         refuse_unknown(folder, kept.lines, plan)
         missing = [
             Row(index, plan.raw_scene(index), plan.outputs, how.cache)
-            for index in range(len(plan.rows))
+            for index in numbers
             if index not in done
         ]
-        progress(len(done), len(plan.rows))
+        progress(len(done), len(numbers))
         for result in staff.computed(missing):
             kept.add(plan.rows[result.index], result)
             done[result.index] = result
-            progress(len(done), len(plan.rows))
-    ordered = tuple(done[index] for index in range(len(plan.rows)))
+            progress(len(done), len(numbers))
+    ordered = tuple(done[index] for index in numbers)
     return StudyResults(plan, ordered, len(missing), time.perf_counter() - start)
 
 
