@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from dynamics.branches.branch import Stretch
-    from flankfilm.coupling import FilmDamping, MeshSeries, PairOscillator, SpeedDiagram, SpeedSweep
+    from flankfilm.coupling import FilmDamping, MeshSeries, SpeedDiagram, SpeedSweep
     from flankfilm.coupling.speeds.jump_errors import Jump
 
 LONGEST = 40
@@ -77,16 +77,6 @@ def fourier_headlines(stage: MeshSeries) -> list[Headline]:
         remainder += f" and up to {percent(float(stage.left_out.motion[stage.order]))} of the motion"
     off = Uncertainty(known, first_harmonic(stage), size=1.0)
     return [Headline("stiffness, first harmonic over the mean", f"{kappa:.4f}", remainder, uncertainty=off)]
-
-
-def scaling(stage: PairOscillator, _: xr.Dataset) -> Part:
-    """Physical and dimensionless quantities side by side; dimensionless ones alone where there are no scales."""
-    if stage.scales is None:
-        table = Table(("quantity", "dimensionless"), tuple((name, value) for name, _, value in stage.rows()))
-        return Part("scaling", "Oscillator", tables=(table,))
-    table = Table(("quantity", "physical", "dimensionless"), stage.rows())
-    notes = [said("measured_against", what=MEANINGS[stage.reference])] if stage.reference else []
-    return Part("scaling", "Physical and dimensionless", tables=(table,), notes=tuple(notes))
 
 
 def film_damping(stage: FilmDamping, _: xr.Dataset) -> Part:

@@ -12,6 +12,7 @@ import gears
 from base import InputError
 from flankfilm.coupling import film_damping, pair_drive
 from flankfilm.files.cache import Cache
+from flankfilm.report.oscillator_parts import oscillator_rows
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from flankfilm.stages.damping import FILM_DAMPING
@@ -79,13 +80,13 @@ def test_what_damps_in_the_backlash_is_named_beside_the_films(engine):
     motion = Engine(parse_scene(beside), Cache(None))[SCALING]
     pressed = engine[SCALING].oscillator.damping_ratio
     assert motion.oscillator.damping_ratios == (pressed, 0.004)
-    said = {name: (physical, value) for name, physical, value in motion.rows()}
+    said = {name: (physical, value) for name, physical, value in oscillator_rows(motion)}
     assert motion.scales is not None
     assert said["damping ratio in the backlash zeta_0"][1] == "0.004"
     assert float(said["damping ratio in the backlash zeta_0"][0].split()[0]) == pytest.approx(
         0.008 * motion.scales.equivalent_mass * motion.scales.omega_n, rel=1e-3
     )
-    assert not any("zeta_0" in row[0] for row in engine[SCALING].rows())
+    assert not any("zeta_0" in row[0] for row in oscillator_rows(engine[SCALING]))
 
 
 def test_drive_trains_have_it_too(engine):

@@ -22,9 +22,6 @@ from flankfilm.coupling.vibration.series import MOST_HARMONICS, MeshSeries, mesh
 MEAN_FORCE = 0.1
 """Dimensionless mean force that the length scale is chosen for, unless that is given."""
 
-LISTED = 6
-"""Harmonics of the error that a table lists."""
-
 
 @record
 class PairOscillator:
@@ -143,53 +140,6 @@ class PairOscillator:
     def equivalent_mass(self) -> float | None:
         """Equivalent mass along the line of action; None for an oscillator in its own units."""
         return None if self.scales is None else self.scales.equivalent_mass
-
-    def rows(self) -> tuple[tuple[str, str, str], ...]:
-        """Quantities, physical and dimensionless, as text for tables."""
-        osc, scales = self.oscillator, self.scales
-        damping = "" if scales is None else f"{scales.damping(osc.damping_ratio):.4g} N s/m"
-        rpm = "" if scales is None else f"{scales.rpm(osc.frequency):.6g} rpm of the pinion"
-        own = [
-            ("mean force F_m", f"{self.force:.6g} N", f"{osc.mean_force:.6g}"),
-            *self._error_rows(),
-            ("half backlash D", f"{1e6 * self.backlash / 2:.4g} µm", f"{osc.half_backlash:.6g}"),
-            ("damping ratio zeta", damping, f"{osc.damping_ratio:.6g}"),
-            *self._free_rows(),
-            ("mesh frequency omega", rpm, f"{osc.frequency:.6g}"),
-        ]
-        if scales is None:
-            return tuple((name, "", value) for name, _, value in own)
-        return (
-            *own,
-            ("length scale b_c", f"{1e6 * scales.length:.5g} µm", "1"),
-            ("mean stiffness k_m", f"{scales.mean_stiffness:.5g} N/m", "1"),
-            ("equivalent mass m_e", f"{scales.equivalent_mass:.5g} kg", "1"),
-            ("natural frequency", f"{scales.natural_frequency:.5g} Hz", "1"),
-            ("resonance speed n_E1", f"{scales.rpm(1.0):.5g} rpm of the pinion", "1"),
-            ("inertias J1, J2", ", ".join(f"{j:.4g}" for j in self.inertias) + " kg m²", ""),
-        )
-
-    def _free_rows(self) -> list[tuple[str, str, str]]:
-        """Damping in the backlash, where it is another one."""
-        free = self.oscillator.free_damping_ratio
-        if free is None:
-            return []
-        damping = "" if self.scales is None else f"{self.scales.damping(free):.4g} N s/m"
-        return [("damping ratio in the backlash zeta_0", damping, f"{free:.6g}")]
-
-    def _error_rows(self) -> list[tuple[str, str, str]]:
-        """Amplitudes of the error, the first of many, and its range where there are several."""
-        own = self.oscillator.error_series[0]
-        physical = np.resize(self.error_amplitude, len(own)) if self.scales else np.zeros(len(own))
-        if len(own) == 1:
-            return [("error amplitude epsilon", f"{1e6 * physical[0]:.4g} µm", f"{own[0]:.6g}")]
-        rows = [
-            (f"error amplitude epsilon_{j}", f"{1e6 * e:.4g} µm", f"{x:.6g}")
-            for j, (e, x) in enumerate(zip(physical[:LISTED], own[:LISTED], strict=True), start=1)
-        ]
-        rest = f", {len(own)} harmonics" if len(own) > LISTED else ""
-        whole = peak_to_peak(*self.oscillator.error_series)
-        return [*rows, (f"error, peak to peak{rest}", f"{1e6 * self.error_range:.4g} µm", f"{whole:.6g}")]
 
 
 def pair_oscillator(
