@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from operator import attrgetter
 from typing import Any
 
@@ -15,11 +16,13 @@ from fem.stress.root_peaks import RootPeak
 from flankfilm.build.face import varies_by
 from flankfilm.coupling.mesh.face_models import LABELS, FaceLoadModels
 from flankfilm.coupling.mesh.face_tolerance import FaceTolerance
+from flankfilm.coupling.mesh.root_stress import RootStresses
 from flankfilm.figures.reading import GEARS
+from flankfilm.output.uncertainty import uncertainty
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.face import FACE_MODELS, FACE_TOLERANCE
 from flankfilm.stages.mesh import DRY_CYCLE, ROOT_STRESS
-from flankfilm.studies.output import Named, Take, model_error_of, output_of
+from flankfilm.studies.output import Named, Of, Take, holds_error, model_error_of, output_of
 from gears.closed_form import Iso6336FaceLoad
 
 EVEN = "{}; nan where the load is even along the face"
@@ -33,7 +36,14 @@ def _of_face(name: str, figure: str, take: Take = float, said: str = EVEN) -> Na
         quantity = None if contact is None or contact.face is None else getattr(contact.face, figure)
         return None if quantity is None else take(quantity)
 
-    return output_of(name, figures(fem.FaceLoads)[figure], "stiffness", value, said)
+    def error(engine: Engine) -> float | None:
+        contact = engine[DRY_CYCLE].contact
+        face = None if contact is None else contact.face
+        return None if face is None else uncertainty(face, figure).numerical
+
+    known = take is float and holds_error(fem.FaceLoads, figure)
+    about = figures(fem.FaceLoads)[figure]
+    return output_of(name, about, "stiffness", value, said, error if known else None)
 
 
 def _by_model(name: str, about: Figure, value: Take) -> Named:
@@ -59,13 +69,14 @@ def _over_tolerance(name: str, about: Figure, figure: str) -> Named:
     return output_of(name, about, "stiffness", of, EVEN)
 
 
-def _of_root(name: str, about: Figure, value: Take, said: str = EVEN) -> Named:
+def _of_root(name: str, about: Figure, value: Take, said: str = EVEN, error: Take | None = None) -> Named:
     """Figure of the root stress over the face."""
 
-    def of(engine: Engine) -> Any:
-        return value(engine[ROOT_STRESS]) if varies_by(engine.scene) else None
+    def over_face(take: Take) -> Of:
+        return lambda engine: take(engine[ROOT_STRESS]) if varies_by(engine.scene) else None
 
-    return output_of(name, about, "root-stress", of, said)
+    known = None if error is None else over_face(error)
+    return output_of(name, about, "root-stress", over_face(value), said, known)
 
 
 def _of_roots() -> Iterator[Named]:
@@ -82,12 +93,14 @@ def _of_roots() -> Iterator[Named]:
             figures(fem.FaceRootStress)["face_factor"],
             attrgetter(f"stress.{gear}.face.face_factor"),
             f"maximum tension at the root of the {gear} over its mean over the face; nan where even",
+            partial(_error_of_face, gear, "face_factor"),
         )
         yield _of_root(
             f"root_over_even_{gear}",
             figures(fem.FaceRootStress)["over_even"],
             attrgetter(f"stress.{gear}.face.over_even"),
             f"maximum tension at the root of the {gear} over that of the same forces spread evenly; nan where even",
+            partial(_error_of_face, gear, "over_even"),
         )
     about = figures(Iso6336FaceLoad)["K_Fbeta"]
     yield _of_root(
@@ -95,6 +108,11 @@ def _of_roots() -> Iterator[Named]:
         about,
         lambda root_stress: root_stress.iso_face and root_stress.iso_face.K_Fbeta,
     )
+
+
+def _error_of_face(gear: str, figure: str, roots: RootStresses) -> float | None:
+    """Error of a figure of the root stress over the face of a gear."""
+    return uncertainty(getattr(roots.stress, gear).face, figure).numerical
 
 
 STRAIGHT = "{}; nan where the load is even along the face, or shafts are rigid"

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from base import Figure
 from base.results import figures
-from base.units import factor
+from base.units import factor, suffix
 from flankfilm.output.tables import spelt
 from flankfilm.output.uncertainty import uncertainty
 from flankfilm.output.variables import sentence
@@ -27,31 +27,69 @@ class Output:
         The scene's wants that stand for it: they decide which sections a scene must have.
     value : callable
         Gives the number from a row's engine.
+    error : callable, optional
+        Gives its estimated relative error likewise; none where that is not known, or is an output by itself.
     """
 
     unit: str
     meaning: str
     wants: tuple[str, ...]
     value: Callable[[Engine], float]
+    error: Callable[[Engine], float] | None = None
 
 
 Named = tuple[str, Output]
 Take = Callable[[Any], Any]
+Of = Callable[[Engine], Any]
 
 
 def output_of(
-    name: str, figure: Figure, want: str, value: Callable[[Engine], Any], said: str = "{}"
+    name: str, figure: Figure, want: str, value: Of, said: str = "{}", error: Of | None = None
 ) -> Named:
-    """An output by its name, from a function that gives its value in SI; None stands for nan."""
-
-    def of(engine: Engine) -> float:
-        in_si = value(engine)
-        return float("nan") if in_si is None else float(in_si) / factor(figure.read_in)
-
+    """An output by its name, from functions that give its value in SI and its relative error; None stands for nan."""
     meaning = sentence(figure.meaning)
     if said != "{}":
         meaning = said.format(re.split("[:,;]", meaning, maxsplit=1)[0])
-    return spelt(name, figure.read_in), Output(figure.read_in, meaning, (want,), of)
+    known = None if error is None else _number(error, 1.0)
+    return spelt(name, figure.read_in), Output(
+        figure.read_in, meaning, (want,), _number(value, factor(figure.read_in)), known
+    )
+
+
+def _number(value: Of, unit: float) -> Callable[[Engine], float]:
+    """Value in a unit; nan where there is none."""
+
+    def of(engine: Engine) -> float:
+        in_si = value(engine)
+        return float("nan") if in_si is None else float(in_si) / unit
+
+    return of
+
+
+def with_errors(outputs: Mapping[str, Output], held: Iterable[str]) -> dict[str, Output]:
+    """Outputs, and after them the errors of those that know theirs and whose error no other output holds.
+
+    Parameters
+    ----------
+    outputs : mapping
+    held : iterable of str
+        Outputs whose errors are outputs already.
+    """
+    by_themselves = set(held)
+    added = {
+        error_name(name, output): Output(
+            "1", f"estimated relative error: {output.meaning}", output.wants, output.error
+        )
+        for name, output in outputs.items()
+        if output.error is not None and name not in by_themselves
+    }
+    return {**outputs, **added}
+
+
+def error_name(name: str, output: Output) -> str:
+    """Name of the output that holds the error of another one: without the unit, which is another."""
+    end = suffix(output.unit)
+    return f"{name.removesuffix(f'_{end}') if end else name}_error"
 
 
 def outputs_from(stage: Callable[[Engine], Any], kind: type, want: str) -> Callable[..., Named]:
@@ -64,9 +102,28 @@ def outputs_from(stage: Callable[[Engine], Any], kind: type, want: str) -> Calla
             quantity = getattr(stage(engine), figure)
             return None if quantity is None else take(quantity)
 
-        return output_of(name or figure, about, want, value, said)
+        # of curves the error of one entry is not that of another
+        known = take is float and want != "geometry" and holds_error(kind, figure)
+        error = error_in(stage, figure) if known else None
+        return output_of(name or figure, about, want, value, said, error)
 
     return make
+
+
+def holds_error(kind: type, figure: str) -> bool:
+    """Whether records of a kind hold the numerical error of a figure."""
+    about = figures(kind)[figure]
+    return bool(about.error) or (figure in getattr(kind, "headline", ()) and not about.no_error)
+
+
+def error_in(record: Of, figure: str) -> Of:
+    """Numerical error of a figure of a record, relative; None where it is not known."""
+
+    def of(engine: Engine) -> float | None:
+        there = record(engine)
+        return None if there is None else uncertainty(there, figure).numerical
+
+    return of
 
 
 def model_error_of(name: str, said: str, want: str, record: Callable[[Engine], Any], figure: str) -> Named:

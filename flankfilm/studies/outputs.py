@@ -6,6 +6,7 @@ An output is a figure of a stage's result, or its minimum, maximum or mean value
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from itertools import product
 from operator import attrgetter, methodcaller
 from typing import Any
@@ -21,15 +22,28 @@ from flankfilm.coupling.films.along_path import FilmAlongPath
 from flankfilm.coupling.films.lubricated_record import LubricatedCycle
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS
+from flankfilm.coupling.mesh.verification import Verification
 from flankfilm.figures.reading import PER_FACE
 from flankfilm.output.drawing_data import SLIDING
 from flankfilm.output.variables import sentence
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import FILM, HEAT, MESH, PAIR, ROOT_STRESS, VERIFICATION
 from flankfilm.studies.face_outputs import FACE_OUTPUTS
+from flankfilm.studies.held_errors import HELD
 from flankfilm.studies.loss_outputs import LOSS_OUTPUTS
 from flankfilm.studies.motion_outputs import MOTION_OUTPUTS
-from flankfilm.studies.output import Named, Output, Take, in_result, model_error_of, output_of, outputs_from
+from flankfilm.studies.output import (
+    Named,
+    Of,
+    Output,
+    Take,
+    error_in,
+    in_result,
+    model_error_of,
+    output_of,
+    outputs_from,
+    with_errors,
+)
 from gears import GearPair, WarmPair
 
 OLDER = "older name, kept for one version, of"
@@ -46,6 +60,7 @@ def _per_face(figure: str, take: Take = float, name: str = "", said: str = "{}")
         "stiffness",
         lambda engine: take(getattr(engine[MESH], figure)) / engine[PAIR].face_width,
         said,
+        error_in(lambda engine: engine[MESH], figure),
     )
 
 
@@ -86,14 +101,19 @@ def _at_points() -> Iterator[Named]:
             yield output_of(f"{name}_at_{point}", about, "film", _at_point(point, figure), f"{{}} at {point}")
 
 
-def _through(name: str, figure: Figure, value: Take) -> Named:
+def _through(name: str, figure: Figure, value: Take, error: Take | None = None) -> Named:
     """Figure of the pressure and film through the contact nearest to C; nan where it has none."""
 
-    def of(engine: Engine) -> Any:
-        film = engine[FILM].film.profiles.get("C")
-        return None if film is None else value(film)
+    def at_c(take: Take) -> Of:
+        def of(engine: Engine) -> Any:
+            film = engine[FILM].film.profiles.get("C")
+            return None if film is None else take(film)
 
-    return output_of(f"{name}_at_C", figure, "film", of)
+        return of
+
+    return output_of(
+        f"{name}_at_C", figure, "film", at_c(value), error=None if error is None else at_c(error)
+    )
 
 
 def _of_spike(value: Callable[[Any, Any], float]) -> Take:
@@ -128,7 +148,15 @@ def _differences() -> Iterator[Named]:
     for (end, reference), (name, model) in product(ends.items(), forms.items()):
         meaning = f"mean mesh stiffness by {model}, difference from finite elements {reference}"
         value = in_result(VERIFICATION, methodcaller("difference", model, reference))
-        yield output_of(f"{name}{end}", Figure("1", meaning, shown="%"), "closed-forms", value)
+        error = in_result(VERIFICATION, partial(_of_difference, model, reference))
+        yield output_of(f"{name}{end}", Figure("1", meaning, shown="%"), "closed-forms", value, error=error)
+
+
+def _of_difference(model: str, reference: str, verification: Verification) -> float | None:
+    """Error of a difference from finite elements relative to itself, by theirs."""
+    compared = verification.comparison(model, reference)
+    away = compared.difference
+    return None if away == 0.0 else (1.0 + away) * compared.reference_error / abs(away)
 
 
 def _harmonic(order: int) -> Named:
@@ -138,13 +166,26 @@ def _harmonic(order: int) -> Named:
         about,
         "stiffness",
         in_result(MESH, lambda cycle: cycle.secant_stiffness_harmonics[order - 1]),
+        error=_of_harmonic("secant_stiffness", order),
     )
 
 
 def _tangent_harmonic(order: int) -> Named:
     about = Figure("1", f"amplitude of harmonic {order} of the tangent stiffness over its mean")
     value = in_result(MESH, lambda cycle: cycle.stiffness_harmonics[order - 1])
-    return output_of(f"tangent_harmonic_{order}", about, "stiffness", value)
+    return output_of(
+        f"tangent_harmonic_{order}", about, "stiffness", value, error=_of_harmonic("stiffness", order)
+    )
+
+
+def _of_harmonic(curve: str, order: int) -> Of:
+    """Error of a harmonic relative to itself; the cycle holds those of ratios to the mean."""
+
+    def error(cycle: MeshCycle) -> float | None:
+        errors, values = (getattr(cycle, f"{curve}_{name}") for name in ("harmonics_error", "harmonics"))
+        return None if errors is None or values[order - 1] == 0.0 else errors[order - 1] / values[order - 1]
+
+    return in_result(MESH, error)
 
 
 def _error_of(figure: str, name: str) -> Named:
@@ -164,7 +205,7 @@ def _harmonics_error(curve: str, name: str) -> Named:
     return output_of(f"{name}_harmonics_error", about, "stiffness", in_result(MESH, largest))
 
 
-OUTPUTS: Mapping[str, Output] = dict(
+_OUTPUTS: Mapping[str, Output] = dict(
     (
         _pair("contact_ratio"),
         _heat("cold_backlash"),
@@ -241,11 +282,13 @@ OUTPUTS: Mapping[str, Output] = dict(
                 shown="GPa",
             ),
             _of_spike(lambda spike, contact: spike.pressure),
+            _of_spike(lambda spike, contact: spike.error),
         ),
         _through(
             "spike_over_hertz",
             Figure("1", f"pressure spike of the contact at C over its Hertz pressure; {UNRESOLVED}"),
             _of_spike(lambda spike, contact: spike.pressure / contact.peak_pressure),
+            _of_spike(lambda spike, contact: spike.error),
         ),
         _through(
             "spike_position",
@@ -307,4 +350,6 @@ OUTPUTS: Mapping[str, Output] = dict(
         *MOTION_OUTPUTS,
     )
 )
+
+OUTPUTS: Mapping[str, Output] = with_errors(_OUTPUTS, (name for names in HELD.values() for name in names))
 """Outputs by the name that a study file gives them; the unit is part of it."""

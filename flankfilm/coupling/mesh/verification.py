@@ -149,9 +149,13 @@ class Verification:
         LookupError
             Where there is no such comparison.
         """
+        return self.comparison(model, reference, figure).difference
+
+    def comparison(self, model: str, reference: str, figure: str = "mesh, mean") -> Difference:
+        """One figure of a model beside that of a reference; arguments and errors as of `difference`."""
         for comparison in self.differences:
             if (comparison.model, comparison.reference, comparison.figure) == (model, reference, figure):
-                return comparison.difference
+                return comparison
         raise LookupError(f"no comparison of {model} with {reference} in {figure}")
 
 
