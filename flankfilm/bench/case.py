@@ -89,7 +89,7 @@ class PeerWork:
     Attributes
     ----------
     script : str
-        File in ``peer_scripts``, without suffix.
+        File in ``benchmarks/peers``, without suffix.
     inputs : mapping
         What the script reads, as JSON.
     quantity : str

@@ -1,9 +1,9 @@
 """Other programs on the same work, in a separate environment.
 
-A peer is a file of ``peer_scripts`` that ``main.py`` there runs with an interpreter of that environment and nothing of
-ours in its way: the work goes in as JSON on standard input, what it found comes back as one line of JSON on standard
-output: ``peer``, ``version``, ``runs`` (each with ``level``, ``seconds``, ``first`` and ``values``) and perhaps a
-``note``, or ``missing`` with what could not be imported.
+A peer is a file of ``benchmarks/peers``, which no wheel holds. ``main.py`` there runs it with an interpreter of that
+environment and nothing of ours in its way: the work goes in as JSON on standard input, what it found comes back as one
+line of JSON on standard output: ``peer``, ``version``, ``runs`` (each with ``level``, ``seconds``, ``first`` and
+``values``) and perhaps a ``note``, or ``missing`` with what could not be imported.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from typing import Any
 from flankfilm.bench.case import Case, PeerWork, Value, true_error, value
 from flankfilm.bench.process import LONGEST, output_of
 
-MAIN = Path(__file__).with_name("peer_scripts") / "main.py"
+MAIN = Path(__file__).parents[2] / "benchmarks" / "peers" / "main.py"
+"""Runs a peer; in a checkout alone."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from flankfilm.bench.catalogue import SOLVERS
 from flankfilm.bench.first_call import FirstCall, first_call
 from flankfilm.bench.machine import Machine, load, this_machine
 from flankfilm.bench.measuring import CaseResult, measure, quiet, steps
-from flankfilm.bench.peers import PeerRow, ask
+from flankfilm.bench.peers import MAIN, PeerRow, ask
 from flankfilm.files.folder import claim
 from flankfilm.processes.progress import Progress, in_steps, silent
 
@@ -134,6 +134,9 @@ def _checked(folder: Path, only: Sequence[str], repeat: int | None, against: str
         if against is not None and python is None:
             allowed = "must be an interpreter that can be run"
             faults.add("--against", against, allowed, "Such as ENVIRONMENT/bin/python")
+        if against is not None and not MAIN.is_file():
+            allowed = "needs the scripts of the other programs, which are in a checkout and in no wheel"
+            faults.add("--against", against, allowed, "Run it from a checkout, or leave --against out")
         if against is not None and only and not set(only) & set(PEERED):
             allowed = f"other programs know the work of {' and '.join(PEERED)} alone"
             faults.add("--against", against, allowed, "Leave it out, or name one of these with --only")
