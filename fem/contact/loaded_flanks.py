@@ -8,7 +8,7 @@ import numpy as np
 
 from base import Array, record
 from fem.laws.contact_candidates import ContactCandidates, contact_candidates
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.local_law import Film, FilmLaw, PairLaws
 from fem.laws.mesh_setup import MeshSetup
 
@@ -92,7 +92,7 @@ def loaded_flanks(
     bodies: PairCompliance,
     film: Film | None,
     reach: float,
-    tables: EdgeTables,
+    corner_laws: CornerLaws,
 ) -> LoadedFlanks:
     """Put together what the flanks yield that bear in a setting.
 
@@ -103,12 +103,12 @@ def loaded_flanks(
     film : Film or None
     reach : float
         Base pitches outside the path within which tip edges are looked for.
-    tables : EdgeTables
+    corner_laws : CornerLaws
         Laws of the tip edges.
     """
     placed = flanks_in_place(setup, film, reach)
     candidates, lever_ratios = placed.candidates, placed.lever_ratios
-    laws, largest = tables.at(candidates, lever_ratios, setup.moving_contact)
+    laws, largest = corner_laws.at(candidates, lever_ratios, setup.moving_contact)
     rho1, rho2 = candidates.rho
     matrix = bodies.bulk(rho1, rho2, candidates.leaning)
     _leave_out_corner(bodies, matrix, candidates)

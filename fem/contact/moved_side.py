@@ -22,7 +22,7 @@ from fem.laws.mesh_setup import MeshSetup
 from gears.sharing.load_coupling import Coupling, DenseCoupling
 
 if TYPE_CHECKING:
-    from fem.laws.edge_tables import EdgeTables
+    from fem.laws.corner_laws import CornerLaws
     from fem.pair.pair_compliance import PairCompliance
     from gears.sharing.staying_contacts import JointLaw
 
@@ -154,10 +154,10 @@ class MovedSide:
 
 
 def moved_side(
-    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, tables: EdgeTables
+    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, corner_laws: CornerLaws
 ) -> MovedSide:
     """Flanks of one side with contacts that move; arguments as for ``loaded_flanks``."""
     own = None
     if setup.beyond_path:
-        own = moved_flanks(setup, bodies, flanks, tables)
+        own = moved_flanks(setup, bodies, flanks, corner_laws)
     return MovedSide(setup, flanks, contact_moves(bodies, flanks.candidates, setup.beyond_path), own)

@@ -30,7 +30,7 @@ from fem.laws.tip_geometry import gap_at
 if TYPE_CHECKING:
     from fem.contact.loaded_flanks import LoadedFlanks
     from fem.influence.gear_compliance import GearCompliance
-    from fem.laws.edge_tables import EdgeTables
+    from fem.laws.corner_laws import CornerLaws
     from fem.laws.mesh_setup import MeshSetup
     from fem.pair.pair_compliance import PairCompliance
 
@@ -151,7 +151,7 @@ class MovedFlanks:
 
 
 def moved_flanks(
-    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, tables: EdgeTables
+    setup: MeshSetup, bodies: PairCompliance, flanks: LoadedFlanks, corner_laws: CornerLaws
 ) -> MovedFlanks:
     """Laws for contacts that move, from those for contacts that stay; arguments as for ``loaded_flanks``.
 
@@ -159,7 +159,7 @@ def moved_flanks(
     lack parts the corners from the contacts.
     """
     candidates, pair, width = flanks.candidates, setup.pair, setup.pair.face_width
-    surfaces = tables.surfaces if setup.removed is None else ()
+    surfaces = corner_laws.surfaces if setup.removed is None else ()
     (_, before), (_, after) = candidates.corners()
     lever_ratios = np.ones_like(flanks.lever_ratios) if surfaces else flanks.lever_ratios
     clear = candidates.gap - candidates.gap.min(axis=-1, keepdims=True)
@@ -197,7 +197,7 @@ def moved_flanks(
             )
         )
     else:
-        laws, _ = tables.at(candidates, lever_ratios, moving=True)
+        laws, _ = corner_laws.at(candidates, lever_ratios, moving=True)
     base = np.where(after, candidates.place, candidates.rho[0]) - held
     base = np.where(
         before & bool(surfaces), candidates.rho[0] - held - np.where(before, candidates.lacking, 0.0), base

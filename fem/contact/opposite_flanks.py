@@ -25,7 +25,7 @@ from fem.contact.moved_share import moved_share
 from fem.contact.moved_side import moved_side
 from fem.contact.moving_sides import MovedSides
 from fem.contact.shared_contacts import SharedContacts, share_staying
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_shafts import shafts_under_face
@@ -72,13 +72,13 @@ def share_with_opposite(
     alone: ContactState | None,
     apart: Booleans,
     reach: float,
-    tables: EdgeTables,
+    corner_laws: CornerLaws,
 ) -> ContactState:
     """Share forces (torques,) [N] among the flanks on both sides; of contacts that stay where moving ones fail.
 
     Parameters
     ----------
-    setup, bodies, film, reach, tables
+    setup, bodies, film, reach, corner_laws
         As for ``loaded_flanks``.
     force : (torques,) array
         [N]
@@ -89,14 +89,16 @@ def share_with_opposite(
     apart : (torques,) boolean array
         Torques for which it is kept whatever it lets overlap.
     """
-    other = loaded_flanks(setup.opposite, bodies, film, reach, tables)
+    other = loaded_flanks(setup.opposite, bodies, film, reach, corner_laws)
     sides = both_sides(setup, bodies, flanks, other)
     moved = None
     if setup.moving_contact:
         front = (
-            moved_side(setup, bodies, flanks, tables) if alone is None or alone.side is None else alone.side
+            moved_side(setup, bodies, flanks, corner_laws)
+            if alone is None or alone.side is None
+            else alone.side
         )
-        moved = MovedSides(front, moved_side(setup.opposite, bodies, other, tables))
+        moved = MovedSides(front, moved_side(setup.opposite, bodies, other, corner_laws))
     clear, kept, rolled = np.zeros((len(force), 1, 1), dtype=bool), None, None
     if alone is not None:
         kept = _beside_nothing(sides, bodies, alone.contacts)

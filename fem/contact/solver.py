@@ -17,7 +17,7 @@ from fem.contact.moved_side import moved_side
 from fem.contact.opposite_flanks import share_with_opposite
 from fem.contact.shared_contacts import share_staying
 from fem.laws.contact_candidates import REACHES
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
 
@@ -32,7 +32,7 @@ def solve_contact(
     bodies: PairCompliance,
     force: Array,
     film: Film | None,
-    tables: EdgeTables | None = None,
+    corner_laws: CornerLaws | None = None,
 ) -> ContactState:
     """Solve, with candidates farther out if the deflection reaches beyond the first ones.
 
@@ -46,19 +46,19 @@ def solve_contact(
     force : (torques,) array
         [N], all above 0 or all 0.
     film : Film or None
-    tables : EdgeTables, optional
+    corner_laws : CornerLaws, optional
         Laws of the tip edges of gears that are set up likewise, to be used again.
     """
-    tables = tables or EdgeTables(setup, bodies)
+    corner_laws = corner_laws or CornerLaws(setup, bodies)
     state: ContactState | None = None
     # without a torque overlap alone says how far contacts reach
     for reach in REACHES if np.all(force) else REACHES[-1:]:
-        flanks = loaded_flanks(setup, bodies, film, reach, tables)
-        state = solve_one_side(setup, bodies, force, flanks, tables) if np.all(force) else None
+        flanks = loaded_flanks(setup, bodies, film, reach, corner_laws)
+        state = solve_one_side(setup, bodies, force, flanks, corner_laws) if np.all(force) else None
         if state is None or np.max(state.closing + state.touch) <= flanks.candidates.reach_gap:
             break
     if state is None or setup.two_sided or _near(setup, flanks, state):
-        state = _two_sided(setup, bodies, force, film, flanks, state, reach, tables)
+        state = _two_sided(setup, bodies, force, film, flanks, state, reach, corner_laws)
     return state
 
 
@@ -80,14 +80,14 @@ def _near(setup: MeshSetup, flanks: LoadedFlanks, state: ContactState) -> bool:
 
 
 def solve_one_side(
-    setup: MeshSetup, bodies: PairCompliance, force: Array, flanks: LoadedFlanks, tables: EdgeTables
+    setup: MeshSetup, bodies: PairCompliance, force: Array, flanks: LoadedFlanks, corner_laws: CornerLaws
 ) -> ContactState:
     """Solution with the loaded flanks alone."""
     sides, whole = one_side(setup, flanks), force[:, None, None]
     stays = share_staying(bodies, whole, sides)
     if not setup.moving_contact:
         return contact_state(bodies, force, sides, stays)
-    side = moved_side(setup, bodies, flanks, tables)
+    side = moved_side(setup, bodies, flanks, corner_laws)
     moved = moved_share(side, bodies, whole, stays)
     return contact_state(bodies, force, sides, moved or stays, (side,), settled=moved is not None)
 
@@ -100,7 +100,7 @@ def _two_sided(
     flanks: LoadedFlanks,
     alone: ContactState | None,
     reach: float,
-    tables: EdgeTables,
+    corner_laws: CornerLaws,
 ) -> ContactState:
     """Solution with the flanks on both sides, but for torques that are refused with one."""
     apart = np.zeros(len(force), dtype=bool)
@@ -112,7 +112,7 @@ def _two_sided(
             clear = stays_clear(setup, bodies, force, film, flanks, alone, apart, reach)
             if clear is not None:
                 return replace(alone, opposite=clear)
-    state = share_with_opposite(setup, bodies, force, film, flanks, alone, apart, reach, tables)
+    state = share_with_opposite(setup, bodies, force, film, flanks, alone, apart, reach, corner_laws)
     if alone is None or (state.opposite is not None and state.opposite.bears):
         return state
     return replace(

@@ -17,7 +17,7 @@ from fem.cycle.model_error import LoadedContacts
 from fem.cycle.result import MeshCycle
 from fem.elasticity.flamant import hertz_half_width
 from fem.elasticity.plane_elasticity import reduced_modulus
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.pair_compliance import PairCompliance
@@ -31,7 +31,7 @@ def cycle_of(
     bodies: PairCompliance,
     film: Film | None,
     tolerance: float,
-    tables: EdgeTables,
+    corner_laws: CornerLaws,
     contact: ContactState,
     number: int,
     torque: float,
@@ -108,7 +108,7 @@ def cycle_of(
             force,
             film,
             tolerance,
-            tables=tables,
+            corner_laws=corner_laws,
             scatter=errors.of(number),
             ends_error=float(errors.ends[number]),
         ),

@@ -12,7 +12,7 @@ from fem.contact.contact_state import ContactState
 from fem.contact.face_errors import half_as_many
 from fem.contact.shared_contacts import yielding_over_face
 from fem.contact.solver import solve_contact
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
 from fem.laws.relieved_flanks import ends_of_flanks, starts_of_relief
@@ -49,7 +49,7 @@ class ContactProblem:
         Whether the secant counts what the film yields (``fem.laws.local_law.film_yielding``).
     turn : (2,) array, optional
         Turn of pinion and wheel per force that is left out of the deflection (``fem.pair.references``) [m/N].
-    tables : EdgeTables, optional
+    corner_laws : CornerLaws, optional
         Laws of the tip edges that are known already.
     varied : tuple of (Film, float)
         Other films, and how much of what they change is error.
@@ -67,7 +67,7 @@ class ContactProblem:
     corners: Array | None = None
     film_yields: bool = False
     turn: Array | None = None
-    tables: EdgeTables | None = None
+    corner_laws: CornerLaws | None = None
     varied: tuple[tuple[Film, float], ...] = ()
     scatter: Mapping[str, Scatter] | None = None
     ends_error: float = 0.0
@@ -100,12 +100,12 @@ class ContactProblem:
         return self._divided(self.bodies)
 
     def _sampler(self, bodies: PairCompliance) -> Sampler:
-        known = self.tables
-        tables = EdgeTables(self.setup, bodies) if known is None else known.serving(bodies)
+        known = self.corner_laws
+        corner_laws = CornerLaws(self.setup, bodies) if known is None else known.serving(bodies)
 
         def sample(position: Array) -> Sampled:
             state = solve_contact(
-                self.setup.at(position), bodies, np.array([abs(self.force)]), self.film, tables
+                self.setup.at(position), bodies, np.array([abs(self.force)]), self.film, corner_laws
             )
             if why := state.refusal(0):
                 raise SolverError(f"between the positions of the mesh cycle {why}")

@@ -15,7 +15,7 @@ from fem.cycle.assemble import cycle_of
 from fem.cycle.result import MeshCycle
 from fem.cycle.several_torques import one_or_several
 from fem.laws.contact_candidates import contact_candidates
-from fem.laws.edge_tables import EdgeTables, edge_tables
+from fem.laws.corner_laws import CornerLaws, laws_of_corners
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import Deviations, MeshSetup
 from fem.pair.compliance import compliance as _compliance
@@ -170,14 +170,14 @@ def mesh_cycle(
         else _compliance(pair, tolerance, plane, tip_edges=beyond_path, options=options)
     )
     ready = watch.seconds
-    tables = edge_tables(setup, bodies)
+    corner_laws = laws_of_corners(setup, bodies)
     solutions: dict[int, tuple[MeshSetup, ContactState, int]] = {}
     for back, chosen in ((False, torque > 0.0), (True, torque < 0.0), (False, torque == 0.0)):
         numbers = np.flatnonzero(chosen)
         if numbers.size:
             asked = np.abs(torque[numbers]) / pair.base_radii[0]
             side = replace(setup, back=back)
-            for contact, which in _solved(side, bodies, asked, film, tables):
+            for contact, which in _solved(side, bodies, asked, film, corner_laws):
                 solutions.update({int(numbers[k]): (side, contact, n) for n, k in enumerate(which)})
     before = Cost(0.0) if compliance is not None else bodies.cost
     cost = Cost(
@@ -188,7 +188,7 @@ def mesh_cycle(
         counts=bodies.cost.counts,
     )
     cycles = tuple(
-        cycle_of(side, bodies, film, tolerance, tables, contact, number, float(torque[k]), cost)
+        cycle_of(side, bodies, film, tolerance, corner_laws, contact, number, float(torque[k]), cost)
         for k, (side, contact, number) in sorted(solutions.items())
     )
     named = reference or default_reference(bodies)
@@ -199,13 +199,13 @@ def mesh_cycle(
 
 
 def _solved(
-    setup: MeshSetup, bodies: PairCompliance, force: Array, film: Film | None, tables: EdgeTables
+    setup: MeshSetup, bodies: PairCompliance, force: Array, film: Film | None, corner_laws: CornerLaws
 ) -> list[tuple[ContactState, list[int]]]:
     """Solutions for forces (torques,) [N], each with separate numbers: one by one where one does not settle."""
-    contact, numbers = solve_contact(setup, bodies, force, film, tables), list(range(len(force)))
+    contact, numbers = solve_contact(setup, bodies, force, film, corner_laws), list(range(len(force)))
     if contact.settled or len(numbers) == 1:
         return [(contact, numbers)]
-    return [(solve_contact(setup, bodies, force[n : n + 1], film, tables), [n]) for n in numbers]
+    return [(solve_contact(setup, bodies, force[n : n + 1], film, corner_laws), [n]) for n in numbers]
 
 
 def _check(

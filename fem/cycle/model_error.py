@@ -12,7 +12,7 @@ from fem.contact.loaded_flanks import loaded_flanks
 from fem.contact.moving_contact import ContactMoves, contact_moves, model_error
 from fem.contact.solver import solve_contact, solve_one_side
 from fem.laws.contact_candidates import REACHES
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.pair.references import held_turns
 
 if TYPE_CHECKING:
@@ -90,12 +90,12 @@ class LoadedContacts:
         force, shares = np.array([abs(self.load)]), []
         for moving in (False, True):
             setup = replace(self.setup, moving_contact=moving, pitches=1, two_sided=both_sides)
-            tables = EdgeTables(setup, self.bodies)
+            corner_laws = CornerLaws(setup, self.bodies)
             if both_sides:
-                solution = solve_contact(setup, self.bodies, force, None, tables)
+                solution = solve_contact(setup, self.bodies, force, None, corner_laws)
             else:
-                flanks = loaded_flanks(setup, self.bodies, None, REACHES[0], tables)
-                solution = solve_one_side(setup, self.bodies, force, flanks, tables)
+                flanks = loaded_flanks(setup, self.bodies, None, REACHES[0], corner_laws)
+                solution = solve_one_side(setup, self.bodies, force, flanks, corner_laws)
             if not solution.settled:
                 return 1.0
             shares.append(solution.share)

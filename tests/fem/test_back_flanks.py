@@ -22,7 +22,7 @@ from fem.elasticity.line_load import flank_points, line_loads
 from fem.elasticity.plane_elasticity import PlaneElasticity, stiffness_matrix
 from fem.elasticity.ring import ring_of
 from fem.influence.back_compliance import back_compliance
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import face_setting
 from gears import Gear, GearDeviations, GearPair, PitchDeviations, TipRelief
@@ -141,8 +141,8 @@ def test_large_backlash_costs_nothing_and_changes_nothing(loose):
     bodies = fem.compliance(close, tolerance=0.005)
     given = MeshSetup(close, 10)
     force = np.array([600.0 / close.base_radii[0]])
-    flanks = loaded_flanks(given, bodies, None, 0.6, EdgeTables(given, bodies))
-    alone = solve_one_side(given, bodies, force, flanks, EdgeTables(given, bodies))
+    flanks = loaded_flanks(given, bodies, None, 0.6, CornerLaws(given, bodies))
+    alone = solve_one_side(given, bodies, force, flanks, CornerLaws(given, bodies))
     cycle = fem.mesh_cycle(close, 600.0, 10, bodies)
     assert np.array_equal(cycle.forces, (alone.share.forces / alone.lever_ratios).reshape(cycle.forces.shape))
     assert "back flanks stand clear by at least" in cycle.message
@@ -154,13 +154,13 @@ def test_flanks_that_stay_clear_are_known_without_their_laws(teeth):
     pair = GearPair(Gear(teeth[0]), Gear(teeth[1]), 2e-3, 0.04)
     bodies = fem.compliance(pair, tolerance=0.005)
     given, force = MeshSetup(pair, 12), np.array([50.0, 600.0]) / pair.base_radii[0]
-    tables = EdgeTables(given, bodies)
-    flanks = loaded_flanks(given, bodies, None, 0.6, tables)
-    alone = solve_one_side(given, bodies, force, flanks, tables)
+    corner_laws = CornerLaws(given, bodies)
+    flanks = loaded_flanks(given, bodies, None, 0.6, corner_laws)
+    alone = solve_one_side(given, bodies, force, flanks, corner_laws)
     apart = np.zeros(2, dtype=bool)
     clear = stays_clear(given, bodies, force, None, flanks, alone, apart, 0.6)
     assert "back_flanks" not in vars(bodies)
-    true = share_with_opposite(given, bodies, force, None, flanks, alone, apart, 0.6, tables).opposite
+    true = share_with_opposite(given, bodies, force, None, flanks, alone, apart, 0.6, corner_laws).opposite
     least_gap, gap = clear.contacts.open, true.contacts.open
     assert np.all(least_gap <= gap)
     deflection = alone.share.transmission_error[..., None]
@@ -183,11 +183,11 @@ def test_gaps_of_flanks_that_stay_clear_hold_what_free_ends_add():
     pair = GearPair(Gear(36), Gear(40), 2e-3, 4e-3)
     bodies, force = fem.compliance(pair, tolerance=0.02), np.array([60.0 / pair.base_radii[0]])
     setup, apart = MeshSetup(pair, 6, face=face_setting(pair, None, 8, "free-ends")), np.zeros(1, dtype=bool)
-    tables = EdgeTables(setup, bodies)
-    flanks = loaded_flanks(setup, bodies, None, 0.6, tables)
-    alone = solve_one_side(setup, bodies, force, flanks, tables)
+    corner_laws = CornerLaws(setup, bodies)
+    flanks = loaded_flanks(setup, bodies, None, 0.6, corner_laws)
+    alone = solve_one_side(setup, bodies, force, flanks, corner_laws)
     clear = stays_clear(setup, bodies, force, None, flanks, alone, apart, 0.6)
-    true = share_with_opposite(setup, bodies, force, None, flanks, alone, apart, 0.6, tables).opposite
+    true = share_with_opposite(setup, bodies, force, None, flanks, alone, apart, 0.6, corner_laws).opposite
     gap, deflection = true.contacts.open, alone.share.transmission_error[..., None]
     near = gap < deflection
     doubted = (gap[near] - clear.contacts.open[near]) / np.broadcast_to(deflection, gap.shape)[near]
@@ -247,8 +247,8 @@ def test_reversal_of_pressed_gears(tight):
 def test_forces_are_those_of_a_convex_program(tight):
     pair, bodies = tight
     given, force = MeshSetup(pair, 3), 100.0 / pair.base_radii[0]
-    tables = EdgeTables(given, bodies)
-    flanks, other = (loaded_flanks(one, bodies, None, 0.6, tables) for one in (given, given.opposite))
+    corner_laws = CornerLaws(given, bodies)
+    flanks, other = (loaded_flanks(one, bodies, None, 0.6, corner_laws) for one in (given, given.opposite))
     both = both_sides(given, bodies, flanks, other)
     found = solve_contact(given, bodies, np.array([force]), None)
     forces = np.concatenate([found.share.forces, found.opposite.share.forces], axis=-1)[0, 0]

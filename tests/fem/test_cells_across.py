@@ -16,7 +16,7 @@ from fem.contact.cell_matrix import cell_matrix, cross_matrix
 from fem.contact.contact_sides import between
 from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
 from fem.influence.gear_store import GearStore, forget_gears
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_across import (
     PlacesAcross,
@@ -46,8 +46,8 @@ class _Sides(NamedTuple):
 def _sides(bodies: PairCompliance, position: Array | None = None) -> _Sides:
     setup = MeshSetup(bodies.pair, 5)
     setup = setup if position is None else setup.at(position)
-    tables = EdgeTables(setup, bodies)
-    front, back = (loaded_flanks(side, bodies, None, 0.6, tables) for side in (setup, setup.opposite))
+    corner_laws = CornerLaws(setup, bodies)
+    front, back = (loaded_flanks(side, bodies, None, 0.6, corner_laws) for side in (setup, setup.opposite))
     return _Sides(setup, bodies, front, back)
 
 

@@ -209,9 +209,9 @@ def test_third_order_energies_wait_until_they_are_asked_for(article_pair):
 
 def test_laws_of_tip_edges_are_computed_once(article_pair, article_bodies, monkeypatch):
     """For either corner, whatever the pitch and the torque, on both meshes of an estimate."""
-    from fem.laws import corner_surface, edge_tables
+    from fem.laws import corner_laws, corner_surface
 
-    edge_tables.forget_laws()
+    corner_laws.forget_laws()
     asked, laws = [], corner_surface.edge_laws
 
     def counted(pair, strips, corner, rho1, *others, **more):

@@ -13,7 +13,7 @@ from fem.contact.cell_laws import CellLaws
 from fem.contact.cell_matrix import cell_coupling
 from fem.contact.loaded_flanks import loaded_flanks
 from fem.contact.solver import solve_contact
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import face_setting
 from gears import Alignment, Bearing, Gear, GearPair, Material, Shaft, ShaftSegment
@@ -169,7 +169,7 @@ def test_the_torque_works_what_bodies_contacts_and_shafts_store(bodies, shafts, 
     forces = found.contacts.forces[:, 0].reshape(2, 1, -1)
     assert np.all((forces > 0.0).sum(axis=-1) == cells * found.candidates.touchable.sum())
     assert np.abs(found.contacts.shafts.tilt_touch).min() > 1e-7
-    flanks = loaded_flanks(given, bodies, None, 0.6, EdgeTables(given, bodies))
+    flanks = loaded_flanks(given, bodies, None, 0.6, CornerLaws(given, bodies))
     coupling = cell_coupling(face, bodies, flanks.candidates, flanks.lever_ratios, flanks.matrix)
     every, nothing = np.ones((2, 1), dtype=bool), np.zeros_like(forces)
     stored = 0.5 * np.sum(forces * coupling.applied(forces, every, nothing), axis=-1)[:, 0]

@@ -16,7 +16,7 @@ from fem.contact.moving_coupling import other_pairs, tooth_smoothing
 from fem.elasticity.line_load import flank_points
 from fem.elasticity.prism import Face, prism
 from fem.influence.gear_face import ENDS_SIZES, section_of
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import face_setting
 from fem.pair.unequal_widths import cosines
@@ -104,10 +104,10 @@ def problem(bodies, beyond=True):
     """Cells that move, some forces on them and a deflection."""
     face = face_setting(PLASTIC, Alignment(40e-6), CELLS, "walls")
     given = MeshSetup(PLASTIC, 4, beyond, moving_contact=True, face=face)
-    force, tables = TORQUE / PLASTIC.base_radii[0], EdgeTables(given, bodies)
-    flanks = loaded_flanks(given, bodies, None, 0.6, tables)
+    force, corner_laws = TORQUE / PLASTIC.base_radii[0], CornerLaws(given, bodies)
+    flanks = loaded_flanks(given, bodies, None, 0.6, corner_laws)
     rise = np.full((1, 1, 4, flanks.candidates.touchable.shape[-1], CELLS), 2e-6)
-    cells = moved_side(given, bodies, flanks, tables).contacts(bodies, rise)
+    cells = moved_side(given, bodies, flanks, corner_laws).contacts(bodies, rise)
     draw = np.random.default_rng(1).uniform(
         0.2, 1.0, (1, 1, 4, flanks.candidates.touchable.shape[-1] * CELLS)
     )
@@ -157,8 +157,8 @@ def test_newton_s_matrix_is_the_derivative(bodies):
 
 def test_compliance_between_cells_is_that_of_the_moved_pairs(bodies):
     given = MeshSetup(PLASTIC, 4, face=face_setting(PLASTIC, None, CELLS, "walls"))
-    flanks = loaded_flanks(given, bodies, None, 0.6, EdgeTables(given, bodies))
-    own = moved_flanks(given, bodies, flanks, EdgeTables(given, bodies))
+    flanks = loaded_flanks(given, bodies, None, 0.6, CornerLaws(given, bodies))
+    own = moved_flanks(given, bodies, flanks, CornerLaws(given, bodies))
     ones = np.ones_like(flanks.lever_ratios)
     stays, anew = (
         cell_coupling(given.face, bodies, flanks.candidates, levers, matrix)
@@ -172,7 +172,7 @@ def test_compliance_between_cells_is_that_of_the_moved_pairs(bodies):
 
 def test_smoothing_holds_even_loads_and_takes_short_waves_away(bodies):
     where = loaded_flanks(
-        MeshSetup(PLASTIC, 4), bodies, None, 0.6, EdgeTables(MeshSetup(PLASTIC, 4), bodies)
+        MeshSetup(PLASTIC, 4), bodies, None, 0.6, CornerLaws(MeshSetup(PLASTIC, 4), bodies)
     ).candidates
     face = face_setting(PLASTIC, None, 32, "walls")
     smooth = tooth_smoothing(face, bodies, where)
@@ -187,7 +187,7 @@ def test_smoothing_holds_even_loads_and_takes_short_waves_away(bodies):
 
 def test_slices_tilt_by_their_own_load(bodies):
     given = MeshSetup(PLASTIC, 4)
-    where = loaded_flanks(given, bodies, None, 0.6, EdgeTables(given, bodies)).candidates
+    where = loaded_flanks(given, bodies, None, 0.6, CornerLaws(given, bodies)).candidates
     smooth = tooth_smoothing(face_setting(PLASTIC, None, CELLS, "slices"), bodies, where)
     np.testing.assert_array_equal(smooth, np.broadcast_to(np.eye(CELLS), smooth.shape))
 

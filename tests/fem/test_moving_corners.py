@@ -9,9 +9,9 @@ import pytest
 
 import fem
 from fem.contact.solver import solve_contact
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.corner_surface import up_to
 from fem.laws.cut_off import cut_off
-from fem.laws.edge_tables import EdgeTables
 from fem.laws.local_law import Table
 from fem.laws.mesh_setup import MeshSetup
 from fem.laws.relieved_flanks import plain_touch
@@ -31,7 +31,7 @@ def pair_of(factor=1.0):
 def plastic():
     pair = pair_of()
     bodies = fem.compliance(pair, tolerance=0.01)
-    return pair, bodies, EdgeTables(MeshSetup(pair, moving_contact=True), bodies)
+    return pair, bodies, CornerLaws(MeshSetup(pair, moving_contact=True), bodies)
 
 
 def ends(pair):
@@ -39,10 +39,10 @@ def ends(pair):
     return 0.0, (pair.points.E - pair.points.A) / pair.base_pitch
 
 
-def solved(pair, bodies, tables, position, torque, moving=True):
+def solved(pair, bodies, corner_laws, position, torque, moving=True):
     given = MeshSetup(pair, 1, moving_contact=moving).at(np.atleast_1d(position))
     found = solve_contact(
-        given, bodies, np.array([torque / pair.base_radii[0]]), None, tables if moving else None
+        given, bodies, np.array([torque / pair.base_radii[0]]), None, corner_laws if moving else None
     )
     assert not found.refusal(0)
     return found
@@ -62,15 +62,15 @@ def test_nothing_steps_at_A_where_the_flank_goes_on_below_it():
     pair = GearPair(Gear(60), Gear(18), 2e-3, 20e-3, material=PA66).with_backlash(600e-6)
     bodies = fem.compliance(pair, tolerance=0.01)
     assert bodies.pinion.rho_range[0] < pair.points.A - 0.5 * pair.module
-    tables = EdgeTables(MeshSetup(pair, moving_contact=True), bodies)
-    before, after = solved(pair, bodies, tables, [-1e-6, 1e-6], 20.0).share.transmission_error[0, 0]
+    corner_laws = CornerLaws(MeshSetup(pair, moving_contact=True), bodies)
+    before, after = solved(pair, bodies, corner_laws, [-1e-6, 1e-6], 20.0).share.transmission_error[0, 0]
     assert after == pytest.approx(before, rel=5e-5)
 
 
 def test_what_the_flank_yields_changes_with_the_roll_on_the_flank_alone(plastic):
     """Derivatives by D of what the pinion's flank yields, on the flank, beyond its tip and below its end."""
-    pair, bodies, tables = plastic
-    own = solved(pair, bodies, tables, 0.4, 20.0).side.own
+    pair, bodies, corner_laws = plastic
+    own = solved(pair, bodies, corner_laws, 0.4, 20.0).side.own
     low, high = bodies.pinion.rho_range
     step, force = 1e-8, np.full(own.base.shape, 30.0)
     for rho in (low - 0.2e-3, 0.5 * (low + high), high + 0.05e-3):
@@ -102,10 +102,10 @@ def test_stiff_teeth_have_the_law_of_contacts_that_stay():
     for factor in (1.0, 40.0):
         pair = pair_of(factor)
         bodies = fem.compliance(pair, tolerance=0.01)
-        tables = EdgeTables(MeshSetup(pair, moving_contact=True), bodies)
+        corner_laws = CornerLaws(MeshSetup(pair, moving_contact=True), bodies)
         positions = [end + away for end in ends(pair) for away in (-0.02, -0.004, 0.004, 0.03)]
         moves, stays = (
-            solved(pair, bodies, tables, positions, 10.0, moving).share.transmission_error[0, 0]
+            solved(pair, bodies, corner_laws, positions, 10.0, moving).share.transmission_error[0, 0]
             for moving in (True, False)
         )
         changes.append(np.abs(moves / stays - 1).max())
@@ -115,8 +115,8 @@ def test_stiff_teeth_have_the_law_of_contacts_that_stay():
 
 @pytest.mark.parametrize("corner", [0, 1])
 def test_the_surface_is_the_law_by_strips(plastic, corner):
-    pair, bodies, tables = plastic
-    surface, slid = tables.surfaces[corner], tables.slid[corner]
+    pair, bodies, corner_laws = plastic
+    surface, slid = corner_laws.surfaces[corner], corner_laws.slid[corner]
     gear, other = (bodies.pinion, bodies.wheel)[corner], (bodies.wheel, bodies.pinion)[corner]
     for away in (-0.09, -0.02, 0.0, 0.003, 0.04, 0.3):
         z = np.array([away * pair.module])
@@ -158,9 +158,9 @@ def test_derivatives_of_the_surface(plastic):
 
 def test_the_lever_of_an_edge_is_in_its_gap(plastic):
     """Turned by D, the pinion's corner closes by kappa D: kappa = 1 - d gap/dx."""
-    pair, _, tables = plastic
+    pair, _, corner_laws = plastic
     z = np.linspace(0.05, 0.3, 5) * pair.module
-    gap = [tables.surfaces[0].gap(z + s) for s in (-1e-7, 1e-7)]
+    gap = [corner_laws.surfaces[0].gap(z + s) for s in (-1e-7, 1e-7)]
     place = pair.points.E + z
     _, where = fem.laws.tip_geometry.unloaded_gap(
         pair.base_radii[::-1], pair.line_of_action, pair.line_of_action - place, np.array([pair.points.E])
@@ -188,9 +188,11 @@ def touched(radii, line, tip, place, rested):
 
 def test_edges_touch_where_gears_that_are_turned_by_the_deflection_do(plastic):
     """The pinion is turned by D, rigidly: its tip goes on with it, and the wheel's presses into what has come on."""
-    pair, bodies, tables = plastic
+    pair, bodies, corner_laws = plastic
     radii, line = pair.base_radii, pair.line_of_action
-    found = solved(pair, bodies, tables, [end + away for end in ends(pair) for away in (-0.03, 0.03)], 20.0)
+    found = solved(
+        pair, bodies, corner_laws, [end + away for end in ends(pair) for away in (-0.03, 0.03)], 20.0
+    )
     rho, D = found.flank_rho(0)[:, 0], found.share.transmission_error[0, 0]
     known, seen = found.share.forces[0, 0] > 0.0, [0, 0]
     for i, k in zip(*np.nonzero(found.candidates.edge & known), strict=True):

@@ -15,7 +15,7 @@ from fem.contact.moved_side import moved_side
 from fem.contact.moving_sides import MovedSides
 from fem.contact.solver import solve_contact
 from fem.laws.contact_candidates import REACHES
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup
 from gears import Gear, GearPair, Material
 
@@ -44,11 +44,11 @@ def tight(request):
 
 def problem(bodies, beyond, positions=5):
     given = MeshSetup(bodies.pair, positions, beyond, moving_contact=True)
-    tables = EdgeTables(given, bodies)
+    corner_laws = CornerLaws(given, bodies)
     sides = []
     for setting in (given, given.opposite):
-        flanks = loaded_flanks(setting, bodies, None, REACHES[0], tables)
-        sides.append(moved_side(setting, bodies, flanks, tables))
+        flanks = loaded_flanks(setting, bodies, None, REACHES[0], corner_laws)
+        sides.append(moved_side(setting, bodies, flanks, corner_laws))
     pairs = sum(len(side.flanks.candidates.offset) for side in sides)
     return MovedSides(*sides).contacts(bodies, np.zeros((1, 1, positions, pairs, 1)))
 

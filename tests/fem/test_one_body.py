@@ -11,7 +11,7 @@ import fem
 from fem.contact.contact_sides import both_sides
 from fem.contact.loaded_flanks import loaded_flanks
 from fem.laws.contact_candidates import REACHES
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup
 from gears import Gear, GearPair
 
@@ -29,8 +29,8 @@ def held_by(bore: float, teeth: tuple[int, int] = (36, 40), shift: float = 0.0) 
 def energy_over_loads(pair: GearPair, reach: float) -> np.ndarray:
     """Smallest eigenvalue over the mean diagonal of what the contacts yield at a force, at every position."""
     bodies, given = fem.compliance(pair, 0.01), MeshSetup(pair, 12)
-    tables = EdgeTables(given, bodies)
-    front, back = (loaded_flanks(one, bodies, None, reach, tables) for one in (given, given.opposite))
+    corner_laws = CornerLaws(given, bodies)
+    front, back = (loaded_flanks(one, bodies, None, reach, corner_laws) for one in (given, given.opposite))
     both = both_sides(given, bodies, front, back)
     np.testing.assert_array_equal(both.matrix, np.swapaxes(both.matrix, 1, 2))
     secant = both.laws.approach(np.full(both.gaps.shape, FORCE))[0] / FORCE
@@ -67,8 +67,8 @@ def test_far_teeth_feel_the_hub_alone():
     pair = held_by(0.05)
     bodies = fem.compliance(pair, 0.01)
     given = MeshSetup(pair, 2)
-    tables = EdgeTables(given, bodies)
-    front, back = (loaded_flanks(one, bodies, None, 0.6, tables) for one in (given, given.opposite))
+    corner_laws = CornerLaws(given, bodies)
+    front, back = (loaded_flanks(one, bodies, None, 0.6, corner_laws) for one in (given, given.opposite))
     near = both_sides(given, bodies, front, back).matrix
     reached = bodies.back_flanks
     few = tuple(replace(one, series={0: one.series[0]}) for one in reached)

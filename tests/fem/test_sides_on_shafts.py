@@ -13,7 +13,7 @@ from fem.contact.cell_laws import CellLaws
 from fem.contact.contact_sides import both_sides
 from fem.contact.loaded_flanks import loaded_flanks
 from fem.contact.solver import solve_contact, solve_one_side
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import face_setting
 from fem.pair.face_shafts import shafts_under_face
@@ -146,8 +146,8 @@ def test_the_torque_works_what_bodies_contacts_and_shafts_store(tight):
     setup = MeshSetup(pair, 1, False, face=face).at(np.array([0.3]))
     force = pair.normal_force(20.0) * np.array([1.0 - change, 1.0 + change])
     state = solve_contact(setup, tight, force, None)
-    tables = EdgeTables(setup, tight)
-    flanks, other = (loaded_flanks(each, tight, None, 0.6, tables) for each in (setup, setup.opposite))
+    corner_laws = CornerLaws(setup, tight)
+    flanks, other = (loaded_flanks(each, tight, None, 0.6, corner_laws) for each in (setup, setup.opposite))
     sides = both_sides(setup, tight, flanks, other)
     loads = [side.contacts.forces[:, 0] for side in (state, state.opposite)]
     for load in loads:
@@ -198,11 +198,11 @@ def test_flanks_that_stand_clear_do_so_by_less_than_is_said_without_their_laws()
     pair = GearPair(Gear(36), Gear(40), 2e-3, 0.04).with_backlash(15e-6)
     bodies = fem.compliance(pair, tolerance=0.02)
     setup = MeshSetup(pair, 4, False, face=face_setting(pair, Alignment(8e-6), CELLS, "walls", SHAFTS))
-    force, tables = np.array([pair.normal_force(60.0)]), EdgeTables(setup, bodies)
-    flanks = loaded_flanks(setup, bodies, None, 0.6, tables)
+    force, corner_laws = np.array([pair.normal_force(60.0)]), CornerLaws(setup, bodies)
+    flanks = loaded_flanks(setup, bodies, None, 0.6, corner_laws)
     known = solve_contact(setup, bodies, force, None).opposite
     both = solve_contact(replace(setup, two_sided=True), bodies, force, None)
-    alone = solve_one_side(setup, bodies, force, flanks, tables)
+    alone = solve_one_side(setup, bodies, force, flanks, corner_laws)
     assert known is not None
     assert not both.opposite.bears
     np.testing.assert_allclose(both.share.forces, alone.share.forces, rtol=1e-9)

@@ -21,7 +21,7 @@ from fem.contact.contact_state import ContactState
 from fem.contact.face_errors import face_load_factors
 from fem.contact.moving_contacts import MovingContacts
 from fem.contact.solver import solve_contact
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import face_setting
 from gears import Alignment, Gear, GearPair, Lead, Material
@@ -41,7 +41,7 @@ def solved(
     over = face_setting(pair, face.get("alignment"), face.get("cells", 64), face.get("model", "walls"))
     given = MeshSetup(pair, 1, moving_contact=moving, face=over).at(np.array([position]))
     force = np.array([torque / pair.base_radii[0]])
-    return solve_contact(given, bodies, force, None, EdgeTables(given, bodies))
+    return solve_contact(given, bodies, force, None, CornerLaws(given, bodies))
 
 
 def deflection(found: ContactState) -> float:

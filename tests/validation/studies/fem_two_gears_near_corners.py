@@ -19,7 +19,7 @@ from fem_moving_contact import PLASTIC
 import fem
 from fem.contact import moving_contact
 from fem.contact.solver import solve_contact
-from fem.laws.edge_tables import EdgeTables
+from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup
 from gears import TipRelief
 
@@ -43,7 +43,7 @@ def ours(bodies, position, torque, moving=False, strained=True):
             moving_contact._energies = lambda parts, law: np.zeros((2, *np.shape(parts)[1:]))
         given = MeshSetup(bodies.pair, 1, moving_contact=moving).at(np.array([position % 1.0]))
         force = np.array([torque / bodies.pair.base_radii[0]])
-        found = solve_contact(given, bodies, force, None, EdgeTables(given, bodies))
+        found = solve_contact(given, bodies, force, None, CornerLaws(given, bodies))
     finally:
         moving_contact._energies = energies
     share = found.share.forces[0, 0, 0] / found.lever_ratios[0] / bodies.pair.face_width / 1e3

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from fem.laws.mesh_setup import MeshSetup
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["EdgeTables", "edge_tables", "forget_laws"]
+__all__ = ["CornerLaws", "forget_laws", "laws_of_corners"]
 
 
-class EdgeTables:
+class CornerLaws:
     """Laws beside the tip corners of a pair.
 
     Parameters
@@ -36,14 +36,14 @@ class EdgeTables:
     def __init__(self, setup: MeshSetup, bodies: PairCompliance) -> None:
         self.setup, self.bodies = setup, bodies
         self._kept: dict[tuple[int, bool], tuple[CornerSurface, CornerSurface]] = {}
-        self._other: EdgeTables | None = None
+        self._other: CornerLaws | None = None
 
-    def serving(self, bodies: PairCompliance) -> EdgeTables:
+    def serving(self, bodies: PairCompliance) -> CornerLaws:
         """Laws of the same pair on a mesh: these, or others that are kept here as well."""
         if bodies.level is self.bodies.level:
             return self
         if self._other is None:
-            self._other = EdgeTables(self.setup, bodies)
+            self._other = CornerLaws(self.setup, bodies)
         return self._other
 
     def at(
@@ -100,10 +100,10 @@ class EdgeTables:
         return self._kept[key]
 
 
-_TABLES: Memo[EdgeTables] = Memo(4)
+_KEPT: Memo[CornerLaws] = Memo(4)
 
 
-def edge_tables(setup: MeshSetup, bodies: PairCompliance) -> EdgeTables:
+def laws_of_corners(setup: MeshSetup, bodies: PairCompliance) -> CornerLaws:
     """Laws of a pair set up likewise, with what loads before have left in them.
 
     Parameters
@@ -113,9 +113,9 @@ def edge_tables(setup: MeshSetup, bodies: PairCompliance) -> EdgeTables:
         The very record, as are the deviations: laws that are kept hold theirs, so that no other one can take its place.
     """
     key = id(bodies), setup.rounds, setup.beyond_path, id(setup.deviations)
-    return _TABLES.obtain(key, lambda: EdgeTables(setup, bodies))
+    return _KEPT.obtain(key, lambda: CornerLaws(setup, bodies))
 
 
 def forget_laws() -> None:
     """Forget all laws that are kept."""
-    _TABLES.clear()
+    _KEPT.clear()
