@@ -34,7 +34,6 @@ from .model.drive_damping import rayleigh_damping as rayleigh_damping
 from .model.drive_oscillator import DriveOscillator as DriveOscillator
 from .model.fourier import FourierFit as FourierFit
 from .model.fourier import fit_fourier as fit_fourier
-from .model.options import OPTIONS as OPTIONS
 from .model.options import Options as Options
 from .model.oscillator import GearOscillator as GearOscillator
 from .model.scaling import Scaling as Scaling

@@ -198,19 +198,19 @@ class Follower:
 @cache
 def followers(constant: Constant) -> tuple[Follower, ...]:
     """What is computed from a constant when modules are imported, and from that in turn, in its order."""
-    family, found = [constant], []
-    for one in family:
-        for module, name in bindings(one.module, one.name):
+    family, statements = [constant], []
+    for member in family:
+        for module, name in bindings(member.module, member.name):
             for statement in sources()[module].body:
                 if not isinstance(statement, ast.Assign | ast.AnnAssign) or statement.value is None:
                     continue
                 targets = statement.targets if isinstance(statement, ast.Assign) else [statement.target]
                 names = tuple(n.id for t in targets for n in ast.walk(t) if isinstance(n, ast.Name))
                 follower = Follower(module, statement, names)
-                if names and follower not in found and _mentions(statement.value, name, one.field):
-                    found.append(follower)
+                if names and follower not in statements and _mentions(statement.value, name, member.field):
+                    statements.append(follower)
                     family += [Constant(module, n) for n in names]
-    return tuple(found)
+    return tuple(statements)
 
 
 @dataclass(frozen=True)

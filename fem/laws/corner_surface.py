@@ -155,9 +155,11 @@ class _Corner:
         low, high = -np.arcsinh(deep / unit), np.arcsinh(far * pair.base_pitch / unit)
         xi = np.linspace(low, 0.0, int(-low / STEP) + 2), np.linspace(0.0, high, int(high / STEP) + 2)
         within, beyond = (self.origin + unit * np.sinh(at) for at in xi)
-        # farther out the touched flank turns away from the corner, where strips have no law
+        # farther out the touched flank turns away from the corner, where strips have no law; worn ones are left on the
+        # flank itself, where the gap closes first
         gap = self.open(beyond)
-        near = np.logical_and.accumulate((gap < OPEN * pair.module) & (np.diff(gap, prepend=-np.inf) > 0.0))
+        opens = (np.diff(gap, prepend=-np.inf) > 0.0) | (beyond <= abs(self.origin))
+        near = np.logical_and.accumulate((gap < OPEN * pair.module) & opens)
         near[:4] = True  # as many as a spline needs
         force, none = np.exp(self.log_force), np.zeros(len(within))
         return (

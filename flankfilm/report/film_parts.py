@@ -38,6 +38,8 @@ def film(cycle: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
     if abs(cycle.secant_stiffness_change) < tolerance:
         verdict += said("film_left_out", tolerance=percent(tolerance))
     rounds = said("film_rounds", cycle=cycle, rounds=counted(cycle.rounds, "round"))
+    if cycle.mismatch == 0.0:  # films over place and line load
+        rounds = said("film_table")
     face = factor(PER_FACE) * float(results["pair_face_width"])
     tables = (*((_otherwise(cycle, face),) if cycle.otherwise else ()), _definitions(stage, face))
     return Part(

@@ -1,1 +1,1 @@
-"""The steps from a scene to its results; each computed only when something asks for it."""
+"""The steps from a scene to its results; each computed only where something needs it."""

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator, continue_branch, find_orbit
-from dynamics.branches.step_rules import HIDDEN, hides
+from dynamics.branches.step_rules import hides
+from dynamics.model.options import OPTIONS
 from tests.dynamics.test_drives import same_as
 
 # period doublings at .51265 and .52297, between which the multiplier reaches -1.036
@@ -24,7 +25,7 @@ def test_a_cubic_that_changes_its_sign_twice_is_seen():
     """Against the cubic itself at many places."""
     r = np.random.default_rng(7)
     t = np.linspace(0.0, 1.0, 2001)
-    seen = [0, 0, 0]
+    seen, dip = [0, 0, 0], OPTIONS.hidden_dip
     for _ in range(3000):
         f0, f1, d0, d1 = r.normal(size=4) * [0.3, 0.3, 1.0, 1.0]
         length = r.uniform(0.1, 3.0)
@@ -34,7 +35,7 @@ def test_a_cubic_that_changes_its_sign_twice_is_seen():
         )  # fmt: skip
         changes = np.count_nonzero(np.diff(np.sign(values)))
         said = hides(f0, d0, f1, d1, length)
-        near = np.min(np.abs(values)) < HIDDEN / (1.0 + HIDDEN) * min(abs(f0), abs(f1)) * (1 + 1e-3)
+        near = np.min(np.abs(values)) < dip / (1.0 + dip) * min(abs(f0), abs(f1)) * (1 + 1e-3)
         if changes > 1:
             assert said
             seen[0] += 1

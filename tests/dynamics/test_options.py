@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from dynamics import (
-    OPTIONS,
     FourierStiffness,
     GearOscillator,
     basins,
@@ -20,6 +19,7 @@ from dynamics import (
 )
 from dynamics.attraction import basins as basin_search
 from dynamics.attraction.covers import Cover
+from dynamics.model.options import OPTIONS
 from dynamics.motion import exponents, spectra, sweeps
 from dynamics.motion.sweeps import repeat_after
 

@@ -8,7 +8,8 @@ import pytest
 import fem
 from fem.laws.corner_surface import _Corner, corner_surfaces, rolling_surface
 from fem.laws.mesh_setup import MeshSetup
-from gears import Gear, GearPair, Material, TipRelief
+from gears import Gear, GearDeviations, GearPair, Material, TipRelief
+from gears.tooth.deviations import WearDepth
 
 STEEL, POM = Material(206e9, 0.3, 7850.0), Material(2.8e9, 0.38, 1400.0)
 RELIEF = TipRelief(20e-6, 0.8e-3)
@@ -50,6 +51,22 @@ def test_surfaces_are_the_laws_by_strips(corner, relief, radius, off):
         got = law.value_and_slope(np.repeat(force[:, None], len(place), axis=1))[0] / force[:, None]
         np.testing.assert_allclose(got.T, by_strips, atol=off * yields)
         assert np.abs(by_strips).max() > 0.02 * yields
+
+
+def test_worn_flanks_are_left_before_their_end_and_have_laws_beyond_it():
+    """Where wear tapers off at the end of the path the gap of the corner closes first, and opens then."""
+    pair = GearPair(Gear(23, bore_radius=0.01), Gear(25, bore_radius=0.01), 2e-3, 0.04, material=STEEL)
+    roll = np.radians([15.0, 25.0, 35.0]) * pair.base_radii[1]
+    worn = GearDeviations(wear=WearDepth(roll, np.array([0.0, 1e-6, 0.0])))
+    known = asked(pair, 1, deviations=(None, worn))
+    assert known.origin < 0.0
+    yields = float(known.bodies.own(np.array([pair.points.C]))[0])
+    surface = corner_surfaces(known.setup, known.bodies, 1, 0.6)[1]
+    _, outside, force = places_and_forces(known, 3)
+    law = surface.held(np.ones((len(outside), 1), dtype=bool), outside, np.zeros(len(outside)))
+    got = law.value_and_slope(np.repeat(force[:, None], len(outside), axis=1))[0] / force[:, None]
+    np.testing.assert_allclose(got.T, known.outside(outside, force)[0], atol=1e-3 * yields)
+    assert np.all(surface.covered(outside) > 0.0)
 
 
 @pytest.mark.parametrize(("radius", "step"), [(0.0, 1e-4), (50e-6, 1e-12)])

@@ -345,7 +345,7 @@ def test_every_text_of_the_pages_belongs_to_something():
     report = Path(figures.__file__).parents[1] / "report"
     prose = tomllib.loads((report / "prose.toml").read_text(encoding="utf-8"))
     assert prose["captions"].keys() <= set(figures.__all__)
-    code = "".join(source.read_text(encoding="utf-8") for source in report.glob("*.py"))
+    code = "".join(source.read_text(encoding="utf-8") for source in report.parent.rglob("*.py"))
     assert [name for kind in prose.values() for name in kind if f'"{name}"' not in code] == []
 
 

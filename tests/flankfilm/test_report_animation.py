@@ -17,7 +17,7 @@ import fem
 from base import InputError, SolverError
 from fem.fields.vtk import write_vtk_series
 from flankfilm.figures import Frame, animate_cycle, tooth_picture
-from flankfilm.figures.rendering.teeth import animation
+from flankfilm.figures.rendering import animation
 from flankfilm.files.cache import Cache
 from flankfilm.files.manifest import conclude
 from flankfilm.output.run import results_dataset, write_data

@@ -283,7 +283,7 @@ def _check(model: FilmModel) -> None:
         )
         remedy = "give its place, the same for all cells, or take flooded contacts or a layer of oil"
         raise InputError.at("film.supply", "a meniscus in half-widths", allowed, remedy)
-    if model.definition is not None:
+    if model.stiffness != model.own_stiffness:
         allowed = "must be left out where the load varies along the face: films there have their own slope by the load"
         raise InputError.at("film.definition", repr(model.definition), allowed, "leave it out")
 

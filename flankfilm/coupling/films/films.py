@@ -97,10 +97,11 @@ class FilmModel:
     @property
     def stiffness(self) -> str:
         """Definition of the film stiffness that goes in series with the teeth."""
-        return self.definition or self._own_stiffness
+        return self.definition or self.own_stiffness
 
     @property
-    def _own_stiffness(self) -> str:
+    def own_stiffness(self) -> str:
+        """Definition by the slope of the separation under the load, the model's own."""
         return "dowson-central" if self.name == "dowson" else "approach"
 
     @property
@@ -110,7 +111,7 @@ class FilmModel:
         A meniscus lies where one load has put it when the load changes from there, and the lightest films behind a
         layer are not found.
         """
-        return self.stiffness == self._own_stiffness and self.supply is None
+        return self.stiffness == self.own_stiffness and self.supply is None
 
     @property
     def held(self) -> str:

@@ -18,7 +18,7 @@ from flankfilm.coupling import MeshCycle, mesh_series, stiffness_references
 from flankfilm.coupling.mesh.references import MEANINGS
 from flankfilm.files.cache import Cache
 from flankfilm.report.mesh_parts import references as report_part
-from flankfilm.report.motion_parts import scaling
+from flankfilm.report.oscillator_parts import scaling
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FILM, REFERENCES, TORQUES
 from flankfilm.stages.motion import FOURIER, SCALING
