@@ -158,10 +158,10 @@ def test_the_film_law_meets_value_and_slope_and_stays_positive():
 
 
 @pytest.mark.slow
-def test_films_at_few_places_change_the_mesh_as_films_at_many(monkeypatch):
+def test_films_at_few_positions_change_the_mesh_as_films_at_many(monkeypatch):
     changes = []
-    for places in (9, 25):
-        monkeypatch.setattr("flankfilm.coupling.films.film_table.PLACES", places)
+    for positions in (40, 120):
+        monkeypatch.setattr("flankfilm.coupling.films.films.FILM_POSITIONS", positions)
         given = scene()
         dowson = given.film.model_copy(update={"model": "dowson", "stiffness": "dowson-central"})
         by_formula = given.model_copy(update={"film": dowson})

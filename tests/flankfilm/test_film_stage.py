@@ -53,7 +53,7 @@ def flooded() -> LubricatedCycle:
 @pytest.fixture(scope="module")
 def starved() -> LubricatedCycle:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flankfilm.coupling.films.films.FILM_POSITIONS", 40)
+        patch.setattr("flankfilm.coupling.films.films.FILM_POSITIONS", 8)
         patch.setattr("flankfilm.coupling.films.film_points.profiles", lambda *given: {})
         return stage('supply = "oil-layer"\noil_layer_um = 0.11\n')
 
@@ -61,18 +61,13 @@ def starved() -> LubricatedCycle:
 @pytest.mark.parametrize(
     "supply", ['supply = "oil-layer"\noil_layer_um = 50\n', 'supply = "meniscus"\nmeniscus_mm = 20\n']
 )
-def test_plenty_of_oil_is_the_flooded_film(monkeypatch, flooded: LubricatedCycle, supply: str):
+def test_plenty_of_oil_is_the_flooded_film(flooded: LubricatedCycle, supply: str):
     """A meniscus a hundred half-widths away starves by 1e-4; the film's stiffness is known to 6 % each way.
 
     The film changes the tangent by up to 1 %, so a tenth of that is what two such errors may make.
     """
-    monkeypatch.setattr(
-        "flankfilm.coupling.films.films.FILM_POSITIONS", 24
-    )  # a meniscus has a law of films along the path
     plenty = stage(supply)
-    same = np.argmin(np.abs(plenty.film.rho1 - flooded.film.rho1[:, None]), axis=1)
-    np.testing.assert_allclose(plenty.film.rho1[same], flooded.film.rho1, rtol=1e-12)
-    assert plenty.film.central_thickness[same] == pytest.approx(flooded.film.central_thickness, rel=2e-3)
+    assert plenty.film.central_thickness == pytest.approx(flooded.film.central_thickness, rel=2e-3)
     assert plenty.stiffness == pytest.approx(flooded.stiffness, rel=1e-3)
     assert plenty.secant_stiffness_change == pytest.approx(flooded.secant_stiffness_change, rel=0.05)
     assert plenty.film.starvation == pytest.approx(1.0, abs=2e-3)

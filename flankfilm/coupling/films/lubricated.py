@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Unpack
 
+import numpy as np
+
 import ehl
 import gears
 from base import unclocked
@@ -18,6 +20,12 @@ from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 from flankfilm.coupling.mesh.mesh_cycles import resolved
 from flankfilm.coupling.mesh.resolution import Resolution
 from flankfilm.coupling.mesh.warn_once import pressures_unsaid, warned_once
+
+BEHIND = 1e-3
+"""Part of the load that films on back flanks carry, from which films of a plane pair are solved over place and load.
+
+The law along the path knows the loads of the front flanks alone: below these it would give too thin films.
+"""
 
 SOLVED = FilmModel()
 """Flooded films between smooth flanks, solved."""
@@ -115,7 +123,7 @@ def lubricate(
     *,
     profiles: bool = True,
 ) -> LubricatedCycle:
-    """Mesh cycle with films in series, solved over place and line load wherever these alone say what films do.
+    """Mesh cycle with films in series, along the path or, over a face and near back flanks, over place and line load.
 
     Films change slowly along the path, and the mesh stiffness by a small part: they need fewer positions than
     the cycle itself, whose steps and cusps decide.
@@ -149,10 +157,27 @@ def lubricate(
     with unclocked():
         ehl.solve  # noqa: B018 - loads the solver
     with pressures_unsaid():
-        over_loads = dry.face is not None or (model.follows_load and teeth.pairs == "coupled")
+        over_loads = dry.face is not None or (
+            model.follows_load and _carried_behind(teeth, dry, speed, lubricant) > BEHIND
+        )
         put_in = lubricate_cells if over_loads else lubricate_path
         run = FilmRun(teeth, dry, speed, lubricant, resolution, model)
         lubricated = put_in(run, profiles=profiles)
     if model.name == "ehl":
         warn_of_pressure(lubricant, lubricated.film.greatest_pressure)
     return lubricated
+
+
+def _carried_behind(teeth: LoadedTeeth, dry: MeshCycle, speed: float, lubricant: ehl.Lubricant) -> float:
+    """Part of the load that films on back flanks would carry at most, by rigid cylinders in an isoviscous oil.
+
+    F = 4.896 eta u R b/h, Martin's, with h the backlash and what the teeth give way by.
+    """
+    if (teeth.model, teeth.pairs) != ("fem", "coupled"):
+        return 0.0  # pairs without a common body have no back flanks
+    pair, moved = teeth.pair, dry.transmission_error
+    gap = float(np.min(pair.backlash + moved if teeth.torque > 0.0 else -moved))
+    path = pair.path_at(np.linspace(pair.points.A, pair.points.E, 41))
+    rolling = float(np.mean(path.entrainment(speed) * path.radius)) * pair.contact_ratio
+    carried = 4.896 * lubricant.viscosity * abs(rolling) * pair.face_width
+    return carried / (max(gap, 1e-9) * teeth.force)

@@ -157,7 +157,7 @@ def test_without_cells_nothing_has_changed(cycles, bodies):
     teeth = LoadedTeeth(PAIR, TORQUE, compliance=bodies)
     plane = lubricate(teeth, teeth.cycle(8), SPEED, OIL, resolution_of(0.01), FORMULA, profiles=False)
     assert plane.over_face is None
-    assert plane.rounds == 1  # its films, too, are solved over place and load
+    assert plane.rounds > 1
 
 
 def test_films_are_thinnest_where_most_is_borne(solved):

@@ -10,11 +10,11 @@ import pytest
 
 import ehl
 from flankfilm.coupling import LoadedTeeth, LubricatedCycle, resolution_of
-from flankfilm.coupling.films import film_table, films, lubricated
+from flankfilm.coupling.films import films, lubricated
 from flankfilm.coupling.films.film_law import FilmLaw, HeldMeniscus
-from flankfilm.coupling.films.film_table import OF_SLOPES
 from flankfilm.coupling.films.films import FilmModel, PlacedMeniscus
 from flankfilm.coupling.films.lubricated import lubricate
+from flankfilm.coupling.films.lubricated_path import BETWEEN
 from gears import Gear, GearPair
 from gears.sharing.mesh_figures import MeshArcs
 
@@ -47,20 +47,15 @@ CASES = {
 }
 
 
-def cycle_of(case: Case, finer: bool = False) -> LubricatedCycle:
-    """Cycle whose arcs err by next to nothing, perhaps with more films to a tenth of their tolerance."""
+def cycle_of(case: Case, positions: int, finer: float = 1.0) -> LubricatedCycle:
+    """Cycle whose arcs err by next to nothing, with so many films to a part of their tolerance."""
     teeth = LoadedTeeth(case.pair, case.torque, "potential-energy")
     asked = resolution_of(0.005, teeth.model)
-    asked = replace(
-        asked, sampling=1e-5, transmission_error=1e-5, films=asked.films / (10.0 if finer else 1.0)
-    )
+    asked = replace(asked, sampling=1e-5, transmission_error=1e-5, films=asked.films / finer)
     dry = teeth.sampled(asked.sampling, asked.transmission_error)
     with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        if finer:
-            patch.setattr(films, "FILM_POSITIONS", 120)
-            patch.setattr(film_table, "PLACES", 2 * film_table.PLACES - 1)
-            patch.setattr(film_table, "LOADS", 2 * film_table.LOADS - 1)
+        patch.setattr(films, "FILM_POSITIONS", positions)
         return lubricate(teeth, dry, case.speed, case.oil, asked, case.film, profiles=False)
 
 
@@ -81,22 +76,20 @@ def estimates(cycle: LubricatedCycle) -> np.ndarray:
 def test_estimates_hold_what_more_and_tighter_films_change(name: str):
     """No figure is off by more than twice its estimate, and estimates do not lose touch with the error."""
     case = CASES[name]
-    found, finer = estimates(cycle_of(case)), estimates(cycle_of(case, finer=True))
+    found, finer = estimates(cycle_of(case, 40)), estimates(cycle_of(case, 120, 10.0))
     true = np.abs(found[:, 0] - finer[:, 0])
     assert np.all(true < 2.0 * found[:, 1])
     assert np.median(found[:, 1] / true) < case.most
 
 
 def test_films_by_formula_err_by_their_interpolation_alone():
-    cycle = cycle_of(Case(film=FilmModel("dowson")))
+    cycle = cycle_of(Case(film=FilmModel("dowson")), 40)
     assert cycle.arcs is not None
     halves, own = cycle.arcs.varied, cycle.arcs.arcs
-    assert [share for _, share in halves] == [OF_SLOPES, OF_SLOPES]
+    assert [share for _, share in halves] == [BETWEEN, BETWEEN]
     changed = [other.mean("stiffness")[0] - own.mean("stiffness")[0] for other, _ in halves]
     error = replace(cycle.arcs, other=0.0).mean("stiffness").error
-    assert error == pytest.approx(
-        np.hypot(OF_SLOPES * np.hypot(*changed), own.mean("stiffness")[1]), rel=1e-12
-    )
+    assert error == pytest.approx(np.hypot(BETWEEN * np.hypot(*changed), own.mean("stiffness")[1]), rel=1e-12)
     assert error > 0.0
 
 

@@ -2,8 +2,8 @@
 
 Pairs of `tests/hard/random_pairs.py`, of steel, some with tip relief, at 2 to 100 % of 440 N/mm, pitch lines of 1 to
 30 m/s, oils of 0.01 to 0.3 Pa s. Twice: what films alone may err by (the mesh being the same), and all of it. True:
-films at twice as many places and loads to a tenth of the tolerance; then one refinement more of the mesh as well, and
-so many loads along the flanks and nodes on the arcs that their errors are none (`figure_errors.py`). Errors below a
+films at three times as many positions to a tenth of the tolerance; then one refinement more of the mesh as well, and so
+many loads along the flanks and nodes on the arcs that their errors are none (`figure_errors.py`). Errors below a
 thousandth of the tolerance count as that. Run from the root with
 ``PYTHONPATH=. python tests/validation/studies/film_figure_errors.py [pairs] [seed]``.
 """
@@ -23,7 +23,7 @@ import ehl
 import fem
 from base import InputError, SolverError
 from flankfilm.coupling import LoadedTeeth, resolution_of
-from flankfilm.coupling.films import film_table
+from flankfilm.coupling.films import films as path_films
 from flankfilm.coupling.films.lubricated import lubricate
 from gears import LoadSharingError
 from gears.sharing.mesh_figures import MeshArcs
@@ -31,7 +31,7 @@ from tests.validation.studies import figure_errors
 
 TOLERANCE = 5e-3
 
-FINER = 10.0
+POSITIONS, FINER = 3 * path_films.FILM_POSITIONS, 10.0
 
 
 def drawn(rng: np.random.Generator):
@@ -46,18 +46,15 @@ def drawn(rng: np.random.Generator):
     return pair, torque, float(speed), oil
 
 
-def arcs_of(teeth: LoadedTeeth, speed: float, oil: ehl.Lubricant, finer: float = 1.0) -> MeshArcs:
-    """Arcs of the cycle, perhaps with twice as many places and loads of films, to a part of their tolerance."""
+def arcs_of(teeth: LoadedTeeth, speed: float, oil: ehl.Lubricant, positions: int, finer: float) -> MeshArcs:
+    """Arcs of the cycle with so many films, to a part of their tolerance."""
     asked = resolution_of(TOLERANCE, teeth.model)
     asked = replace(asked, films=asked.films / finer, agreement=asked.agreement / finer)
     if finer > 1.0:
         asked = replace(
             asked, sampling=asked.sampling / finer, transmission_error=asked.transmission_error / finer
         )
-    grid = {name: getattr(film_table, name) for name in ("PLACES", "LOADS")}
-    if finer > 1.0:
-        grid = {name: 2 * count - 1 for name, count in grid.items()}
-    with patch.multiple(film_table, **grid):
+    with patch.object(path_films, "FILM_POSITIONS", positions):
         dry = teeth.sampled(asked.sampling, asked.transmission_error)
         found = lubricate(teeth, dry, speed, oil, asked, profiles=False).arcs
     assert isinstance(found, MeshArcs)
@@ -74,14 +71,14 @@ def one(pair, torque: float, speed: float, oil: ehl.Lubricant) -> tuple[str, dic
         return "no dry contact", {}
     torque = dry.torque  # or the part of it that the teeth bear
     teeth = LoadedTeeth(pair, torque, compliance=bodies)
-    usual = arcs_of(teeth, speed, oil)
+    usual = arcs_of(teeth, speed, oil, path_films.FILM_POSITIONS, 1.0)
     middle = time.process_time()
     with figure_errors.long_series():
-        films = arcs_of(teeth, speed, oil, FINER)
+        films = arcs_of(teeth, speed, oil, POSITIONS, FINER)
         finer = fem.compliance(
             pair, 1e-5, sizes=bodies.sizes, refinements=bodies.refinements + 1, tip_edges=True
         )
-        whole = arcs_of(replace(teeth, compliance=finer), speed, oil, FINER)
+        whole = arcs_of(replace(teeth, compliance=finer), speed, oil, POSITIONS, FINER)
     alone = replace(usual, before=None, other=0.0)
     found = {"films": figure_errors.ratios(alone, films), "all": figure_errors.ratios(usual, whole)}
     spent = f"{middle - began:.1f} and {time.process_time() - middle:.1f} s"
