@@ -53,7 +53,7 @@ WINGS: dict[str, list[list[str]]] = {
         ["files"],
         ["processes"],
         ["scene"],
-        ["build"],
+        ["building"],
         ["plan"],
         ["stages"],
         ["output"],

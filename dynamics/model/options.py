@@ -83,7 +83,7 @@ class Options:
 
     Examples
     --------
-    >>> from dynamics import OPTIONS
+    >>> from dynamics.model.options import OPTIONS
     >>> OPTIONS.repeats
     1e-06
     """

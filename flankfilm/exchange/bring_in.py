@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from base import Fault, InputError
-from flankfilm.build.pair import ISO_53, gear_pair
+from flankfilm.building.pair import ISO_53, gear_pair
 from flankfilm.exchange.draft import Draft, scene_text
 from flankfilm.exchange.rexs_file import read_model
 from flankfilm.exchange.rexs_pair import draft_of

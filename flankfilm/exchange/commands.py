@@ -57,7 +57,7 @@ def export_rexs(scene: Path, /, *, out: Path | None = None) -> int:
     out : Path, optional
         The file, as XML (.rexs), JSON (.rexsj) or XML in an archive (.rexsz); SCENE.rexs beside you if left out.
     """
-    from flankfilm.build.pair import gear_pair
+    from flankfilm.building.pair import gear_pair
     from flankfilm.exchange.rexs_write import rexs_file
     from flankfilm.output.files import write_bytes
     from flankfilm.scene import read_scene
@@ -99,7 +99,7 @@ def export_profile(
     out : Path, optional
         The file; SCENE-GEAR.FORMAT beside you if left out.
     """
-    from flankfilm.build.pair import gear_pair
+    from flankfilm.building.pair import gear_pair
     from flankfilm.exchange.profile_files import write_drawing, write_points
     from flankfilm.scene import read_scene
     from gears.tooth.contour import contour
@@ -145,7 +145,7 @@ def export_mesh(
         How often every element is split in four, 0 to 4.
     """
     from fem.fields.export import export_position
-    from flankfilm.build.pair import pinion_torque
+    from flankfilm.building.pair import pinion_torque
     from flankfilm.files.cache import results_cache
     from flankfilm.files.folder import claim
     from flankfilm.output.reproduce import scene_in

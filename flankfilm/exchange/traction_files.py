@@ -56,8 +56,8 @@ def traction_of(
         Relative, of films and friction.
     """
     import ehl
-    from flankfilm.build.heat import shearing_oil
-    from flankfilm.build.pair import gear_pair
+    from flankfilm.building.heat import shearing_oil
+    from flankfilm.building.pair import gear_pair
     from flankfilm.scene.sections.section import required
     from gears.pair.hertz import peak_pressure
 

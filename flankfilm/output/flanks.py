@@ -15,7 +15,7 @@ from gears.tooth.flank_curves import FlankCurve
 if TYPE_CHECKING:
     import xarray as xr
 
-    from flankfilm.build.flanks import Both
+    from flankfilm.building.flanks import Both
     from gears import GearDeviations, GearPair, LeadTrace
 
 __all__ = ["measured_flanks"]

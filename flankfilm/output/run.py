@@ -13,8 +13,8 @@ import numpy as np
 import gears
 from base import Quantity
 from base.results import EXACT, figures, why_no_error
-from flankfilm.build.flanks import deviations
-from flankfilm.build.pair import pinion_speed
+from flankfilm.building.flanks import deviations
+from flankfilm.building.pair import pinion_speed
 from flankfilm.coupling.vibration.part_loads import PARTS
 from flankfilm.output import drawing_data as drawn
 from flankfilm.output import drives, heat

@@ -14,8 +14,8 @@ from dataclasses import replace
 
 from base import InputError, RangeWarning, SolverError
 from flankfilm import coupling
-from flankfilm.build.film import lubricant
-from flankfilm.build.pair import gear_pair, pinion_speed, pinion_torque
+from flankfilm.building.film import lubricant
+from flankfilm.building.pair import gear_pair, pinion_speed, pinion_torque
 from flankfilm.coupling.mesh.resolution import ASSUMED_CHANGE, COARSEST_FILMS, LEAST_CHANGE, film_law_of_cost
 from flankfilm.plan.decisions import said
 from flankfilm.plan.options import FilmChange, Option, Options

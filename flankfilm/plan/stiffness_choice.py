@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import gears
-from flankfilm.build.pair import pinion_torque
+from flankfilm.building.pair import pinion_torque
 from flankfilm.coupling.mesh.resolution import stiffness_laws
 from flankfilm.plan.decisions import said
 from flankfilm.plan.options import Option, Options

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehl.discrete.regimes import MEASURED, regime
-from flankfilm.build.heat import shearing_oil, warmth
+from flankfilm.building.heat import shearing_oil, warmth
 from flankfilm.figures.reading import read_figure
 from flankfilm.output.uncertainty import Uncertainty, uncertainty
 from flankfilm.report.film_parts import LEAST_WITH_HEAT, regime_said

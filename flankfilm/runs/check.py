@@ -6,9 +6,9 @@ import warnings
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from flankfilm.build.film import lubricant
-from flankfilm.build.pair import gear_pair, warm_pair
-from flankfilm.build.preflight import refuse
+from flankfilm.building.film import lubricant
+from flankfilm.building.pair import gear_pair, warm_pair
+from flankfilm.building.preflight import refuse
 from flankfilm.files.cache import Cache
 from flankfilm.scene import Scene
 from flankfilm.stages.engine import Engine, Stage

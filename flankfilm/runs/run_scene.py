@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from base import InputError, SolverError
-from flankfilm.build.preflight import refuse
+from flankfilm.building.preflight import refuse
 from flankfilm.files.cache import results_cache
 from flankfilm.files.folder import claim, locked
 from flankfilm.files.manifest import MANIFEST, conclude

@@ -40,7 +40,7 @@ def read_scene(path: Path | str) -> Scene:
     Returns
     -------
     Scene
-        Checked key by key and section by section; the geometry is checked by `flankfilm.build.pair`.
+        Checked key by key and section by section; the geometry is checked by `flankfilm.building.pair`.
 
     Raises
     ------

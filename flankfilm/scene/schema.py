@@ -1,7 +1,7 @@
 """The scene file: its sections and the keys of the scene itself.
 
-A key carries its unit (`module_mm`); values become SI by `flankfilm.build.pair`. Bounds are the ground's, wide enough
-for every gear that is made and narrow enough to catch a wrong unit.
+A key carries its unit (`module_mm`); values become SI by `flankfilm.building.pair`. Bounds are the ground's, wide
+enough for every gear that is made and narrow enough to catch a wrong unit.
 """
 
 from __future__ import annotations

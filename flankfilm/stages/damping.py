@@ -7,8 +7,8 @@ from typing import Any
 
 from base import InputError
 from flankfilm import coupling
-from flankfilm.build.film import film_model, lubricant
-from flankfilm.build.pair import pinion_speed, pinion_torque
+from flankfilm.building.film import film_model, lubricant
+from flankfilm.building.pair import pinion_speed, pinion_torque
 from flankfilm.scene.sections.dynamics import BY_FILM
 from flankfilm.scene.sections.ground import under_keys
 from flankfilm.scene.sections.section import required

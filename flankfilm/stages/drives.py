@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from flankfilm import coupling
-from flankfilm.build.pair import pinion_torque
-from flankfilm.build.shafts import drive_arguments
+from flankfilm.building.pair import pinion_torque
+from flankfilm.building.shafts import drive_arguments
 from flankfilm.scene.sections.section import required
 from flankfilm.stages.damping import FILM_DAMPING
 from flankfilm.stages.engine import Engine, stage

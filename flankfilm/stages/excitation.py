@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from flankfilm import coupling
-from flankfilm.build.flanks import deviations
-from flankfilm.build.pair import pinion_torque, tip_roundings
+from flankfilm.building.flanks import deviations
+from flankfilm.building.pair import pinion_torque, tip_roundings
 from flankfilm.scene.sections.section import required
 from flankfilm.stages.damping import FILM_DAMPING, damping_ratio
 from flankfilm.stages.engine import Engine, stage

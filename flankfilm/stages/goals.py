@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from flankfilm.build.face import varies_by
+from flankfilm.building.face import varies_by
 from flankfilm.scene import Scene, needs
 from flankfilm.scene.sections.dynamics import BY_FILM
 from flankfilm.stages import losses, motion

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import ehl
 from flankfilm import coupling
-from flankfilm.build.film import boundary_friction, roughness, supply
-from flankfilm.build.heat import shearing_oil, solids, warmth
-from flankfilm.build.pair import pinion_speed, pinion_torque
+from flankfilm.building.film import boundary_friction, roughness, supply
+from flankfilm.building.heat import shearing_oil, solids, warmth
+from flankfilm.building.pair import pinion_speed, pinion_torque
 from flankfilm.plan.decisions import Decision
 from flankfilm.plan.heat_choice import heat_choice
 from flankfilm.scene.sections.ground import under_keys

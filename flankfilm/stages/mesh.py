@@ -14,11 +14,11 @@ import gears
 from fem.contact.moving_contact import contacts_move
 from fem.pair.face_setting import FREE_ENDS
 from flankfilm import coupling
-from flankfilm.build.face import even_along_face, face, varies_by
-from flankfilm.build.film import film_model, lubricant
-from flankfilm.build.flanks import deviations
-from flankfilm.build.overload import warn_of_overload
-from flankfilm.build.pair import gear_pair, pinion_speed, pinion_torque, supports, tip_roundings, warm_pair
+from flankfilm.building.face import even_along_face, face, varies_by
+from flankfilm.building.film import film_model, lubricant
+from flankfilm.building.flanks import deviations
+from flankfilm.building.overload import warn_of_overload
+from flankfilm.building.pair import gear_pair, pinion_speed, pinion_torque, supports, tip_roundings, warm_pair
 from flankfilm.coupling.mesh.require_converged import believed
 from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.film_choice import foreseen_change

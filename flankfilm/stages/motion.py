@@ -10,8 +10,8 @@ import numpy as np
 
 import dynamics
 from flankfilm import coupling
-from flankfilm.build.followed_speeds import followed_speed
-from flankfilm.build.pair import pinion_torque
+from flankfilm.building.followed_speeds import followed_speed
+from flankfilm.building.pair import pinion_torque
 from flankfilm.scene.sections.dynamics import OSCILLATOR, DiagramSection, DynamicsSection
 from flankfilm.scene.sections.operating import GIVEN
 from flankfilm.scene.sections.section import required

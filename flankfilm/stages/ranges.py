@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from flankfilm import coupling
-from flankfilm.build.pair import pinion_torque
+from flankfilm.building.pair import pinion_torque
 from flankfilm.scene.sections.dynamics import DynamicsSection
 from flankfilm.scene.sections.section import required
 from flankfilm.stages.engine import Engine

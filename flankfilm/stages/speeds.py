@@ -9,9 +9,9 @@ import numpy as np
 
 from base import InputError
 from flankfilm import coupling
-from flankfilm.build.film import film_model, lubricant
-from flankfilm.build.pair import pinion_speed, pinion_torque
-from flankfilm.build.shafts import drive_arguments
+from flankfilm.building.film import film_model, lubricant
+from flankfilm.building.pair import pinion_speed, pinion_torque
+from flankfilm.building.shafts import drive_arguments
 from flankfilm.scene.sections.dynamics import OSCILLATOR
 from flankfilm.scene.sections.section import required
 from flankfilm.stages.damping import FILM_DAMPING, damping_ratio

@@ -13,7 +13,7 @@ import fem
 from base import Figure
 from base.results import figures
 from fem.stress.root_peaks import RootPeak
-from flankfilm.build.face import varies_by
+from flankfilm.building.face import varies_by
 from flankfilm.coupling.mesh.face_models import LABELS, FaceLoadModels
 from flankfilm.coupling.mesh.face_tolerance import FaceTolerance
 from flankfilm.coupling.mesh.root_stress import RootStresses

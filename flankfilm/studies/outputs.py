@@ -17,7 +17,7 @@ import gears
 from base import Figure
 from base.results import figures
 from ehl.discrete.regimes import NUMBERS, regime_number
-from flankfilm.build.pair import pinion_speed, pinion_torque
+from flankfilm.building.pair import pinion_speed, pinion_torque
 from flankfilm.coupling.films.along_path import FilmAlongPath
 from flankfilm.coupling.films.lubricated_record import LubricatedCycle
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle

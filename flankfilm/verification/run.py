@@ -7,7 +7,7 @@ from pathlib import Path
 
 import gears
 from base import Fault, InputError
-from flankfilm.build.face import faults_of_face, varies_by
+from flankfilm.building.face import faults_of_face, varies_by
 from flankfilm.coupling import Verification
 from flankfilm.files.cache import results_cache
 from flankfilm.files.folder import claim

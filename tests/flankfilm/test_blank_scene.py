@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base import InputError
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.files.cache import Cache
 from flankfilm.plan.stiffness_choice import teeth
 from flankfilm.scene import parse_scene

@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 
 from base import Cost, SolverError
 from dynamics import FourierStiffness
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.coupling.vibration.series import LeftOut, MeshSeries, least_order, left_out
 from flankfilm.files.cache import Cache
 from flankfilm.plan.decide import Plan, decide

@@ -15,7 +15,7 @@ import dynamics.motion.run_ups
 import fem
 from base import InputError
 from flankfilm import figures
-from flankfilm.build.preflight import refuse
+from flankfilm.building.preflight import refuse
 from flankfilm.coupling import drive_sweep, mesh_cycle, mesh_series, pair_drive
 from flankfilm.coupling.speeds.truncation import with_order
 from flankfilm.files.cache import Cache

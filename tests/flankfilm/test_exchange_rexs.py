@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from base import InputError
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.exchange.bring_in import imported
 from flankfilm.exchange.draft import Draft, scene_text
 from flankfilm.exchange.rexs_file import parse_model

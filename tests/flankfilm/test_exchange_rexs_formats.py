@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from base import InputError
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.exchange import rexs_archive
 from flankfilm.exchange.bring_in import imported
 from flankfilm.exchange.rexs_file import parse_model

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from flankfilm.build.preflight import refuse
+from flankfilm.building.preflight import refuse
 from flankfilm.files.cache import Cache
 from flankfilm.output.run import results_dataset
 from flankfilm.report import mesh_parts

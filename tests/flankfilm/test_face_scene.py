@@ -12,9 +12,9 @@ import pytest
 from base import InputError
 from fem import forget_gears
 from flankfilm import figures
-from flankfilm.build.face import even_along_face, face, varies_by
-from flankfilm.build.pair import gear_pair
-from flankfilm.build.preflight import refuse
+from flankfilm.building.face import even_along_face, face, varies_by
+from flankfilm.building.pair import gear_pair
+from flankfilm.building.preflight import refuse
 from flankfilm.coupling.mesh.face_models import _linear
 from flankfilm.files.cache import Cache
 from flankfilm.output.run import results_dataset, results_tables

@@ -8,8 +8,8 @@ import pytest
 
 from base import InputError
 from ehl import Lubricant
-from flankfilm.build.film import boundary_friction, flank_temperatures, lubricant
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.film import boundary_friction, flank_temperatures, lubricant
+from flankfilm.building.pair import gear_pair
 from flankfilm.scene import parse_scene, template
 
 NUMBERS = "viscosity_Pa_s = 0.075\npressure_viscosity_per_GPa = 19.6\n"

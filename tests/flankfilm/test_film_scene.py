@@ -8,7 +8,7 @@ import pytest
 
 from base import InputError, RangeWarning
 from ehl import Barus, ConstantViscosity, LineContact, Meniscus, OilLayer
-from flankfilm.build.film import film_model, lubricant, roughness
+from flankfilm.building.film import film_model, lubricant, roughness
 from flankfilm.coupling.films import films
 from flankfilm.scene import parse_scene, template
 from flankfilm.scene.sections.ground import under_keys

@@ -9,7 +9,7 @@ import pytest
 
 from base import InputError
 from flankfilm import coupling
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.coupling.mesh.flanks import PLAIN_FLANKS
 from flankfilm.files.cache import Cache
 from flankfilm.scene.reader import parse_scene

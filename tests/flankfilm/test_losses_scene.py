@@ -14,8 +14,8 @@ import pytest
 import ehl
 from base import InputError, SolverError
 from flankfilm import coupling, figures
-from flankfilm.build.heat import shearing_oil, solids, warmth
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.heat import shearing_oil, solids, warmth
+from flankfilm.building.pair import gear_pair
 from flankfilm.files.cache import Cache
 from flankfilm.output.run import results_dataset, results_tables
 from flankfilm.output.uncertainty import Uncertainty

@@ -9,9 +9,9 @@ import pytest
 import xarray as xr
 
 from base import InputError
-from flankfilm.build.face import varies_by
-from flankfilm.build.flanks import deviations
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.face import varies_by
+from flankfilm.building.flanks import deviations
+from flankfilm.building.pair import gear_pair
 from flankfilm.scene import parse_scene
 from gears import GeometryWarning
 from tests.flankfilm.program import flankfilm

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from base import InputError, SolverError
 from flankfilm import figures
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.optimisation.files import dataset, phases
 from flankfilm.optimisation.optimum import Evaluation, Optimum
 from flankfilm.optimisation.run import optimise

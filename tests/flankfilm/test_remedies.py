@@ -19,7 +19,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from base import Fault, InputError
-from flankfilm.build.preflight import refuse
+from flankfilm.building.preflight import refuse
 from flankfilm.scene.reader import validated
 
 BASE = {
@@ -421,9 +421,9 @@ ROOMS = (
     "gears/pair/mesh_checks.py",
     "gears/tooth/blank.py",
     "gears/pair/thermal_expansion.py",
-    "flankfilm/build/preflight.py",
-    "flankfilm/build/face.py",
-    "flankfilm/build/followed_speeds.py",
+    "flankfilm/building/preflight.py",
+    "flankfilm/building/face.py",
+    "flankfilm/building/followed_speeds.py",
     "flankfilm/scene/needs.py",
 )
 MAKERS = {"add", "Fault", "at"}

@@ -12,7 +12,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from base import Fault, InputError
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.optimisation.task import Limit, OptimisationFile
 from flankfilm.scene import Scene, parse_scene, read_scene, template
 from flankfilm.scene.explain import model_in

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from base import InputError
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.runs.check import check_scene
 from flankfilm.scene import parse_scene, template
 

@@ -119,7 +119,7 @@ class TestDesign:
 
 class TestRows:
     def test_rows_are_those_of_single_runs(self, tmp_path):
-        from flankfilm.build.pair import gear_pair
+        from flankfilm.building.pair import gear_pair
         from flankfilm.scene.reader import validated
 
         plan = read_plan(study_file(tmp_path, SHIFTS))

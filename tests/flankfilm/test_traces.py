@@ -10,8 +10,8 @@ import pytest
 import xarray as xr
 
 import fem
-from flankfilm.build.flanks import deviations
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.flanks import deviations
+from flankfilm.building.pair import gear_pair
 from flankfilm.scene import parse_scene, read_scene
 from flankfilm.studies.plan import read_plan
 from tests.flankfilm.program import EXAMPLES, flankfilm

@@ -10,7 +10,7 @@ import pytest
 
 import ehl
 from base import InputError
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.exchange.commands import export_traction
 from flankfilm.exchange.traction_files import traction_of
 from flankfilm.scene import parse_scene, read_scene

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from base import InputError
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.coupling.mesh.verification import POINTS, UNITS, mesh_figures, single_figures, stations
 from flankfilm.scene import parse_scene, read_scene
 from flankfilm.verification.run import unknown_over_face, verify_scene

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from base import InputError
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.scene import parse_scene
 from gears import MATERIALS, Gear, GearPair, GeometryError, Material, closed_form, named_material
 

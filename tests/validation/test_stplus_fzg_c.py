@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flankfilm.build.pair import gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.scene import parse_scene
 from gears import BasicRack, Gear, GearPair, GeometryError, Material, check_meshing, closed_form, dimensions
 from gears.pair.hertz import peak_pressure

@@ -14,8 +14,8 @@ import fem
 import flankfilm as ff
 from base import InputError
 from ehl import Meniscus, OilLayer, Roughness
-from flankfilm.build.film import lubricant
-from flankfilm.build.pair import gear_pair, pinion_speed
+from flankfilm.building.film import lubricant
+from flankfilm.building.pair import gear_pair, pinion_speed
 from flankfilm.coupling import FilmModel, Flanks, LoadedTeeth, LubricatedCycle, MeshCycle, torque_curves
 from flankfilm.files.cache import Cache
 from flankfilm.stages.engine import Engine

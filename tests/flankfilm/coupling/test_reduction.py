@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from flankfilm.build.shafts import drive_arguments
+from flankfilm.building.shafts import drive_arguments
 from flankfilm.coupling import PairDrive, drive_sweep, given_series, pair_drive
 from flankfilm.coupling.drive.drive_reduced import drive_squares
 from flankfilm.scene import read_scene

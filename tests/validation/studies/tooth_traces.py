@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 import fem
-from flankfilm.build.flanks import deviations
-from flankfilm.build.pair import gear_pair, tip_roundings
+from flankfilm.building.flanks import deviations
+from flankfilm.building.pair import gear_pair, tip_roundings
 from flankfilm.scene import read_scene
 from gears import Gear, GearDeviations, GearPair, TipRelief, WearDepth
 

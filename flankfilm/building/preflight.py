@@ -10,15 +10,15 @@ import numpy as np
 
 import gears
 from base import Fault, Faults, InputError
-from flankfilm.build.pair import pinion_torque, supports, tip_roundings, warm_pair
-from flankfilm.build.face import faults_of_face, varies_by
-from flankfilm.build.film import lubricant, roughness
-from flankfilm.build.flanks import deviations
+from flankfilm.building.face import faults_of_face, varies_by
+from flankfilm.building.film import lubricant, roughness
+from flankfilm.building.flanks import deviations
+from flankfilm.building.followed_speeds import faults_of_ranges
+from flankfilm.building.pair import pinion_torque, supports, tip_roundings, warm_pair
 from flankfilm.scene import Scene
 from flankfilm.scene.sections.dynamics import DynamicsSection
 from flankfilm.scene.sections.ground import in_keys, under_keys
 from flankfilm.scene.sections.section import required
-from flankfilm.build.followed_speeds import faults_of_ranges
 from gears.pair.hertz import half_width
 
 LEAST_SHARE = 0.5

@@ -14,11 +14,11 @@ from typing import TypeVar
 import fem
 import gears
 from base import InputError
-from flankfilm.build.flanks import lead_trace
+from flankfilm.building.flanks import lead_trace
+from flankfilm.scene.schema import Scene
 from flankfilm.scene.sections.gears import GearSection, PairSection, RackSection
 from flankfilm.scene.sections.ground import in_keys, under_keys
 from flankfilm.scene.sections.heat import GROWTH
-from flankfilm.scene.schema import Scene
 from flankfilm.scene.sections.section import Section, required
 
 S = TypeVar("S", bound=Section)

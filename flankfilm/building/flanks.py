@@ -11,6 +11,7 @@ import numpy as np
 
 import gears
 from base import Array, Faults, InputError
+from flankfilm.scene.schema import Scene
 from flankfilm.scene.sections.flank_sections import (
     CurveSection,
     DeviationsSection,
@@ -19,7 +20,6 @@ from flankfilm.scene.sections.flank_sections import (
     WearSection,
 )
 from flankfilm.scene.sections.gears import GearSection
-from flankfilm.scene.schema import Scene
 from flankfilm.scene.sections.section import required
 
 __all__ = ["deviations", "lead_trace"]

@@ -6,7 +6,7 @@ import warnings
 
 import gears
 from base import RangeWarning
-from flankfilm.build.pair import pinion_torque
+from flankfilm.building.pair import pinion_torque
 from flankfilm.scene import Scene
 from gears.pair.hertz import peak_pressure
 

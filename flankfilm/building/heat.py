@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import ehl
 import gears
-from flankfilm.build.film import flank_temperatures, lubricant
+from flankfilm.building.film import flank_temperatures, lubricant
 from flankfilm.scene.schema import Scene
 
 USUAL_STRESS = 5e6

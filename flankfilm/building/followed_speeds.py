@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from base import Fault, RangeWarning
-from flankfilm.build.pair import pinion_torque, supports
+from flankfilm.building.pair import pinion_torque, supports
 from flankfilm.scene.sections.section import required
 
 if TYPE_CHECKING:

@@ -10,11 +10,17 @@ import gears
 from base import InputError
 from ehl.oil.oil_grades import LIMITS as GRADE
 from flankfilm import coupling
-from flankfilm.scene.sections.film import BY_GRADE, BY_NUMBERS, SHEAR_AND_HEAT, LubricantSection, RoughnessSection
+from flankfilm.scene.schema import Scene
+from flankfilm.scene.sections.film import (
+    BY_GRADE,
+    BY_NUMBERS,
+    SHEAR_AND_HEAT,
+    LubricantSection,
+    RoughnessSection,
+)
 from flankfilm.scene.sections.ground import under_keys
 from flankfilm.scene.sections.heat import GROWTH
 from flankfilm.scene.sections.key import ZERO_CELSIUS
-from flankfilm.scene.schema import Scene
 from flankfilm.scene.sections.section import required
 
 

@@ -1,0 +1,1 @@
+"""From sections of a scene to objects of the solvers, and what a scene would surely fail by."""
