@@ -25,6 +25,7 @@ from dynamics.branches.branch import MEETS
 from dynamics.branches.branch_problem import MapPoint, Steps
 from dynamics.branches.sensitivity import map_derivatives
 from dynamics.branches.stepwise_problem import PeriodMap
+from dynamics.flow.exact_flow import exact_flow
 from dynamics.flow.motions import turning_points
 
 KAPPA = FourierStiffness(1.0, (0.18,), (0.0,))
@@ -106,9 +107,8 @@ class ExactMap(PeriodMap):
             turns,
         )
 
-    def states(self, point):
-        states = dynamics.period_map(self.at(point.u), point.u[:2] * self.scale, self.periods).states
-        return states / self.scale
+    def flow(self, point):
+        return exact_flow(self.at(point.u))
 
 
 @pytest.mark.slow
