@@ -1,4 +1,4 @@
-"""Command line: ``python -m benchmarks.constants [PACKAGE ...]``; a line for each constant, and a count at the end."""
+"""Command line: ``python -m benchmarks.constants PACKAGE ...``; a line for each constant, and a count at the end."""
 
 from __future__ import annotations
 
@@ -27,9 +27,11 @@ def verdict(constant: Constant) -> tuple[str, str]:
 
 def main(command_line: Sequence[str] | None = None) -> int:
     """Study the constants of packages."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.constants", description=__doc__)
-    parser.add_argument("packages", nargs="*", choices=[*PACKAGES, []], metavar="PACKAGE")
-    for package in parser.parse_args(command_line).packages or PACKAGES:
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.constants", description="Double and halve numeric constants."
+    )
+    parser.add_argument("packages", nargs="+", choices=PACKAGES, metavar="PACKAGE")
+    for package in parser.parse_args(command_line).packages:
         counts: Counter[str] = Counter()
         for constant in constants(package):
             kind, move = verdict(constant)

@@ -120,17 +120,6 @@ class MovedFlanks:
                 gaps[..., contacts] = surface.gap(self._places(corner, turn))
         return gaps
 
-    def pushed(self, force: Array, turn: Array) -> Pushed:
-        """Both together."""
-        rolled, cornered = self.rolled(force, turn), self.cornered(force, turn)
-        return Pushed(
-            rolled.approach + cornered.approach,
-            rolled.slope + cornered.slope,
-            rolled.push + cornered.push,
-            rolled.less + cornered.less,
-            rolled.stiff + cornered.stiff,
-        )
-
     def edge_rho(self, flanks: LoadedFlanks, setup: MeshSetup, approach: Array) -> Array:
         """Curvature radii at which tip edges touch pinion and wheel (2, ..., pairs) under a deflection (...) [m]."""
         candidates, pair, turned = flanks.candidates, setup.pair, approach[..., None]

@@ -10,16 +10,16 @@ from flankfilm.figures.optima import can_be_mapped
 from flankfilm.figures.reading import key_words, unit_of, words
 from flankfilm.optimisation.words import gained, tied
 from flankfilm.report.page import Fact, Head, Headline, Part, picture, said, write_page
+from flankfilm.report.run_parts import inputs_of, work_of
 from flankfilm.report.text import counted, number, percent, plus_minus
 from flankfilm.studies.output_errors import ERROR_OF, exact
+from flankfilm.studies.page import MOST_ROWS, cell, rows_table
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from flankfilm.optimisation.optimum import Optimum
     from flankfilm.optimisation.task import Task
-from flankfilm.report.run_parts import inputs_of, work_of
-from flankfilm.studies.page import MOST_ROWS, cell, rows_table
 
 
 def write_optimum_page(optimum: Optimum, data: xr.Dataset, folder: Path) -> Path:

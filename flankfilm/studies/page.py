@@ -18,6 +18,7 @@ from flankfilm.figures.reading import key_title, key_words, titled, unit_of, wor
 from flankfilm.figures.studies import varied_numbers
 from flankfilm.output.uncertainty import Uncertainty, met
 from flankfilm.report.page import Fact, Head, Headline, Part, Table, picture, write_page
+from flankfilm.report.run_parts import inputs_of, work_of
 from flankfilm.report.text import counted, number, off, percent
 from flankfilm.scene import Scene, parse_tolerance
 from flankfilm.studies.output_errors import ERROR_OF, MODEL_ERROR_OF
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from flankfilm.studies.row import RowResult
     from flankfilm.studies.run import StudyResults
     from flankfilm.studies.study_file import Value
-from flankfilm.report.run_parts import inputs_of, work_of
 
 ERRORS = frozenset((*ERROR_OF.values(), *MODEL_ERROR_OF.values()))
 """Outputs that are relative errors of others."""

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from base import InputError
-from flankfilm.files.folder import claim
 from flankfilm.studies.kept import kept_rows
 from flankfilm.studies.plan import Plan
 from flankfilm.studies.run import StudyResults, refuse_unknown, work_of_plan
@@ -99,7 +98,6 @@ def merge(plan: Plan, folder: Path) -> StudyResults:
         Where rows are missing, a part is of another study or of other code, or is being computed.
     """
     start, work = time.perf_counter(), work_of_plan(plan)
-    claim(folder, work.data)
     with kept_rows(folder, work, resume=True) as kept:
         refuse_unknown(folder, kept.lines, plan)
         done = {line.result.index: line.result for line in kept.lines}

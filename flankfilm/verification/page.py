@@ -11,13 +11,13 @@ from flankfilm.coupling.mesh.verification import UNITS
 from flankfilm.figures.reading import unit_text
 from flankfilm.report import face_parts
 from flankfilm.report.page import Fact, Head, Headline, Part, Table, pictures, write_page
+from flankfilm.report.run_parts import inputs_of
 from flankfilm.report.text import percent, seconds
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from flankfilm.coupling.mesh.verification import Difference, Verification
-from flankfilm.report.run_parts import inputs_of
 
 
 def write_verification_page(verification: Verification, data: xr.Dataset, folder: Path) -> Path:

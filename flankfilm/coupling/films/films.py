@@ -134,7 +134,7 @@ class PathFilms:
     flooded : tuple of Film
         The smooth, flooded films of the same contacts; empty unless something is held at the inlet.
     beside : tuple of int
-        Which of them are of pairs that hardly touch, see `with_light_ends`.
+        Which of them are of pairs that hardly touch and serve the law of the films alone.
     """
 
     rho1: Array
@@ -196,54 +196,6 @@ def _require_even(pair: gears.GearPair, cycle: MeshCycle) -> None:
         allowed = "must be loaded evenly along the face for these films"
         remedy = "leave leads, alignment and cells out; lubricated_cycle by finite elements has films over the face"
         raise InputError.at("pair", by, allowed, remedy)
-
-
-def with_light_ends(
-    pair: gears.GearPair,
-    rho1: Array,
-    contacts: tuple[ehl.LineContact, ...],
-    speed: float,
-    step: float,
-    load: float,
-) -> tuple[Array, tuple[ehl.LineContact, ...], tuple[int, ...]]:
-    """Add a lightly loaded contact a step before the first and after the last, where these are on the path.
-
-    Where a pair comes or goes its film carries some load long before the flanks would touch, and falls nearly with the
-    inverse of that load, which heavier films do not know: a law of theirs alone has the pair let go at once, so that no
-    film is ever asked for there.
-
-    Parameters
-    ----------
-    pair : gears.GearPair
-    rho1, contacts : ndarray, tuple
-        Of the loaded pairs, in the order of the path.
-    speed : float
-        Of the pinion [rad/s].
-    step : float
-        Between contacts of one pair [m].
-    load : float
-        Of the light contacts [N/m].
-
-    Returns
-    -------
-    ndarray, tuple, tuple of int
-        Places [m], contacts, and which of them were added.
-    """
-    ends = {0: float(rho1[0]) - step, -1: float(rho1[-1]) + step}
-    ends = {end: place for end, place in ends.items() if pair.points.A < place < pair.points.E}
-    extended, places = list(contacts), list(rho1)
-    for end, place in ends.items():
-        path = pair.path_at(np.array([place]))
-        light = replace(
-            contacts[end],
-            load=min(load, contacts[end].load),
-            entrainment=float(path.entrainment(speed)[0]),
-            radius=float(path.radius[0]),
-        )
-        at = 0 if end == 0 else len(extended)
-        extended.insert(at, light)
-        places.insert(at, place)
-    return np.array(places), tuple(extended), tuple(0 if end == 0 else len(extended) - 1 for end in ends)
 
 
 def films_of(

@@ -1,4 +1,4 @@
-"""Films of all cells in series with the teeth: a load that is even along the face has one cell.
+"""Films of all cells in series with the teeth, over place and line load; a plane pair has one cell.
 
 Where flanks bear on cells of a face, the active set is one over pairs and cells; flanks on the other side of the teeth
 have the same films, under whatever they bear.

@@ -1,8 +1,7 @@
-"""Films in series with the teeth, solved along the path in rounds, where more than place and load say what they do.
+"""Films in series with the teeth, solved along the path of a plane pair in rounds with the load share.
 
-So are films behind a meniscus or a layer of oil, films by another definition of their stiffness, and those of pairs
-that share the load by their secants: each stands for its neighbourhood by a law around the load under which it was
-solved, which is that of the load share that all of them bring about.
+Each film stands for its neighbourhood by a law around the load under which it was solved, which is that of the load
+share that all of them bring about. The law knows the loads of the front flanks alone.
 """
 
 from __future__ import annotations
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import ehl
+import gears
 from base import Array, SolverError, Stopwatch
 from fem.laws.local_law import film_yielding
 from flankfilm.coupling.films import films
@@ -25,7 +25,6 @@ from flankfilm.coupling.films.films import (
     held_the_other_way,
     law_of,
     off_by_errors,
-    with_light_ends,
 )
 from flankfilm.coupling.films.lubricated_record import LubricatedCycle
 from flankfilm.coupling.mesh.loaded_teeth import SOFTER
@@ -159,3 +158,51 @@ class FilmRun:
             f"same film, {held} held": held_the_other_way(self.model, path, self.resolution.films),
         }
         return {label: self.with_film(other, label) for label, other in others.items()}
+
+
+def with_light_ends(
+    pair: gears.GearPair,
+    rho1: Array,
+    contacts: tuple[ehl.LineContact, ...],
+    speed: float,
+    step: float,
+    load: float,
+) -> tuple[Array, tuple[ehl.LineContact, ...], tuple[int, ...]]:
+    """Add a lightly loaded contact a step before the first and after the last, where these are on the path.
+
+    Where a pair comes or goes its film carries some load long before the flanks would touch, and falls nearly with the
+    inverse of that load, which heavier films do not know: a law of theirs alone has the pair let go at once, so that no
+    film is ever asked for there.
+
+    Parameters
+    ----------
+    pair : gears.GearPair
+    rho1, contacts : ndarray, tuple
+        Of the loaded pairs, in the order of the path.
+    speed : float
+        Of the pinion [rad/s].
+    step : float
+        Between contacts of one pair [m].
+    load : float
+        Of the light contacts [N/m].
+
+    Returns
+    -------
+    ndarray, tuple, tuple of int
+        Places [m], contacts, and which of them were added.
+    """
+    ends = {0: float(rho1[0]) - step, -1: float(rho1[-1]) + step}
+    ends = {end: place for end, place in ends.items() if pair.points.A < place < pair.points.E}
+    extended, places = list(contacts), list(rho1)
+    for end, place in ends.items():
+        path = pair.path_at(np.array([place]))
+        light = replace(
+            contacts[end],
+            load=min(load, contacts[end].load),
+            entrainment=float(path.entrainment(speed)[0]),
+            radius=float(path.radius[0]),
+        )
+        at = 0 if end == 0 else len(extended)
+        extended.insert(at, light)
+        places.insert(at, place)
+    return np.array(places), tuple(extended), tuple(0 if end == 0 else len(extended) - 1 for end in ends)

@@ -11,7 +11,8 @@ import flankfilm as ff
 from base import RangeWarning
 from ehl import LineContact, Lubricant
 from flankfilm.coupling.films import films
-from flankfilm.coupling.films.films import FilmModel, PathFilms, films_of, with_light_ends
+from flankfilm.coupling.films.films import FilmModel, PathFilms, films_of
+from flankfilm.coupling.films.lubricated_path import with_light_ends
 from gears import Gear, GearPair, TipRelief
 
 OIL = Lubricant(0.066, 20e-9, 910.0)
