@@ -25,16 +25,17 @@ IMAGES = HERE / "images"
 def results(scene: Scene, stages: Sequence[Stage[Any]] = ()) -> xr.Dataset:
     """Give what ``results.nc`` of a scene holds, of some stages alone where they are given; nothing is written."""
     keep_compiled_code()
-    from flankfilm.output.run import results_dataset
+    from flankfilm.products.catalogue import goals
+    from flankfilm.runs.dataset import results_dataset
+    from flankfilm.stages.computed import Computed
     from flankfilm.stages.engine import Engine
-    from flankfilm.stages.goals import goals
 
     engine = Engine(scene, Cache(user_cache() / "results"))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a scene's own run shows them
         for stage in stages or goals(scene):
             engine[stage]
-    return results_dataset(scene, engine.results())
+    return results_dataset(Computed(scene, engine.results()))
 
 
 def example(name: str) -> xr.Dataset:

@@ -95,7 +95,7 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     # a scene with faults is refused before what computes it is loaded
     wanted = _read(scene, options.tolerance)
     from flankfilm.processes.progress import console_progress
-    from flankfilm.report.contents import summary
+    from flankfilm.runs.report import summary
     from flankfilm.runs.run_scene import run_scene
     from flankfilm.stages.failures import lines as not_computed
 

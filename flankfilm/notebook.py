@@ -115,7 +115,7 @@ def closed_form_html(result: ClosedForm) -> str:
 
 def results_html(results: Results) -> str:
     """Headline figures of a run with their notes, and its files."""
-    from flankfilm.report.contents import headlines
+    from flankfilm.runs.report import headlines
 
     rows = [(line.name, line.with_unit, line.note) for line in headlines(results)]
     folder = results.folder or Path()

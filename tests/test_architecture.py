@@ -60,6 +60,7 @@ WINGS: dict[str, list[list[str]]] = {
         ["figures"],
         ["outcome"],
         ["report"],
+        ["products"],
         ["runs"],
         ["studies"],
         ["optimisation"],

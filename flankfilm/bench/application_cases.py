@@ -34,7 +34,7 @@ def work_application(quick: bool) -> Levels:
     the command on two processes, whose wall time alone counts (what it needs beside the rows is in that of two rows);
     the page of a run.
     """
-    from flankfilm.report.contents import write_report
+    from flankfilm.runs.report import write_report
     from flankfilm.runs.run_scene import run_scene
     from flankfilm.scene import read_scene, template
     from flankfilm.studies.plan import read_plan

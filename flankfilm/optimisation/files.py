@@ -13,7 +13,7 @@ from flankfilm.optimisation.words import claims
 from flankfilm.output.files import provenance, write_csv, write_netcdf, write_text
 from flankfilm.scene.toml import toml_lines
 from flankfilm.studies.files import of_rows
-from flankfilm.studies.output_errors import ERROR_OF
+from flankfilm.studies.outputs import ERROR_OF
 
 if TYPE_CHECKING:
     import xarray as xr

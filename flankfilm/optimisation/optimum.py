@@ -13,7 +13,7 @@ from flankfilm.figures.views import register
 from flankfilm.optimisation.polish import Polish
 from flankfilm.optimisation.search import FAILED
 from flankfilm.optimisation.task import Task
-from flankfilm.studies.output_errors import ERROR_OF, ROUNDING, exact
+from flankfilm.studies.outputs import ERROR_OF, ROUNDING, exact
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.study_file import Value
 

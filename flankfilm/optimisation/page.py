@@ -12,7 +12,7 @@ from flankfilm.optimisation.words import gained, tied
 from flankfilm.report.page import Fact, Head, Headline, Part, picture, said, write_page
 from flankfilm.report.run_parts import inputs_of, work_of
 from flankfilm.report.text import counted, number, percent, plus_minus
-from flankfilm.studies.output_errors import ERROR_OF, exact
+from flankfilm.studies.outputs import ERROR_OF, exact
 from flankfilm.studies.page import MOST_ROWS, cell, rows_table
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from flankfilm.scene.reader import validated
 from flankfilm.scene.schema import Scene, parse_tolerance
 from flankfilm.scene.sections.section import Section, refused
 from flankfilm.studies.design import following
-from flankfilm.studies.output_errors import ERROR_OF
+from flankfilm.studies.outputs import ERROR_OF
 from flankfilm.studies.plan import base_scene, put, refuse_unknown_outputs
 from flankfilm.studies.study_file import Range, RowsFile, Value, in_file, read_rows_file
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from flankfilm.figures.reading import key_words
 from flankfilm.optimisation.optimum import Gain, Optimum
 from flankfilm.report.text import counted, number, percent
-from flankfilm.studies.output_errors import ERROR_OF, exact
+from flankfilm.studies.outputs import ERROR_OF, exact
 
 
 def claims(optimum: Optimum) -> list[str]:

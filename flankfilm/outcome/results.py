@@ -10,6 +10,7 @@ from base import Cost, record
 from flankfilm.figures.views import register
 from flankfilm.plan.decisions import decisions
 from flankfilm.scene import Scene
+from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Stage, StageRun
 from flankfilm.stages.failures import Failure
 
@@ -73,6 +74,11 @@ class Results:
             if failure.name == stage.name:
                 raise failure.error
         return self.values.get(stage.name)
+
+    @property
+    def computed(self) -> Computed:
+        """Results of the stages, as everything that shows them reads them."""
+        return Computed(self.scene, self.values, self.failures)
 
     @property
     def title(self) -> str:

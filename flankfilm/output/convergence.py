@@ -8,50 +8,27 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import xarray as xr
 
-STAGES: Mapping[str, str] = {
-    "single_pair": "closed forms",
-    "dry": "dry cycle",
-    "reference": "references",
-    "torque": "torques",
-    "revolution": "revolution",
-    "other": "other cycles",
-    **dict.fromkeys(("lubricated", "film", "held"), "film"),
-    **dict.fromkeys(("root", "fillet", "iso6336_3", "iso6336_face"), "root stress"),
-    "iso6336_2": "closed forms",
-    "oscillator": "scaling",
-    "fourier": "fourier",
-    "excitation": "excitation",
-    "spectrum": "spectrum",
-    "run_up": "run-up",
-    "dynamic_map": "dynamic-map",
-    **dict.fromkeys(("sweep", "portrait"), "sweep"),
-    **dict.fromkeys(("diagram", "return", "special", "jump", "missed", "stable", "force"), "diagram"),
-    "field": "fields",
-}
-"""Stage that the variables of each prefix are of; those of the geometry alone are of none."""
 
-
-def with_convergence(data: xr.Dataset, values: Mapping[str, Any]) -> xr.Dataset:
+def with_convergence(data: xr.Dataset, solved: Mapping[str, Any]) -> xr.Dataset:
     """Give every variable ``converged`` where a solver found it, and its ``message`` where it did not converge.
 
     Parameters
     ----------
     data : xarray.Dataset
         All variables of a run.
-    values : mapping
-        Stage name to result.
+    solved : mapping
+        Prefix of variables to the result of their solver, or results; the first prefix that fits a variable counts.
     """
     for name in map(str, data.variables):
-        data.variables[name].attrs |= _converged(name, values)
+        data.variables[name].attrs |= _converged(name, solved)
     return data
 
 
-def _converged(name: str, values: Mapping[str, Any]) -> dict[str, int | str]:
+def _converged(name: str, solved: Mapping[str, Any]) -> dict[str, int | str]:
     """Whether the solver believes a variable, and what it says where not."""
-    prefix = next((start for start in STAGES if f"{name}_".startswith(f"{start}_")), None)
-    solved = None if prefix is None else values.get(STAGES[prefix])
-    solutions = solved if isinstance(solved, tuple) else (solved,)
-    if any(getattr(solution, "converged", None) is None for solution in solutions):
+    solution = next((result for start, result in solved.items() if f"{name}_".startswith(f"{start}_")), None)
+    solutions = solution if isinstance(solution, tuple) else (solution,)
+    if any(getattr(each, "converged", None) is None for each in solutions):
         return {}
-    message = "; ".join(solution.message for solution in solutions if not solution.converged)
+    message = "; ".join(each.message for each in solutions if not each.converged)
     return {"converged": int(not message), **({"message": message} if message else {})}

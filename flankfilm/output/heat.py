@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     import ehl
+    from base import Array
     from flankfilm.coupling import MeshLosses
 
 THROUGH = ("x", "pressure", "thickness", "temperature", "shear_stress", "oil_temperature_rise")
@@ -28,7 +29,7 @@ def losses(mesh_losses: MeshLosses) -> Iterator[xr.Dataset]:
         yield of_record("losses_face", mesh_losses.over_face)
 
 
-def hot_contact(film: ehl.ThermalFilm, bulk: tuple[float, float]) -> Iterator[xr.Dataset]:
+def hot_contact(film: ehl.ThermalFilm, bulk: Array) -> Iterator[xr.Dataset]:
     """Film of the hottest contact, with the temperatures of the flanks [K] that its temperatures are above."""
     assert film.temperature is not None
     yield of_record("hot_contact", film, THROUGH)

@@ -13,7 +13,6 @@ from base.units import factor
 from ehl.discrete.regimes import MEASURED, regime
 from flankfilm.coupling.films.least_film import parts_of
 from flankfilm.figures.reading import PER_FACE, read_figure, unit_text
-from flankfilm.output.run import held_as_it_is
 from flankfilm.output.uncertainty import Uncertainty, uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import counted, number, percent
@@ -28,6 +27,11 @@ LEAST, LEAST_WITH_HEAT = "minimum film on the path", "minimum film with heat"
 """Names of headlines."""
 
 HELD = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}
+
+
+def held_as_it_is(cycle: LubricatedCycle) -> str:
+    """Label of a starved film beside others in which something else is held."""
+    return f"this film, {cycle.film.supply.replace('-', ' ')} held"
 
 
 def film(cycle: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:

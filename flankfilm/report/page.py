@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from flankfilm import figures
-from flankfilm.figures.style import narrow, to_svg
 from flankfilm.output.files import write_text
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.text import counted, missed, off, parts, percent, total
@@ -228,6 +227,7 @@ class Fact:
 
 def picture(draw: Callable[[xr.Dataset], Figure], results: xr.Dataset, caption: str) -> Drawing:
     """Draw results with one of `flankfilm.figures` for the page; its name becomes the figure's id."""
+    from flankfilm.figures.style import narrow, to_svg  # which loads matplotlib
 
     def redraw() -> str:
         with narrow():

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flankfilm.report.page import Fact, Part, Table, said
-from flankfilm.report.text import counted, percent, seconds
+from flankfilm.report.text import percent, seconds
 from flankfilm.scene.tables.flank_files import CURVES
 
 if TYPE_CHECKING:
@@ -49,9 +49,9 @@ class Work(NamedTuple):
     note: str = ""
 
 
-def costs(results: Results) -> Part:
-    """Error against cost for each stage that ran, in the order of computation."""
-    listed = [(run, _work(name, results)) for name, run in results.runs.items()]
+def costs(results: Results, works: Sequence[Work]) -> Part:
+    """Error against cost for each stage that ran, in the order of computation; `works` of each of them."""
+    listed = list(zip(results.runs.values(), works, strict=True))
     listed = [(run, work) for run, work in listed if work != Work() or run.seconds >= LEAST_SECONDS]
     table = Table.of(
         listed,
@@ -67,40 +67,6 @@ def costs(results: Results) -> Part:
     whole, spent = seconds(results.seconds), seconds(sum(run.seconds for run, _ in listed))
     text = said("costs", tolerance=percent(results.scene.tolerance), whole=whole, listed=spent)
     return Part("costs", "Error and cost", (text,), tables=(table.filled,))
-
-
-def _work(name: str, results: Results) -> Work:
-    """Figure that a stage's error belongs to, error allowed, error, and work."""
-    value: Any = results.values.get(name)
-    plan, tolerance = results.plan, results.scene.tolerance
-    if name == "bodies" and plan is not None:
-        unknowns = counted(value.cost.unknowns, "unknown")
-        return Work("tooth compliance", plan.resolution.compliance, value.error, unknowns)
-    if name == "dry cycle" and plan is not None:
-        division = value.arcs.division
-        mean, error = division.arcs.mean("secant_stiffness")
-        samples = f"{counted(len(division.arcs.arcs), 'arc')}, {counted(division.samples, 'position')}"
-        return Work("mean stiffness, from arcs", plan.resolution.sampling, error / mean, samples)
-    if name == "fillets":
-        unknowns = counted(value.cost.unknowns, "unknown")
-        return Work("maximum root stress per load", tolerance, value.error, unknowns)
-    if name == "film" and plan is not None and value.film.model == "ehl":
-        film = value.film
-        films, rounds = counted(film.rho1.size, "film"), counted(value.rounds, "round")
-        note = f"{films} of up to {counted(film.cost.unknowns, 'unknown')}, {rounds}"
-        return Work("film thickness", plan.film_tolerance, film.error, note)
-    if name == "losses":
-        films, rounds = counted(value.path.rho1.size, "film"), counted(value.rounds, "round")
-        note = f"{films} of up to {counted(value.cost.unknowns, 'unknown')}, {rounds}"
-        return Work("mean friction", tolerance, value.error, note)
-    if name == "fourier" and value.fit is not None:
-        allowed = None if plan is None else plan.series
-        return Work("remainder of the series", allowed, value.remainder, f"order {value.order}")
-    if name == "sweep":
-        return Work("settled motions", None, value.error, counted(value.cost.periods, "period"))
-    if name == "diagram":
-        return Work("special points", None, value.error, counted(value.branches, "branch", "branches"))
-    return Work()
 
 
 def failures(results: Results) -> list[Part]:

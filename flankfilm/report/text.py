@@ -152,3 +152,8 @@ def counted(count: int, noun: str, plural: str = "") -> str:
 def seconds(value: float) -> str:
     """Time in ms or s."""
     return f"{1e3 * value:.0f} ms" if value < 1 else f"{value:.2g} s" if value < 10 else f"{value:.0f} s"
+
+
+def of_both(stresses: Sequence[float]) -> str:
+    """Stress of pinion and wheel [MPa], once where it is the same."""
+    return " and ".join(dict.fromkeys(f"{1e-6 * stress:.4g}" for stress in stresses))

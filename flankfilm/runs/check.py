@@ -10,9 +10,9 @@ from flankfilm.building.film import lubricant
 from flankfilm.building.pair import gear_pair, warm_pair
 from flankfilm.building.preflight import refuse
 from flankfilm.files.cache import Cache
+from flankfilm.products.catalogue import goals
 from flankfilm.scene import Scene
 from flankfilm.stages.engine import Engine, Stage
-from flankfilm.stages.goals import goals
 from flankfilm.stages.mesh import PLAN
 
 T = TypeVar("T")

@@ -13,11 +13,12 @@ from flankfilm.files.cache import results_cache
 from flankfilm.files.folder import claim, locked
 from flankfilm.files.manifest import MANIFEST, conclude
 from flankfilm.outcome.results import Results
-from flankfilm.output.run import not_computed, results_dataset, write_data
 from flankfilm.processes.progress import Progress, in_steps, silent
+from flankfilm.products.catalogue import goals
+from flankfilm.runs.dataset import not_computed, results_dataset, write_data
 from flankfilm.scene import Scene
+from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.goals import goals
 from flankfilm.stages.mesh import FIELDS
 from flankfilm.stages.vtk import write_fields
 
@@ -71,7 +72,7 @@ def run_scene(
             write_data(folder, results.dataset)
         results = replace(results, folder=folder, files=tuple(files), seconds=time.perf_counter() - start)
         if "report" in scene.wants:
-            from flankfilm.report.contents import write_report
+            from flankfilm.runs.report import write_report
 
             progress("writing the report", 1, 1)
             files.append(write_report(results, folder))
@@ -108,6 +109,6 @@ def _computed(scene: Scene, use_cache: bool, progress: Progress) -> tuple[Result
     for failure in failures:
         failure.error.with_traceback(None)  # which would keep every array of the solver
     values = engine.results()
-    dataset = results_dataset(scene, values, failures)
+    dataset = results_dataset(Computed(scene, values, failures))
     seconds = time.perf_counter() - start
     return Results(scene, None, values, engine.runs, (), seconds, dataset, failures=failures), engine

@@ -14,7 +14,7 @@ import gears
 from fem.contact.moving_contact import contacts_move
 from fem.pair.face_setting import FREE_ENDS
 from flankfilm import coupling
-from flankfilm.building.face import even_along_face, face, varies_by
+from flankfilm.building.face import face, varies_by
 from flankfilm.building.film import film_model, lubricant
 from flankfilm.building.flanks import deviations
 from flankfilm.building.overload import warn_of_overload
@@ -23,7 +23,7 @@ from flankfilm.coupling.mesh.require_converged import believed
 from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.film_choice import foreseen_change
 from flankfilm.plan.options import FilmChange
-from flankfilm.scene.plain_gears import held_on_hubs, plain_flanks
+from flankfilm.scene.plain_gears import plain_flanks
 from flankfilm.scene.sections.ground import under_keys
 from flankfilm.stages.engine import Engine, stage
 
@@ -36,7 +36,7 @@ def decided(what: Callable[[Plan], Mapping[str, Any]]) -> Callable[[Engine], Map
     return lambda run: {} if run.scene.stiffness.model == "given" else what(run[PLAN])
 
 
-_TEETH_DECIDED = decided(
+TEETH_DECIDED = decided(
     lambda plan: {"stiffness model": plan.stiffness.choice, "sampling": plan.resolution.sampling}
 )
 
@@ -150,83 +150,11 @@ def loaded_teeth(
     return coupling.LoadedTeeth(*arguments, scene.reference, scene.bore_inertia)
 
 
-@stage(
-    "closed forms",
-    "closed forms",
-    "operating wants reference bore_inertia",
-    PAIR,
-    COMPLIANCE,
-    settings=_TEETH_DECIDED,
-)
-def CLOSED_FORMS(run: Engine) -> coupling.SinglePairs:
-    """Closed forms along the path, beside finite elements where the scene has them anyway."""
-    beside = "stiffness" in run.scene.wants and run[PLAN].stiffness.choice == "fem"
-    return coupling.single_pairs(
-        run[PAIR],
-        pinion_torque(run.scene),
-        run[COMPLIANCE] if beside else None,
-        reference=run.scene.reference or "body",
-        bore_inertia=run.scene.bore_inertia,
-    )
-
-
-@stage(
-    "verification",
-    "closed forms against finite elements",
-    "stiffness.contact_beyond_path stiffness.moving_contact operating reference bore_inertia",
-    COMPLIANCE,
-)
-def VERIFICATION(run: Engine) -> coupling.Verification:
-    """Every closed form beside finite elements, of loads that are even along the face."""
-    stiffness, pair = run.scene.stiffness, even_along_face(run[PAIR])
-    asked = stiffness.contact_beyond_path, stiffness.moving_contact
-    compliance = replace(run[COMPLIANCE], pair=pair)
-    return coupling.verification_of(
-        pair,
-        pinion_torque(run.scene),
-        compliance,
-        *asked,
-        reference=run.scene.reference or "body",
-        bore_inertia=run.scene.bore_inertia,
-    )
-
-
-@stage("dry cycle", "mesh cycle without film", TEETH, COMPLIANCE, FACE_GEARS, settings=_TEETH_DECIDED)
+@stage("dry cycle", "mesh cycle without film", TEETH, COMPLIANCE, FACE_GEARS, settings=TEETH_DECIDED)
 def DRY_CYCLE(run: Engine) -> coupling.MeshCycle:
     """Mesh stiffness without film, its figures by arcs between events."""
     asked = run[PLAN].resolution
     return loaded_teeth(run).sampled(asked.sampling, asked.transmission_error)
-
-
-@stage("references", "stiffness by reference", "dynamics", COMPLIANCE, DRY_CYCLE)
-def REFERENCES(run: Engine) -> coupling.StiffnessReferences | None:
-    """Mean stiffness against bodies, bores and teeth, and the parts of the deflection; None by closed forms."""
-    cycle = run[DRY_CYCLE]
-    if cycle.contact is None:
-        return None
-    return coupling.stiffness_references(run[PAIR], cycle, run[COMPLIANCE], run.scene.bore_inertia)
-
-
-@stage("torques", "mesh cycles over torque", TEETH, COMPLIANCE, FACE_GEARS, DRY_CYCLE)
-def TORQUES(run: Engine) -> coupling.TorqueCurves:
-    """Mesh cycles at the scene's torques from one compliance."""
-    torques = run.scene.operating.torques_Nm if run.scene.operating else ()
-    return coupling.torque_curves(loaded_teeth(run, by_elements=True), torques, run[DRY_CYCLE].position.size)
-
-
-@stage("revolution", "mesh cycle tooth by tooth", TEETH, COMPLIANCE, FACE_GEARS)
-def REVOLUTION(run: Engine) -> fem.MeshCycle:
-    """Mesh cycle tooth by tooth, with the deviations of each."""
-    operating = run.scene.operating
-    assert operating is not None
-    teeth = loaded_teeth(run, by_elements=True, every_tooth=True)
-    return coupling.revolution(teeth, operating.pitches, operating.first_teeth)
-
-
-@stage("other cycles", "mesh cycle by the other models", TEETH, DRY_CYCLE)
-def OTHER_CYCLES(run: Engine) -> tuple[coupling.MeshCycle, ...]:
-    """Mesh cycles by the models that the scene did not choose: independent pairs added, without film."""
-    return tuple(map(with_arcs, loaded_teeth(run).others(run[DRY_CYCLE].position.size)))
 
 
 C = TypeVar("C", bound=coupling.MeshCycle)
@@ -280,45 +208,6 @@ def FILM(run: Engine) -> coupling.LubricatedCycle:
 def MESH(run: Engine) -> coupling.MeshCycle:
     """Mesh stiffness that the motion uses: with the film where there is one."""
     return run[DRY_CYCLE] if run[PLAN].film.choice == "none" else run[FILM]
-
-
-@stage(
-    "fillets",
-    "root stress per load by finite elements",
-    "pair material heat stiffness.plane tolerance",
-    kept="gears meshes fem",
-    by_parts=True,
-    of=plain_flanks,
-)
-def FILLETS(run: Engine) -> fem.Fillets:
-    """What loads anywhere on the flanks do to the fillets."""
-    scene = run.scene
-    return coupling.fillets_of(
-        gear_pair(held_on_hubs(plain_flanks(scene))), scene.tolerance, scene.stiffness.plane, run.parts
-    )
-
-
-@stage(
-    "fillets along the face",
-    "root stress per load along the face",
-    "alignment",
-    FILLETS,
-    PAIR,
-    kept="gears meshes fem",
-    by_parts=True,
-)
-def FACE_FILLETS(run: Engine) -> fem.FaceFillets:
-    """What loads that vary along the face do to the fillets."""
-    model = face(run.scene).get("face_model", FREE_ENDS)
-    return coupling.fillets_over_face(run[FILLETS], run[PAIR], model, run.parts)
-
-
-@stage("root stress", "root stress over the mesh cycle", "", MESH, FILLETS, PAIR, FACE_FILLETS)
-def ROOT_STRESS(run: Engine) -> coupling.RootStresses:
-    """Stress at the fillets with the forces of the mesh cycle, with the film where there is one."""
-    if varies_by(run.scene):
-        _ = run[FACE_FILLETS]  # root stresses find them in the process
-    return coupling.root_stresses(run[PAIR], loaded_contact(run), run[FILLETS])
 
 
 @stage("fields", "stress and displacement fields", TEETH, MESH)

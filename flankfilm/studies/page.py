@@ -21,7 +21,7 @@ from flankfilm.report.page import Fact, Head, Headline, Part, Table, picture, wr
 from flankfilm.report.run_parts import inputs_of, work_of
 from flankfilm.report.text import counted, number, off, percent
 from flankfilm.scene import Scene, parse_tolerance
-from flankfilm.studies.output_errors import ERROR_OF, MODEL_ERROR_OF
+from flankfilm.studies.outputs import ERROR_OF, MODEL_ERROR_OF
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,10 +12,11 @@ from flankfilm.coupling import Verification
 from flankfilm.files.cache import results_cache
 from flankfilm.files.folder import claim
 from flankfilm.processes.progress import Progress, in_steps, silent
+from flankfilm.products.closed_forms import VERIFICATION
+from flankfilm.products.face import FACE_MODELS
 from flankfilm.scene import Scene
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.face import FACE_MODELS
-from flankfilm.stages.mesh import PAIR, VERIFICATION
+from flankfilm.stages.mesh import PAIR
 
 OF_OTHERS = ("wants", "film.meniscus_half_widths", "film.stiffness", "dynamics.damping_ratio")
 """Where faults of a face stand that no verification is concerned with."""

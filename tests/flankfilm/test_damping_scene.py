@@ -12,7 +12,7 @@ import gears
 from base import InputError
 from flankfilm.coupling import film_damping, pair_drive
 from flankfilm.files.cache import Cache
-from flankfilm.report.oscillator_parts import oscillator_rows
+from flankfilm.products.oscillator import oscillator_rows
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from flankfilm.stages.damping import FILM_DAMPING

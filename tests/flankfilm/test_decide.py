@@ -21,8 +21,8 @@ from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.decisions import Decision, order_decision
 from flankfilm.plan.film_choice import FORMULA_OFF, MOST_OF_FORESEEN, FilmChange
 from flankfilm.plan.stiffness_choice import LARGEST_DIFFERENCE
-from flankfilm.report.contents import summary
 from flankfilm.runs.check import check_scene
+from flankfilm.runs.report import summary
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import Scene, parse_scene, read_scene, template
 from flankfilm.scene.reader import validated

@@ -12,12 +12,13 @@ from flankfilm import coupling, figures
 from flankfilm.coupling import mesh_cycle, pair_drive, pair_oscillator
 from flankfilm.coupling.speeds import jump_errors, jumps
 from flankfilm.coupling.vibration.series import mesh_series
-from flankfilm.output.run import results_tables
-from flankfilm.report.contents import HEADLINES, PARTS
+from flankfilm.products.diagram import headlines
+from flankfilm.runs.dataset import results_tables
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from gears import Bearing, Shaft, ShaftSegment
 from tests.dynamics.test_drives import same_as
+from tests.flankfilm.shown import part_of
 from tests.flankfilm.test_drive import PAIR
 from tests.flankfilm.test_drive_scene import TRAIN
 
@@ -93,8 +94,8 @@ def test_a_scene_with_shafts_has_a_diagram():
     assert found.diagram.converged
     assert data.diagram_displacement.size == sum(len(branch.values) for branch in found.diagram.branches)
     assert {"diagram", "special_points"} <= {*results_tables(data)}
-    assert PARTS["diagram"](found, data).figures
-    assert HEADLINES["diagram"](found)
+    assert part_of(results, "diagram").figures
+    assert headlines(found)
     assert figures.diagram(data).axes
 
 

@@ -19,8 +19,8 @@ from flankfilm.building.preflight import refuse
 from flankfilm.coupling import drive_sweep, mesh_cycle, mesh_series, pair_drive
 from flankfilm.coupling.speeds.truncation import with_order
 from flankfilm.files.cache import Cache
-from flankfilm.output.run import results_tables
-from flankfilm.report.contents import HEADLINES, PARTS
+from flankfilm.report import drive_parts
+from flankfilm.runs.dataset import results_tables
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import Scene, parse_scene
 from flankfilm.stages.drives import DRIVE, DRIVE_SWEEP
@@ -32,6 +32,7 @@ from flankfilm.studies.plan import plan_of
 from flankfilm.studies.study_file import StudyFile
 from gears import Gear, GearPair
 from tests.flankfilm.scenes import ISHIKAWA
+from tests.flankfilm.shown import part_of
 
 MOVING = (
     ISHIKAWA.replace("WANTS", '"sweep"').replace(
@@ -117,11 +118,11 @@ def test_a_train_is_in_tables_report_and_outputs(train):
     }
     assert {len(column) for column in tables["drive_sweep"].values()} == {2}
     for name in ("drive", "drive sweep"):
-        part = PARTS[name](train.values[name], data)
+        part = part_of(train, name)
         assert part.figures
         modes = len(train.values["drive"].natural_frequencies)
         assert len(part.tables[0].rows) == {"drive": modes, "drive sweep": 4}[name]
-    assert [one.unit for one in HEADLINES["drive sweep"](train.values["drive sweep"])] == ["", "N", "N m"]
+    assert [one.unit for one in drive_parts.headlines(train.values["drive sweep"])] == ["", "N", "N m"]
     for draw in (figures.drive_sweep, figures.drive_modes):
         assert draw(data).axes
     engine = Engine(parse_scene(TRAIN), Cache(None))
@@ -208,7 +209,7 @@ def test_harmonics_beyond_the_series_are_estimated(train):
 
 def test_reports_of_run_ups_maps_and_orders(train):
     for name, tables in (("spectrum", 1), ("run-up", 2), ("dynamic-map", 2)):
-        part = PARTS[name](train.values[name], train.dataset)
+        part = part_of(train, name)
         assert part.figures
         assert len(part.tables) == tables
     for draw in (figures.drive_run_up, figures.drive_map, figures.spectrum):

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import time
 import warnings
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import get_args
 
 import numpy as np
 import pytest
 
+from flankfilm import products, stages
 from flankfilm.coupling.films.film_law import FilmLaw
 from flankfilm.files.cache import Cache
+from flankfilm.products.catalogue import PRODUCTS, goals
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import Scene, parse_scene, template
-from flankfilm.stages import drives, motion, speeds
-from flankfilm.stages import mesh as catalogue
+from flankfilm.scene.schema import Want
 from flankfilm.stages.engine import Engine, KeptPart, Stage, StageRun
-from flankfilm.stages.goals import goals
 from flankfilm.stages.mesh import FILM
 from tests.flankfilm.scenes import CLOSED_FORMS_WITH_FILM
 
@@ -114,12 +117,27 @@ def test_warnings_are_gathered_once_each():
     assert len(engine.runs["warns"].warnings) == 1
 
 
-def test_each_stage_comes_after_what_it_needs_and_has_a_name_of_its_own():
-    named = vars(catalogue) | vars(motion) | vars(drives) | vars(speeds)
-    stages = [stage for stage in named.values() if isinstance(stage, Stage)]
-    assert len({stage.name for stage in stages}) == len(stages) == 34
-    for number, stage in enumerate(stages):
-        assert set(stage.needs) <= set(stages[:number])
+def stages_of(*packages):
+    """Stages that the modules of packages declare."""
+    names = [f"{p.__name__}.{module.name}" for p in packages for module in iter_modules(p.__path__)]
+    modules = map(import_module, names)
+    return {thing for module in modules for thing in vars(module).values() if isinstance(thing, Stage)}
+
+
+def test_each_stage_has_a_name_of_its_own():
+    declared = stages_of(stages, products)
+    assert len({stage.name for stage in declared}) == len(declared)
+    assert all(set(stage.needs) <= declared for stage in declared)
+
+
+def test_every_want_and_every_stage_that_is_shown_belongs_to_one_product():
+    shown = [*(stage for product in PRODUCTS for stage in set(product.solved.values()))]
+    assert len(shown) == len(set(shown))
+    prefixes = [prefix for product in PRODUCTS for prefix in product.solved]
+    assert len(prefixes) == len(set(prefixes))
+    assert {"report"} == {*get_args(Want)} - {product.name for product in PRODUCTS}
+    files = [file for product in PRODUCTS for file in product.tables]
+    assert len(files) == len(set(files))
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,11 @@ import pytest
 
 from base import Cost
 from flankfilm.files.cache import Cache, results_cache
-from flankfilm.output.run import results_dataset
+from flankfilm.products.catalogue import goals
+from flankfilm.runs.dataset import results_dataset
 from flankfilm.scene import parse_scene
+from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.goals import goals
 from tests.flankfilm.explained import unexplained
 from tests.flankfilm.program import EXAMPLES
 from tests.flankfilm.scenes import CLOSED_FORMS_WITH_FILM
@@ -21,7 +22,7 @@ def computed(scene, cache):
     engine = Engine(scene, cache)
     for stage in goals(scene):
         engine[stage]
-    return engine.results(), results_dataset(scene, engine.results())
+    return engine.results(), results_dataset(Computed(scene, engine.results()))
 
 
 def test_closed_forms_say_that_their_error_is_unknown():
@@ -47,7 +48,7 @@ def test_a_result_that_did_not_converge_says_so_beside_its_figures():
     )
     values, _ = computed(scene, Cache(None))
     stray = replace(values["fourier"], converged=False, message="left out", cost=Cost(0.0))
-    data = results_dataset(scene, {**values, "fourier": stray})
+    data = results_dataset(Computed(scene, {**values, "fourier": stray}))
     assert data.fourier_amplitude.attrs["converged"] == 0
     assert data.fourier_amplitude.attrs["message"] == "left out"
     assert data.dry_mean_stiffness.attrs["converged"] == 1

@@ -10,11 +10,13 @@ import pytest
 
 from flankfilm.building.preflight import refuse
 from flankfilm.files.cache import Cache
-from flankfilm.output.run import results_dataset
-from flankfilm.report import mesh_parts
+from flankfilm.products import root_stress
+from flankfilm.products.root_stress import ROOT_STRESS
+from flankfilm.runs.dataset import results_dataset
 from flankfilm.scene import parse_scene
+from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.mesh import DRY_CYCLE, FILM, MESH, PAIR, ROOT_STRESS
+from flankfilm.stages.mesh import DRY_CYCLE, FILM, MESH, PAIR
 from flankfilm.studies.outputs import OUTPUTS
 from tests.flankfilm.scenes import ishikawa
 
@@ -78,8 +80,8 @@ def test_root_stress_over_the_face_with_what_else_varies_the_load(name):
     engine = ran(COMBINED[name])
     found, face = engine[ROOT_STRESS], engine[MESH].contact.face
     values: Mapping[str, Any] = {one.name: engine[one] for one in (PAIR, DRY_CYCLE, ROOT_STRESS)}
-    data = results_dataset(engine.scene, values)
-    part = mesh_parts.root_stress(found, data)
+    data = results_dataset(Computed(engine.scene, values))
+    part = root_stress.section(found, data)
     for gear in ("pinion", "wheel"):
         over = getattr(found.stress, gear).face
         # the end that the axes close, or the shaft's bending, has the greatest stress

@@ -17,14 +17,17 @@ from flankfilm.building.pair import gear_pair
 from flankfilm.building.preflight import refuse
 from flankfilm.coupling.mesh.face_models import _linear
 from flankfilm.files.cache import Cache
-from flankfilm.output.run import results_dataset, results_tables
-from flankfilm.report import face_parts, film_parts, mesh_parts
+from flankfilm.products import root_stress
+from flankfilm.products.catalogue import goals
+from flankfilm.products.face import FACE_MODELS
+from flankfilm.products.root_stress import ROOT_STRESS
+from flankfilm.report import face_parts, film_parts
+from flankfilm.runs.dataset import results_dataset, results_tables
 from flankfilm.scene import parse_scene
 from flankfilm.scene.plain_gears import plain_flanks
+from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.face import FACE_MODELS
-from flankfilm.stages.goals import goals
-from flankfilm.stages.mesh import DRY_CYCLE, FACE_GEARS, FILM, PAIR, ROOT_STRESS
+from flankfilm.stages.mesh import DRY_CYCLE, FACE_GEARS, FILM, PAIR
 from flankfilm.studies.outputs import OUTPUTS
 from gears import Alignment, Lead, closed_form
 from tests.flankfilm.scenes import ishikawa
@@ -189,7 +192,7 @@ def test_the_line_of_iso_has_its_factor_and_its_mean(factor: float, side: float)
 
 def test_files_and_pictures_of_the_face(ran):
     values: Mapping[str, Any] = {stage.name: ran[stage] for stage in (PAIR, DRY_CYCLE, FACE_MODELS)}
-    data = results_dataset(ran.scene, values)
+    data = results_dataset(Computed(ran.scene, values))
     face_loads = ran[DRY_CYCLE].contact.face
     assert float(data["dry_face_greatest_face_load_factor"]) == face_loads.greatest_face_load_factor
     assert data["dry_face_face_load_factor"].attrs["error"] == face_loads.error
@@ -254,7 +257,7 @@ def test_root_stress_over_the_face_from_scene_to_page(rooted):
     iso = closed_form.iso6336_face_load(pair, 100.0, 20e-6)
     assert found.iso_face.K_Fbeta == pytest.approx(iso.K_Hbeta**iso.N_F)
     values: Mapping[str, Any] = {stage.name: rooted[stage] for stage in (PAIR, DRY_CYCLE, ROOT_STRESS)}
-    data = results_dataset(rooted.scene, values)
+    data = results_dataset(Computed(rooted.scene, values))
     np.testing.assert_array_equal(data["root_face_wheel_cycle_tension"], gear.face.cycle_tension)
     assert float(data["iso6336_face_K_Fbeta"]) == found.iso_face.K_Fbeta
     rows = results_tables(data)["root_face_pinion"]
@@ -262,7 +265,7 @@ def test_root_stress_over_the_face_from_scene_to_page(rooted):
     axes = figures.root_face_map(data).axes
     assert len(axes[2].lines) == 2
     np.testing.assert_allclose(axes[2].lines[1].get_ydata(), 1e-6 * gear.face.cycle_tension)
-    part = mesh_parts.root_stress(found, data)
+    part = root_stress.section(found, data)
     assert [len(table.rows) for table in part.tables][:2] == [4, 6]
     assert "N_F" in part.tables[1].rows[5][0]
     assert "crowning of the pinion" in part.notes[1]
@@ -306,7 +309,7 @@ def test_films_over_the_face_from_scene_to_page():
     over = cycle.over_face
     assert over.line_load.shape[-1] == 8
     values = {"pair": pair, "dry cycle": engine[DRY_CYCLE], "film": cycle}
-    data = results_dataset(engine.scene, values)
+    data = results_dataset(Computed(engine.scene, values))
     assert float(data["film_face_least_film"]) == over.least_film
     assert data["film_face_minimum_thickness"].dims[-1] == "film_face_cell"
     assert OUTPUTS["least_film_um"].value(engine) == pytest.approx(1e6 * over.least_film, rel=0.02)

@@ -9,11 +9,11 @@ import pytest
 from flankfilm import coupling
 from flankfilm.files.cache import Cache
 from flankfilm.plan.decisions import decisions
+from flankfilm.products.diagram import DIAGRAM
 from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import FILM
 from flankfilm.stages.motion import BRANCHES, FOURIER, SCALING
-from flankfilm.stages.speeds import DIAGRAM
 from tests.flankfilm.scenes import PAIR_WITH_BACKLASH
 
 SCENE = f"""

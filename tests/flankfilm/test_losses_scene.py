@@ -17,18 +17,18 @@ from flankfilm import coupling, figures
 from flankfilm.building.heat import shearing_oil, solids, warmth
 from flankfilm.building.pair import gear_pair
 from flankfilm.files.cache import Cache
-from flankfilm.output.run import results_dataset, results_tables
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.plan.heat_choice import heat_choice
+from flankfilm.products.catalogue import goals
 from flankfilm.report import losses_parts
 from flankfilm.report.text import percent
+from flankfilm.runs.dataset import results_dataset, results_tables
 from flankfilm.scene import parse_scene
+from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.goals import goals
 from flankfilm.stages.losses import HEAT_CHOICE, HOT_CONTACT, HOT_FILM, LOSSES
 from flankfilm.stages.mesh import FILM, PAIR
-from flankfilm.studies.output_errors import ERROR_OF
-from flankfilm.studies.outputs import OUTPUTS
+from flankfilm.studies.outputs import ERROR_OF, OUTPUTS
 
 EXAMPLE = Path("examples/losses.toml").read_text(encoding="utf-8")
 QUICK = EXAMPLE.replace("tolerance = 0.01", "tolerance = 0.1").replace(
@@ -199,7 +199,7 @@ def test_the_screen_is_the_hottest_contact_with_heat_and_without(few):
 
 def test_files_pictures_and_page_of_losses(few):
     scene, lost = few["scene"], few["losses"]
-    data = results_dataset(scene, {name: few[name] for name in ("pair", "losses", "hot contact")})
+    data = results_dataset(Computed(scene, {name: few[name] for name in ("pair", "losses", "hot contact")}))
     assert float(data["losses_mesh_loss"]) == lost.mesh_loss
     assert data["losses_mesh_loss"].attrs["error"] == lost.error
     tables = results_tables(data)

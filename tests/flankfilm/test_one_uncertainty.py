@@ -22,12 +22,11 @@ from flankfilm.coupling.speeds.drive_sweep import DriveSweep
 from flankfilm.outcome.results import Results
 from flankfilm.output.model_errors import MODEL_ERRORS
 from flankfilm.output.uncertainty import Uncertainty, met
-from flankfilm.report.contents import headlines, misses, summary
-from flankfilm.report.mesh_parts import stiffness
+from flankfilm.report.stiffness_parts import stiffness
 from flankfilm.report.text import off, percent
+from flankfilm.runs.report import headlines, misses, summary
 from flankfilm.stages.engine import Stage
-from flankfilm.studies.output_errors import ERROR_OF, MODEL_ERROR_OF
-from flankfilm.studies.outputs import OUTPUTS
+from flankfilm.studies.outputs import ERROR_OF, MODEL_ERROR_OF, OUTPUTS
 from tests.flankfilm.program import EXAMPLES
 
 DOCS = Path(__file__).parents[2] / "docs"

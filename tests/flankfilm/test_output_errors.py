@@ -11,13 +11,12 @@ from base import Figure
 from base.units import suffix
 from flankfilm.files.cache import Cache
 from flankfilm.output.uncertainty import uncertainty
+from flankfilm.products.closed_forms import VERIFICATION
+from flankfilm.products.output import error_name, output_of, with_errors
 from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.mesh import MESH, VERIFICATION
-from flankfilm.studies.held_errors import HELD
-from flankfilm.studies.output import error_name, output_of, with_errors
-from flankfilm.studies.output_errors import ERROR_OF
-from flankfilm.studies.outputs import OUTPUTS
+from flankfilm.stages.mesh import MESH
+from flankfilm.studies.outputs import ERROR_OF, OUTPUTS
 from tests.flankfilm.scenes import ARTICLE
 
 SCENE = f"""
@@ -53,14 +52,16 @@ def test_names_of_errors_have_no_unit():
 
 
 def test_an_error_that_is_an_output_already_appears_once():
-    by_themselves = [name for names in HELD.values() for name in names]
-    again = {error_name(name, OUTPUTS[name]) for name in by_themselves} & (OUTPUTS.keys() - HELD.keys())
+    held = {name: output.error_output for name, output in OUTPUTS.items() if output.error_output}
+    again = {error_name(name, OUTPUTS[name]) for name in held} & (OUTPUTS.keys() - {*held.values()})
     # of these the name says search, samples and damping together
     assert again <= {"greatest_bearing_force_error", "greatest_shaft_torque_error"}
     figure = Figure("Pa", "stress", shown="MPa")
-    outputs = dict([output_of("stress", figure, "stiffness", lambda _: 1.0, error=lambda _: 0.5)])
-    assert list(with_errors(outputs, ["stress_MPa"])) == ["stress_MPa"]
-    assert list(with_errors(outputs, [])) == ["stress_MPa", "stress_error"]
+    for held_by, names in (("errors", ["stress_MPa"]), ("", ["stress_MPa", "stress_error"])):
+        name, output = output_of(
+            "stress", figure, "stiffness", lambda _: 1.0, error=lambda _: 0.5, error_output=held_by
+        )
+        assert list(with_errors({name: output})) == names
 
 
 def test_extremes_and_harmonics_have_the_errors_of_the_cycle(engine):

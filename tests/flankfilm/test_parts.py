@@ -16,8 +16,8 @@ from flankfilm import cli, coupling
 from flankfilm.files.cache import Cache
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.processes.exit_status import guarded
-from flankfilm.report.contents import headlines, misses, summary
 from flankfilm.report.page import Headline
+from flankfilm.runs.report import headlines, misses, summary
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine, Stage, StageRun

@@ -17,7 +17,7 @@ from base import InputError, has_picture, plot
 from base.views import GROUP
 from flankfilm.figures.film import film_along_path
 from flankfilm.figures.views import MODULES, PICTURES, VIEWS, register
-from flankfilm.report.contents import _asked
+from flankfilm.runs.report import _asked
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from gears import Gear, GearPair, closed_form, dimensions

@@ -10,7 +10,7 @@ from numba import njit
 
 from base import hide_compilation
 from flankfilm.processes.progress import compiling_line, console_progress, console_rows, row_lines, rows_of
-from flankfilm.report.contents import summary
+from flankfilm.runs.report import summary
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 

@@ -20,7 +20,7 @@ from base import InputError
 from flankfilm.files.folder import claim, locked
 from flankfilm.files.manifest import conclude
 from flankfilm.output.reproduce import scene_in
-from flankfilm.report.contents import summary
+from flankfilm.runs.report import summary
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene, read_scene
 from flankfilm.studies.kept import Work, kept_rows

@@ -24,15 +24,17 @@ from flankfilm.optimisation.optimum import Evaluation, Optimum
 from flankfilm.optimisation.page import write_optimum_page
 from flankfilm.optimisation.task import read_task
 from flankfilm.outcome.results import Results
-from flankfilm.output.run import results_dataset, write_data
 from flankfilm.output.uncertainty import Uncertainty
-from flankfilm.report.contents import write_report
+from flankfilm.products.catalogue import goals
+from flankfilm.products.closed_forms import VERIFICATION
 from flankfilm.report.page import Head, Headline, render
 from flankfilm.report.run_parts import merged
+from flankfilm.runs.dataset import results_dataset, write_data
+from flankfilm.runs.report import write_report
 from flankfilm.scene import parse_scene
+from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.goals import goals
-from flankfilm.stages.mesh import FIELDS, VERIFICATION
+from flankfilm.stages.mesh import FIELDS
 from flankfilm.studies.files import dataset as study_dataset
 from flankfilm.studies.page import reference_facts, write_study_page
 from flankfilm.studies.plan import plan_of
@@ -147,7 +149,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
     for stage in (*goals(scene), FIELDS):
         engine[stage]
     values = engine.results()
-    data = results_dataset(scene, values)
+    data = results_dataset(Computed(scene, values))
     write_data(folder, data)
     run = Results(scene, folder, values, engine.runs, (), 1.0, data)
     pages = {"run": write_report(run, folder)}

@@ -20,8 +20,9 @@ from flankfilm.figures import Frame, animate_cycle, tooth_picture
 from flankfilm.figures.rendering import animation
 from flankfilm.files.cache import Cache
 from flankfilm.files.manifest import conclude
-from flankfilm.output.run import results_dataset, write_data
+from flankfilm.runs.dataset import results_dataset, write_data
 from flankfilm.scene import parse_scene
+from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FIELDS, MESH, PAIR
 from tests.flankfilm.program import flankfilm
@@ -72,7 +73,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     engine = Engine(scene, Cache(None))
     for stage in (DRY_CYCLE, MESH, FIELDS):
         engine[stage]
-    write_data(folder, results_dataset(scene, engine.results()))
+    write_data(folder, results_dataset(Computed(scene, engine.results())))
     cycle: fem.MeshCycle = engine[MESH].contact
     write_vtk_series(folder, engine[PAIR], cycle, engine[COMPLIANCE], (0, 40, 80))
     return folder

@@ -9,10 +9,11 @@ import pytest
 
 from base import InputError, SolverError
 from flankfilm.files.cache import Cache
-from flankfilm.output.run import results_dataset, results_tables
 from flankfilm.report import drive_parts, face_parts
 from flankfilm.report.text import number
+from flankfilm.runs.dataset import results_dataset, results_tables
 from flankfilm.scene import parse_scene
+from flankfilm.stages.computed import Computed
 from flankfilm.stages.drives import DRIVE
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import DRY_CYCLE, PAIR
@@ -99,7 +100,7 @@ def test_the_drive_train_has_the_tilt_of_the_mesh_on_its_shafts(overhung):
     assert drive.load_centre == pytest.approx(place, rel=1e-12)
     assert drive.tilt_stiffness == pytest.approx(matrix[1, 1] - place * matrix[1, 0], rel=1e-12)
     values = {stage.name: overhung[stage] for stage in (PAIR, DRY_CYCLE, DRIVE)}
-    data = results_dataset(overhung.scene, values)
+    data = results_dataset(Computed(overhung.scene, values))
     for name, scale in (("tilt_stiffness_Nm_per_rad", 1.0), ("load_centre_mm", 1e3), ("tilt_change", 1.0)):
         figure = name.removesuffix("_Nm_per_rad").removesuffix("_mm")
         assert float(data[f"drive_{figure}"]) == getattr(drive, figure)
@@ -151,7 +152,9 @@ def test_shafts_that_are_far_too_soft_are_refused_by_what_they_do():
 def test_what_shafts_do_is_in_results_tables_report_and_studies(overhung):
     cycle = overhung[DRY_CYCLE]
     face = cycle.contact.face
-    data = results_dataset(overhung.scene, {stage.name: overhung[stage] for stage in (PAIR, DRY_CYCLE)})
+    data = results_dataset(
+        Computed(overhung.scene, {stage.name: overhung[stage] for stage in (PAIR, DRY_CYCLE)})
+    )
     for name, error in (
         ("shaft_deflection", face.shaft_error),
         ("shaft_misalignment", face.tilt_error),
@@ -184,7 +187,7 @@ def test_what_shafts_do_is_in_results_tables_report_and_studies(overhung):
 
 def test_rigid_shafts_have_none_of_it(aligned):
     engine = _engine(ALIGNED)
-    data = results_dataset(engine.scene, {PAIR.name: engine[PAIR], DRY_CYCLE.name: aligned})
+    data = results_dataset(Computed(engine.scene, {PAIR.name: engine[PAIR], DRY_CYCLE.name: aligned}))
     assert not [name for name in data.variables if "tilt" in str(name) or "shaft_deflection" in str(name)]
     assert "shafts_under_face" not in results_tables(data)
     rows = [row for row, _ in face_parts.face(aligned.contact.face, None, data).tables[0].rows]

@@ -7,12 +7,12 @@ import pytest
 from base import InputError
 from flankfilm import figures
 from flankfilm.files.cache import Cache
-from flankfilm.report.contents import PARTS
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine
 from flankfilm.studies.outputs import OUTPUTS
 from tests.flankfilm.scenes import ARTICLE
+from tests.flankfilm.shown import part_of
 
 HEAD = ARTICLE.replace("pinion_torque_Nm = 600", "pinion_torque_Nm = 600\ntorques_Nm = [300, 600]")
 SCENE = f"""
@@ -39,7 +39,7 @@ def test_run_up_and_map_of_a_scene():
     for draw in (figures.run_up, figures.waterfall, figures.dynamic_map):
         assert draw(data).axes
     for name in ("run-up", "dynamic-map"):
-        part = PARTS[name](found.values[name], data)
+        part = part_of(found, name)
         assert part.figures
         assert part.tables[0].rows
     engine = Engine(parse_scene(SCENE), Cache(None))

@@ -18,10 +18,11 @@ from flankfilm.building.film import lubricant
 from flankfilm.building.pair import gear_pair, pinion_speed
 from flankfilm.coupling import FilmModel, Flanks, LoadedTeeth, LubricatedCycle, MeshCycle, torque_curves
 from flankfilm.files.cache import Cache
+from flankfilm.products.closed_forms import VERIFICATION
+from flankfilm.products.diagram import DIAGRAM
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FILM, VERIFICATION
+from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FILM
 from flankfilm.stages.motion import FOURIER, SCALING, SWEEP
-from flankfilm.stages.speeds import DIAGRAM
 from tests.flankfilm.scenes import ARTICLE
 
 HEAD = """

@@ -17,10 +17,12 @@ from fem.pair.references import turns
 from flankfilm.coupling import MeshCycle, mesh_series, stiffness_references
 from flankfilm.coupling.mesh.references import MEANINGS
 from flankfilm.files.cache import Cache
-from flankfilm.report.mesh_parts import references as report_part
-from flankfilm.report.oscillator_parts import scaling
+from flankfilm.products.oscillator import scaling
+from flankfilm.products.stiffness import REFERENCES
+from flankfilm.products.torques import TORQUES
+from flankfilm.report.stiffness_parts import references as report_part
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FILM, REFERENCES, TORQUES
+from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FILM
 from flankfilm.stages.motion import FOURIER, SCALING
 from tests.flankfilm.scenes import ARTICLE
 from tests.validation.article import PAIR

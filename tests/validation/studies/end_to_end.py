@@ -20,11 +20,11 @@ import numpy as np
 
 import fem
 from flankfilm.files.cache import Cache, keep_compiled_code
+from flankfilm.products.diagram import DIAGRAM
 from flankfilm.scene.reader import validated
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import FILM, MESH, PLAN
 from flankfilm.stages.motion import FOURIER
-from flankfilm.stages.speeds import DIAGRAM
 
 TOLERANCES = (0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005)
 

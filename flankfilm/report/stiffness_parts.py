@@ -1,17 +1,16 @@
-"""Sections of the report about geometry, stiffness, load share, torques, a revolution, fields and root stress."""
+"""Sections of the report about stiffness, load share, transmission error, and the reference of the deflection."""
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flankfilm.coupling.mesh.references import MEANINGS, PARTS, RELATIVE, relative_to
-from flankfilm.figures.reading import PER_FACE, read, read_figure, unit_text
-from flankfilm.output.uncertainty import Uncertainty, uncertainty
+from flankfilm.figures.reading import PER_FACE, read_figure, unit_text
+from flankfilm.output.uncertainty import uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.text import SMALLEST, alike, number, percent, plus_minus
+from flankfilm.report.text import SMALLEST, alike, number, of_both, percent
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -19,37 +18,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
     import fem
-    from fem.stress.root_peaks import RootPeak
-    from flankfilm.coupling import (
-        LoadedFields,
-        MeshCycle,
-        RootStresses,
-        SinglePairs,
-        StiffnessReferences,
-        TorqueCurves,
-    )
-    from gears.closed_form import Iso6336ContactStress, Iso6336RootStress
+    from flankfilm.coupling import MeshCycle, SinglePairs, StiffnessReferences
+    from gears.closed_form import Iso6336ContactStress
 
 EXPLAINED = {"body": "reference_body", "bore": "reference_bore", "teeth": "reference_teeth"}
 """Texts that explain the reference of deflections."""
 
 LISTED = 6
 """Harmonics in the table of a mesh cycle."""
-
-OF_EACH_SECTION = {
-    "form factor Y_F": "Y_F",
-    "stress correction factor Y_S": "Y_S",
-    "chord of the root s_Fn": "s_Fn",
-    "bending moment arm h_Fe": "h_Fe",
-    "root fillet radius rho_F": "rho_F",
-    "notch parameter q_s": "q_s",
-}
-"""Figures of the root of either gear by ISO 6336-3."""
-
-
-def flanks(results: xr.Dataset) -> Part:
-    """Deviations and wear of the flanks."""
-    return Part("flanks", "Flanks", figures=pictures(results, "flanks"))
 
 
 def stiffness(
@@ -215,14 +191,6 @@ def contact_table(contact: Iso6336ContactStress, loaded: fem.MeshCycle | None) -
     return Table(heads, tuple(rows), caption)
 
 
-def fields(stage: LoadedFields, results: xr.Dataset) -> Part:
-    """Picture of the loaded teeth."""
-    peak = max(float(np.nanmax(field.von_mises_Pa)) for field in (stage.pinion, stage.wheel))
-    note = said("peak", peak=number(1e-6 * peak))
-    drawn = pictures(results, "tooth_stress")
-    return Part("fields", "Loaded teeth", figures=drawn, notes=(note,))
-
-
 def headlines(cycle: MeshCycle, face_width: float) -> list[Headline]:
     """Numbers for the page's head."""
     secant, tangent = (read_figure(cycle, n, face_width) for n in ("mean_secant_stiffness", "mean_stiffness"))
@@ -252,121 +220,6 @@ def pressure_headlines(loaded: fem.MeshCycle, single: SinglePairs | None) -> lis
     place = float(loaded.rho1.flat[int(np.nanargmax(loaded.hertz_pressure))] - loaded.pair.points.A)
     note = f"{1e3 * place:.3g} mm after A, at the positions computed, without tip edges, error unknown"
     if single is not None:
-        note += f"; ISO 6336-2 nominal {_both(single.contact.stresses)}"
+        note += f"; ISO 6336-2 nominal {of_both(single.contact.stresses)}"
     greatest = number(float(np.nanmax(pressure.values)), 4)
     return [Headline("maximum Hertz pressure", greatest, note, pressure.unit)]
-
-
-def _both(stresses: Sequence[float]) -> str:
-    """Stress of pinion and wheel [MPa], once where it is the same."""
-    return " and ".join(dict.fromkeys(f"{1e-6 * stress:.4g}" for stress in stresses))
-
-
-def root_stress(stage: RootStresses, results: xr.Dataset) -> Part:
-    """Stress at the roots by finite elements, beside ISO 6336-3."""
-    peaks = [
-        (f"{name}, maximum {kind}", getattr(gear, f"greatest_{kind}"), gear.errors[f"greatest_{kind}_Pa"])
-        for name, gear in (("pinion", stage.stress.pinion), ("wheel", stage.stress.wheel))
-        for kind in ("tension", "compression")
-    ]
-    columns: dict[str, Callable[[tuple[str, RootPeak, float]], str]] = {
-        "": lambda row: row[0],
-        "principal [MPa]": lambda row: number(1e-6 * row[1].stress_Pa),
-        "numerical error": lambda row: percent(row[2]),
-        "von Mises [MPa]": lambda row: number(1e-6 * row[1].von_mises_Pa),
-        "at [base pitches after A]": lambda row: f"{row[1].position:.3f}",
-        "tangent of the fillet [deg]": lambda row: f"{math.degrees(row[1].tangent_angle):.1f}",
-    }
-    over_face = stage.stress.pinion.face is not None
-    if over_face:
-        columns["place on the face [mm]"] = lambda row: number(1e3 * row[1].face_position, 3)
-    tables = [Table.of(peaks, columns)]
-    if over_face:
-        tables.append(_over_face(stage))
-    note = f"ISO 6336-3 gives no result: {stage.iso_fault}"
-    if stage.iso is not None:
-        tables.append(_iso(stage.iso))
-        places = "at D for the pinion and at B for the wheel"
-        note = said("iso6336_3", where="at the tip" if stage.iso.load_at == "tip" else places)
-    drawn = pictures(results, "root_stress", *(("root_face_map",) if over_face else ()))
-    notes = (note, *((said("root_over_face", left_out=stage.iso_left_out),) if over_face else ()))
-    return Part("roots", "Root stress", figures=drawn, tables=tuple(tables), notes=notes)
-
-
-def _over_face(stage: RootStresses) -> Table:
-    """Stress face-load factors of both gears, beside those of the load by ISO 6336-1."""
-    rows = []
-    for name, gear in (("pinion", stage.stress.pinion), ("wheel", stage.stress.wheel)):
-        if gear.face is not None:
-            factor = f"{number(gear.face.face_factor)} {plus_minus(gear.face.tension_error)}"
-            rows.append((f"{name}: maximum tension over its mean along the face", factor))
-            even = f"{number(gear.face.over_even)} {plus_minus(gear.face.tension_error)}"
-            rows.append((f"{name}: maximum tension over that of the same forces spread evenly", even))
-    if stage.iso_face is not None:
-        iso = stage.iso_face
-        rows.append(("ISO 6336-1, method C: K_Hbeta of the load", number(iso.K_Hbeta)))
-        rows.append((f"K_Fbeta = K_Hbeta^N_F of the root, N_F = {number(iso.N_F, 3)}", number(iso.K_Fbeta)))
-    return Table(("root stress over the face", "value"), tuple(rows))
-
-
-def root_headlines(stage: RootStresses) -> list[Headline]:
-    """Maximum stresses of both gears."""
-    largest = [read_figure(stage.stress, f"{gear}_tension_Pa") for gear in ("pinion", "wheel")]
-    values = " and ".join(f"{float(tension.values):.4g}" for tension in largest)
-    note = ""
-    if stage.iso is not None:
-        note = f"ISO 6336-3 nominal {_both(stage.iso.stresses)}"
-    name = "maximum root stress, pinion and wheel"
-    model = max(uncertainty(stage.stress, f"{gear}_tension_Pa").model or 0.0 for gear in ("pinion", "wheel"))
-    return [Headline(name, values, note, largest[0].unit, Uncertainty(stage.error, model))]
-
-
-def _iso(iso: Iso6336RootStress) -> Table:
-    rows: dict[str, Sequence[float]] = {
-        label: [getattr(section, name) for section in iso.sections] for label, name in OF_EACH_SECTION.items()
-    }
-    rows |= {
-        "rim thickness factor Y_B": iso.Y_B,
-        "nominal root stress sigma_F0 [MPa]": [1e-6 * value for value in iso.stresses],
-    }
-    cells = tuple((name, *(number(value, 5) for value in values)) for name, values in rows.items())
-    return Table(("ISO 6336-3, lengths in modules", "pinion", "wheel"), cells)
-
-
-def over_torque(stage: TorqueCurves, results: xr.Dataset) -> Part:
-    """Stiffness and transmission error over torque."""
-    names = ("secant_stiffness", "tangent_stiffness", "transmission_error", "harmonic_1")
-    curves = [read(results, f"torque_{name}", per_face=name.endswith("stiffness")) for name in names]
-    shown = [read(results, "torque"), *curves]
-    cells = zip(*([number(value, 5) for value in reading.values.tolist()] for reading in shown), strict=True)
-    errors = {"stiffness": stage.error, "peak to peak": stage.range_error}
-    caption = "Largest numerical errors: " + ", ".join(f"{n} {percent(e)}" for n, e in errors.items()) + "."
-    table = Table(tuple(reading.label for reading in shown), tuple(cells), caption)
-    drawn = pictures(results, "over_torque")
-    notes = (f"Left out: {stage.message}",) if stage.message else ()
-    orders = stage.transmission_error_harmonic
-    waves = [read(results, f"torque_transmission_error_harmonic_{order}") for order in orders]
-    rows = zip(
-        *([number(value, 4) for value in reading.values.tolist()] for reading in (shown[0], *waves)),
-        strict=True,
-    )
-    heads = (shown[0].label, *(waves[0].named(f"harmonic {order}") for order in orders))
-    off = read(results, "torque_harmonics_error")
-    caption = f"Amplitudes of the transmission error's harmonics, ± {number(float(off.values.max()), 2)} {off.unit}."
-    tables = (table, Table(heads, tuple(rows), caption))
-    return Part("torques", "Torque", figures=drawn, tables=tables, notes=notes)
-
-
-def revolution(cycle: fem.MeshCycle, results: xr.Dataset) -> Part:
-    """Transmission error tooth by tooth."""
-    drawn = pictures(results, "revolution")
-    curves = {
-        "under load": read(results, "revolution_transmission_error"),
-        "without load": read(results, "revolution_unloaded_transmission_error"),
-    }
-    rows = tuple((label, number(float(np.ptp(curve.values)))) for label, curve in curves.items())
-    caption = (
-        f"Numerical error of the mesh: {percent(cycle.error)}; extremes are taken at the positions drawn."
-    )
-    table = Table(("transmission error", curves["under load"].named("peak to peak")), rows, caption)
-    return Part("revolution", "Revolution", figures=drawn, tables=(table,), notes=(cycle.message,))

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypedDict
 
 from base import Figure
 from base.results import figures
@@ -29,6 +29,8 @@ class Output:
         Gives the number from a row's engine.
     error : callable, optional
         Gives its estimated relative error likewise; none where that is not known, or is an output by itself.
+    error_output, model_output : str
+        Outputs that hold its estimated relative error, and what its model leaves open; empty without such ones.
     """
 
     unit: str
@@ -36,6 +38,15 @@ class Output:
     wants: tuple[str, ...]
     value: Callable[[Engine], float]
     error: Callable[[Engine], float] | None = None
+    error_output: str = ""
+    model_output: str = ""
+
+
+class Held(TypedDict, total=False):
+    """Outputs that hold what an output leaves open: its numerical error, and that of its model."""
+
+    error_output: str
+    model_output: str
 
 
 Named = tuple[str, Output]
@@ -44,7 +55,15 @@ Of = Callable[[Engine], Any]
 
 
 def output_of(
-    name: str, figure: Figure, want: str, value: Of, said: str = "{}", error: Of | None = None
+    name: str,
+    figure: Figure,
+    want: str,
+    value: Of,
+    said: str = "{}",
+    error: Of | None = None,
+    *,
+    error_output: str = "",
+    model_output: str = "",
 ) -> Named:
     """An output by its name, from functions that give its value in SI and its relative error; None stands for nan."""
     meaning = sentence(figure.meaning)
@@ -52,7 +71,13 @@ def output_of(
         meaning = said.format(re.split("[:,;]", meaning, maxsplit=1)[0])
     known = None if error is None else _number(error, 1.0)
     return spelt(name, figure.read_in), Output(
-        figure.read_in, meaning, (want,), _number(value, factor(figure.read_in)), known
+        figure.read_in,
+        meaning,
+        (want,),
+        _number(value, factor(figure.read_in)),
+        known,
+        error_output,
+        model_output,
     )
 
 
@@ -66,22 +91,14 @@ def _number(value: Of, unit: float) -> Callable[[Engine], float]:
     return of
 
 
-def with_errors(outputs: Mapping[str, Output], held: Iterable[str]) -> dict[str, Output]:
-    """Outputs, and after them the errors of those that know theirs and whose error no other output holds.
-
-    Parameters
-    ----------
-    outputs : mapping
-    held : iterable of str
-        Outputs whose errors are outputs already.
-    """
-    by_themselves = set(held)
+def with_errors(outputs: Mapping[str, Output]) -> dict[str, Output]:
+    """Outputs, and after them the errors of those that know theirs and whose error no other output holds."""
     added = {
         error_name(name, output): Output(
             "1", f"estimated relative error: {output.meaning}", output.wants, output.error
         )
         for name, output in outputs.items()
-        if output.error is not None and name not in by_themselves
+        if output.error is not None and not output.error_output
     }
     return {**outputs, **added}
 
@@ -95,7 +112,15 @@ def error_name(name: str, output: Output) -> str:
 def outputs_from(stage: Callable[[Engine], Any], kind: type, want: str) -> Callable[..., Named]:
     """Maker of outputs from the figures of a stage's result."""
 
-    def make(figure: str, take: Take = float, name: str = "", said: str = "{}") -> Named:
+    def make(
+        figure: str,
+        take: Take = float,
+        name: str = "",
+        said: str = "{}",
+        *,
+        error_output: str = "",
+        model_output: str = "",
+    ) -> Named:
         about = figures(kind)[figure]
 
         def value(engine: Engine) -> Any:
@@ -105,7 +130,16 @@ def outputs_from(stage: Callable[[Engine], Any], kind: type, want: str) -> Calla
         # of curves the error of one entry is not that of another
         known = take is float and want != "geometry" and holds_error(kind, figure)
         error = error_in(stage, figure) if known else None
-        return output_of(name or figure, about, want, value, said, error)
+        return output_of(
+            name or figure,
+            about,
+            want,
+            value,
+            said,
+            error,
+            error_output=error_output,
+            model_output=model_output,
+        )
 
     return make
 

@@ -1,0 +1,120 @@
+"""Closed forms of stiffness along the path, nominal stress by ISO 6336-2, and both against finite elements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Set
+from dataclasses import replace
+from functools import partial
+from itertools import product
+from operator import methodcaller
+from typing import TYPE_CHECKING, Any
+
+import gears
+from base import Figure
+from flankfilm import coupling
+from flankfilm.building.face import even_along_face
+from flankfilm.building.pair import pinion_torque
+from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS as FORMS
+from flankfilm.output.variables import of_record
+from flankfilm.products.output import Named, in_result, output_of
+from flankfilm.products.product import CurveTable, Product, when
+from flankfilm.scene import Scene
+from flankfilm.stages.engine import Engine, Stage, stage
+from flankfilm.stages.mesh import COMPLIANCE, PAIR, PLAN, TEETH_DECIDED
+
+if TYPE_CHECKING:
+    from flankfilm.coupling.mesh.verification import Verification
+
+
+@stage(
+    "closed forms",
+    "closed forms",
+    "operating wants reference bore_inertia",
+    PAIR,
+    COMPLIANCE,
+    settings=TEETH_DECIDED,
+)
+def CLOSED_FORMS(run: Engine) -> coupling.SinglePairs:
+    """Closed forms along the path, beside finite elements where the scene has them anyway."""
+    beside = "stiffness" in run.scene.wants and run[PLAN].stiffness.choice == "fem"
+    return coupling.single_pairs(
+        run[PAIR],
+        pinion_torque(run.scene),
+        run[COMPLIANCE] if beside else None,
+        reference=run.scene.reference or "body",
+        bore_inertia=run.scene.bore_inertia,
+    )
+
+
+@stage(
+    "verification",
+    "closed forms against finite elements",
+    "stiffness.contact_beyond_path stiffness.moving_contact operating reference bore_inertia",
+    COMPLIANCE,
+)
+def VERIFICATION(run: Engine) -> coupling.Verification:
+    """Every closed form beside finite elements, of loads that are even along the face."""
+    stiffness, pair = run.scene.stiffness, even_along_face(run[PAIR])
+    asked = stiffness.contact_beyond_path, stiffness.moving_contact
+    compliance = replace(run[COMPLIANCE], pair=pair)
+    return coupling.verification_of(
+        pair,
+        pinion_torque(run.scene),
+        compliance,
+        *asked,
+        reference=run.scene.reference or "body",
+        bore_inertia=run.scene.bore_inertia,
+    )
+
+
+def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
+    """Closed forms where they are wanted, and beside a stiffness that is reported."""
+    beside = wants >= {"report", "stiffness"} and scene.stiffness.model != "given"
+    if "closed-forms" in wants or beside:
+        yield CLOSED_FORMS
+
+
+def _differences() -> Iterator[Named]:
+    """Differences of the closed forms' mean mesh stiffness from finite elements held to the path."""
+    forms = {**{key.replace("-", "_"): label for key, label in FORMS.items()}, "iso6336": "ISO 6336-1"}
+    ends = {"": "held to the path", "_like_for_like": "without hub wind-up and coupling"}
+    for (end, reference), (name, model) in product(ends.items(), forms.items()):
+        meaning = f"mean mesh stiffness by {model}, difference from finite elements {reference}"
+        value = in_result(VERIFICATION, methodcaller("difference", model, reference))
+        error = in_result(VERIFICATION, partial(_of_difference, model, reference))
+        yield output_of(f"{name}{end}", Figure("1", meaning, shown="%"), "closed-forms", value, error=error)
+
+
+def _of_difference(model: str, reference: str, verification: Verification) -> float | None:
+    """Error of a difference from finite elements relative to itself, by theirs."""
+    compared = verification.comparison(model, reference)
+    away = compared.difference
+    return None if away == 0.0 else (1.0 + away) * compared.reference_error / abs(away)
+
+
+def outputs() -> tuple[Named, ...]:
+    """Numbers that a study can ask for."""
+    return (
+        output_of(
+            "iso_contact_stress",
+            Figure("Pa", "nominal contact stress sigma_H0 by ISO 6336-2", shown="MPa"),
+            "closed-forms",
+            lambda engine: gears.closed_form.iso6336_2(
+                engine[PAIR], abs(engine[PAIR].normal_force(pinion_torque(engine.scene)))
+            ).stresses[0],
+        ),
+        *_differences(),
+    )
+
+
+PRODUCT = Product(
+    name="closed-forms",
+    goals=goals,
+    variables=when(
+        CLOSED_FORMS,
+        lambda single: (of_record("single_pair", single), of_record("iso6336_2", single.contact)),
+    ),
+    solved={"single_pair": CLOSED_FORMS, "iso6336_2": CLOSED_FORMS},
+    tables={"single_pair_stiffness": CurveTable("single_pair", "rho1", axis="path")},
+    outputs=outputs,
+)

@@ -1,0 +1,54 @@
+"""Stress and displacement of the loaded teeth; over the mesh cycle for ParaView."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Set
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flankfilm.building.face import varies_by
+from flankfilm.output import drawing_data as drawn
+from flankfilm.output.variables import of_quantities
+from flankfilm.products.product import Product, section_of
+from flankfilm.report.page import Part, pictures, said
+from flankfilm.report.text import number
+from flankfilm.scene import Scene
+from flankfilm.stages.computed import Computed
+from flankfilm.stages.engine import Stage
+from flankfilm.stages.mesh import FIELDS, MESH, PAIR
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from flankfilm.coupling import LoadedFields
+
+
+def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
+    """Fields at the pitch point; of a load that varies along the face the files alone."""
+    if "vtk" in wants:
+        yield MESH if varies_by(scene) else FIELDS
+
+
+def variables(computed: Computed) -> Iterator[xr.Dataset]:
+    """Stress near the mesh."""
+    fields, pair = computed.get(FIELDS), computed.get(PAIR)
+    if fields is not None and pair is not None:
+        yield of_quantities("field", drawn.near_mesh(pair, (fields.pinion, fields.wheel)))
+
+
+def section(stage: LoadedFields, results: xr.Dataset) -> Part:
+    """Picture of the loaded teeth."""
+    peak = max(float(np.nanmax(field.von_mises_Pa)) for field in (stage.pinion, stage.wheel))
+    note = said("peak", peak=number(1e-6 * peak))
+    drawn = pictures(results, "tooth_stress")
+    return Part("fields", "Loaded teeth", figures=drawn, notes=(note,))
+
+
+PRODUCT = Product(
+    name="vtk",
+    goals=goals,
+    variables=variables,
+    solved={"field": FIELDS},
+    sections=section_of(FIELDS, section),
+)

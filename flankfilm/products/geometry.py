@@ -1,0 +1,124 @@
+"""Geometry of the pair, its growth by heat, and measured and worn flanks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Set
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import gears
+from base import Figure
+from flankfilm.building.flanks import deviations
+from flankfilm.building.pair import pinion_speed
+from flankfilm.output import drawing_data as drawn
+from flankfilm.output.flanks import measured_flanks
+from flankfilm.output.variables import of_quantities, of_record
+from flankfilm.products.output import Named, output_of, outputs_from
+from flankfilm.products.product import CurveTable, Product
+from flankfilm.report import pair_parts
+from flankfilm.report.page import Part, pictures
+from flankfilm.scene import Scene
+from flankfilm.stages.computed import Computed
+from flankfilm.stages.engine import Engine, Stage
+from flankfilm.stages.mesh import HEAT, PAIR
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+GEARS = ("pinion", "wheel")
+
+ALONG_FLANKS = ("diameter", "face_place")
+"""Abscissas of the drawings of measured flanks."""
+
+
+def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
+    """The pair, and its growth wherever the scene has temperatures."""
+    if "geometry" in wants:
+        yield PAIR
+    if scene.heat is not None and scene.pair is not None:
+        yield HEAT
+
+
+def variables(computed: Computed) -> Iterator[xr.Dataset]:
+    """Sizes, outlines of teeth, the path of contact, deviations of flanks, and growth."""
+    scene = computed.scene
+    if (pair := computed.get(PAIR)) is not None:
+        operating = scene.operating
+        turns = operating is not None and operating.pinion_speed_rpm is not None
+        yield of_record("pair", pair)
+        yield of_record("dimensions", gears.dimensions(pair))
+        yield of_quantities("outline", drawn.outlines(pair))
+        yield of_quantities("path", drawn.path(pair, pinion_speed(scene) if turns else None))
+        yield from measured_flanks(pair, deviations(scene, pair, every_tooth=True))
+    if (warm := computed.get(HEAT)) is not None:
+        yield of_record("heat", warm)
+
+
+def sections(computed: Computed, results: xr.Dataset) -> Iterator[Part]:
+    """Sizes, growth, and flanks."""
+    if (pair := computed.get(PAIR)) is None:
+        return
+    yield pair_parts.geometry(pair, results)
+    if (warm := computed.get(HEAT)) is not None:
+        yield pair_parts.heat(warm)
+    if any(f"flank_{gear}_{along}" in results for gear in GEARS for along in ALONG_FLANKS):
+        yield Part("flanks", "Flanks", figures=pictures(results, "flanks"))
+
+
+def _ends(engine: Engine) -> Any:
+    """Path of contact at A and E."""
+    points = engine[PAIR].points
+    return engine[PAIR].path_at(np.array([points.A, points.E]))
+
+
+def outputs() -> tuple[Named, ...]:
+    """Numbers that a study can ask for."""
+    _pair = outputs_from(lambda engine: engine[PAIR], gears.GearPair, "geometry")
+    _heat = outputs_from(lambda engine: engine[HEAT], gears.WarmPair, "geometry")
+    return (
+        _pair("contact_ratio"),
+        _heat("cold_backlash"),
+        _heat("base_pitch_difference"),
+        _pair("working_centre_distance", name="centre_distance"),
+        _pair("working_pressure_angle"),
+        output_of(
+            "specific_sliding",
+            Figure("1", "largest specific sliding of both flanks, A to E"),
+            "geometry",
+            lambda engine: max(np.abs(part).max() for part in _ends(engine).specific_sliding),
+        ),
+        output_of(
+            "sliding_speed",
+            drawn.SLIDING,
+            "geometry",
+            lambda engine: np.abs(_ends(engine).sliding(pinion_speed(engine.scene))).max(),
+            "largest {}, A to E",
+        ),
+    )
+
+
+PRODUCT = Product(
+    name="geometry",
+    goals=goals,
+    variables=variables,
+    tables={
+        "path_of_contact": CurveTable(
+            "path", "rho1", ("rho1", "rho2", "radius", "entrainment", "sliding", "specific_sliding")
+        ),
+        **{
+            f"flank_{gear}": CurveTable(
+                f"flank_{gear}",
+                "diameter",
+                ("tooth", "diameter", "material", "mean_material", "wear", "mean_wear"),
+            )
+            for gear in GEARS
+        },
+        **{
+            f"lead_{gear}": CurveTable(f"flank_{gear}", "face_place", ("face_place", "lead"))
+            for gear in GEARS
+        },
+    },
+    sections=sections,
+    outputs=outputs,
+)

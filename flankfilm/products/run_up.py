@@ -1,0 +1,136 @@
+"""Run-up and coast-down: the motion while the speed rises and falls evenly in time."""
+
+from __future__ import annotations
+
+import math
+from operator import attrgetter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Figure
+from flankfilm import coupling
+from flankfilm.output.drives import carrying
+from flankfilm.products.drive import of_a_train
+from flankfilm.products.output import Named, in_result, output_of, outputs_from
+from flankfilm.products.product import CurveTable, Product, section_of, wanting, when
+from flankfilm.products.sweep import greatest_of
+from flankfilm.report.drive_parts import RPM, carried_table
+from flankfilm.report.page import Part, Table, pictures, said
+from flankfilm.report.text import number, percent
+from flankfilm.scene.sections.section import required
+from flankfilm.stages.drives import DRIVE, moving
+from flankfilm.stages.engine import Engine, stage
+from flankfilm.stages.motion import SCALING
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@stage("run-up", "run-up and coast-down", "dynamics", SCALING, DRIVE, kept="dynamics flankfilm gears")
+def RUN_UP(run: Engine) -> coupling.SpeedRunUp:
+    """Motion while the speed rises and falls evenly in time."""
+    section = required(run.scene.dynamics, "[dynamics]", "the run-up")
+    asked = required(section.run_up, "dynamics.run_up", "the run-up", "add the range")
+    periods = 8000 if asked.periods is None else asked.periods
+    motion, rows = moving(run), run.rows(RUN_UP)
+    if asked.frequency is not None:
+        return coupling.speed_run_up(motion, frequency=asked.frequency, periods=periods, progress=rows)
+    low, high = asked.ends
+    speeds = (low * math.pi / 30.0, high * math.pi / 30.0)
+    return coupling.speed_run_up(motion, speeds, seconds=asked.seconds, periods=periods, progress=rows)
+
+
+def section(stage: coupling.SpeedRunUp, results: xr.Dataset) -> Part:
+    """Draw run-up and coast-down with their orders, and list the maximum force and its largest change."""
+    from flankfilm.figures.motion import scale  # which loads matplotlib
+
+    force = scale(results, "force")
+    heads = (
+        "run",
+        force.named("maximum force"),
+        "at",
+        "largest jump at",
+        force.named("before it"),
+        force.named("after it"),
+    )
+    rows = tuple((way, *_extremes(stage, way, float(force.values))) for way in ("up", "down"))
+    seconds = "" if stage.seconds is None else f" in {number(stage.seconds)} s"
+    note = said(
+        "run_up",
+        periods=f"{stage.periods:,}",
+        seconds=seconds,
+        rate=number(stage.rate),
+        error=percent(stage.error),
+        greatest=percent(stage.greatest_error),
+    )
+    carried = _carried_on_the_way(stage)
+    drawn = pictures(results, "run_up", "waterfall", *(["drive_run_up"] if carried else []))
+    tables = (Table(heads, rows), *carried)
+    return Part("run-up", "Run-up and coast-down", figures=drawn, tables=tables, notes=(note,))
+
+
+def _carried_on_the_way(stage: coupling.SpeedRunUp) -> tuple[Table, ...]:
+    """Maximum loads of the parts of a drive train in run-up and coast-down."""
+    if stage.speed is None:
+        return ()
+    speed = np.concatenate([stage.speed[way] for way in ("up", "down")])
+
+    def values(figure: str) -> Array:
+        return np.concatenate([getattr(stage, figure)[way] for way in ("up", "down")])
+
+    return carried_table(stage, ("at [rpm]",), values, lambda at: (f"{RPM * speed[at[0]]:.0f}",))
+
+
+def _extremes(stage: coupling.SpeedRunUp, way: str, unit: float) -> tuple[str, ...]:
+    """Maximum force and where; the largest change of the root mean square between blocks, and where."""
+    factor, spread = stage.force_factor[way], stage.spread[way]
+    at = stage.frequency[way] if stage.speed is None else RPM * stage.speed[way]
+    rpm = "" if stage.speed is None else " rpm"
+    most = int(np.nanargmax(factor))
+    jump = int(np.nanargmax(np.abs(np.diff(spread)))) if len(spread) > 1 else 0
+    after = min(jump + 1, len(spread) - 1)
+    ends = (
+        number(unit * float(factor[max(jump - 1, 0)])),
+        number(unit * float(factor[min(after + 1, len(at) - 1)])),
+    )
+    return number(unit * float(factor[most])), f"{at[most]:.5g}{rpm}", f"{at[after]:.5g}{rpm}", *ends
+
+
+def outputs() -> tuple[Named, ...]:
+    """Numbers that a study can ask for."""
+    _of_parts = outputs_from(of_a_train(RUN_UP), coupling.SpeedRunUp, "run-up")
+    return (
+        output_of(
+            "greatest_run_up_factor",
+            Figure("1", "maximum force over the mean force of run-up and coast-down"),
+            "run-up",
+            in_result(RUN_UP, lambda run_up: greatest_of(run_up.force_factor)),
+            error_output="run_up_error",
+        ),
+        _of_parts(
+            "greatest_bearing_force", name="greatest_run_up_bearing_force", error_output="run_up_error"
+        ),
+        _of_parts("greatest_shaft_torque", name="greatest_run_up_shaft_torque", error_output="run_up_error"),
+        output_of(
+            "run_up_error",
+            Figure(
+                "1",
+                "estimated relative error of the maximum forces and torques of the run-up, by steps of the frequency "
+                "and by samples",
+            ),
+            "run-up",
+            in_result(RUN_UP, attrgetter("greatest_error")),
+        ),
+    )
+
+
+PRODUCT = Product(
+    name="run-up",
+    goals=wanting("run-up", RUN_UP),
+    variables=when(RUN_UP, lambda ways: [carrying("run_up", ways)]),
+    solved={"run_up": RUN_UP},
+    tables={"run_up": CurveTable("run_up", "force_factor_up", axis="block")},
+    sections=section_of(RUN_UP, section),
+    outputs=outputs,
+)

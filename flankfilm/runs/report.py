@@ -1,0 +1,112 @@
+"""Gathers a run's results into the report and the lines for the terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from flankfilm.products.catalogue import PRODUCTS
+from flankfilm.report import pair_parts, run_parts
+from flankfilm.report.page import Fact, Head, Headline, write_page
+from flankfilm.report.text import counted, percent, seconds
+
+if TYPE_CHECKING:
+    from flankfilm.outcome.results import Results
+    from flankfilm.scene import Scene
+
+GEOMETRY = {"geometry", "report"}
+"""Wants of a scene whose geometry is printed whole."""
+
+SHOWN = 5
+"""Maximum number of foreign files that are named."""
+
+
+def headlines(results: Results) -> list[Headline]:
+    """Numbers for the page's head and for the terminal, with their errors against the scene's tolerance."""
+    return [headline.against(results.scene.tolerance) for headline in _headlines(results)]
+
+
+def misses(results: Results) -> list[str]:
+    """Headlines whose error is above the tolerance of the scene, and messages of solvers."""
+    above = [headline.miss(results.scene.tolerance) for headline in _headlines(results)]
+    return [*filter(None, above), *run_parts.doubts(results)]
+
+
+def _headlines(results: Results) -> list[Headline]:
+    shown = [headline for product in PRODUCTS for headline in product.headlines(results.computed)]
+    pair = results.values.get("pair")
+    return shown if shown or pair is None else pair_parts.headlines(pair)
+
+
+def summary(results: Results) -> list[str]:
+    """Lines for the terminal: headline figures with errors, and the files."""
+    if set(results.scene.wants) <= GEOMETRY:
+        lines = pair_parts.printed(results.dataset)
+    else:
+        lines = [_line(headline) for headline in headlines(results)]
+    lines += misses(results)
+    lines += [decision.line for decision in results.decisions]
+    if results.plan is not None:
+        lines.append(results.plan.line)
+    lines.append(f"{results.written} after {results.seconds:.1f} s")
+    if results.others:
+        more = ", ..." if len(results.others) > SHOWN else ""
+        lines.append(f"kept, not of this run: {', '.join(results.others[:SHOWN])}{more}")
+    return lines
+
+
+def _line(headline: Headline) -> str:
+    """Headline on the terminal."""
+    note = (
+        f" {headline.note}"
+        if headline.note.startswith("±")
+        else f" ({headline.note})"
+        if headline.note
+        else ""
+    )
+    return f"{headline.name}: {headline.with_unit}{note}"
+
+
+def write_report(results: Results, folder: Path) -> Path:
+    """Write ``report.html`` into a folder and return its path."""
+    scene, warned = results.scene, run_parts.warnings(results, misses(results))
+    parts = [
+        *run_parts.failures(results),
+        *(part for product in PRODUCTS for part in product.sections(results.computed, results.dataset)),
+        run_parts.costs(results, [_work(name, results) for name in results.runs]),
+        *run_parts.decisions(results, warned),
+        run_parts.inputs(_asked(scene), results.dataset.attrs["versions_json"]),
+    ]
+    drawing = None if results.values.get("pair") is None else pair_parts.drawing(results.dataset)
+    head = Head(scene.title or "flankfilm", _facts(results), headlines(results), warned, drawing)
+    return write_page(folder, head, parts)
+
+
+def _asked(scene: Scene) -> dict[str, Any]:
+    """Plain values of a scene; the defaults of [film] are left out if the scene has no such section."""
+    unsaid = set() if "film" in scene.model_fields_set else {"film"}
+    return scene.model_dump(exclude_none=True, exclude=unsaid)
+
+
+def _facts(results: Results) -> list[Fact]:
+    """What was computed, at what tolerance and cost, in one line."""
+    scene, facts = results.scene, []
+    if count := len(results.failures):
+        facts.append(Fact(f"{counted(count, 'part')} not computed", "failures"))
+    if (pair := results.values.get("pair")) is not None:
+        teeth = f"{pair.pinion.teeth}/{pair.wheel.teeth} teeth"
+        size = f"module {1e3 * pair.module:g} mm, face {1e3 * pair.face_width:g} mm"
+        facts.append(Fact(f"{teeth}, {size}", "geometry"))
+        if scene.operating is not None:
+            asked = {"N m": scene.operating.pinion_torque_Nm, "rpm": scene.operating.pinion_speed_rpm}
+            at = [f"{value:g} {unit}" for unit, value in asked.items() if value is not None]
+            facts.append(Fact("pinion: " + ", ".join(at)))
+    facts.append(Fact(f"tolerance {percent(scene.tolerance)}, {seconds(results.seconds)}", "costs"))
+    return facts
+
+
+def _work(name: str, results: Results) -> run_parts.Work:
+    """Figure that a stage's error belongs to, error allowed, error, and work."""
+    about = next((product.work[name] for product in PRODUCTS if name in product.work), None)
+    value = results.values.get(name)
+    return run_parts.Work() if about is None or value is None else about(value, results.computed)
