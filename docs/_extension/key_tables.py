@@ -1,4 +1,4 @@
-"""Tables of keys and outputs, made from the code that reads them: the directives ``keys`` and ``outputs``."""
+"""Tables made from the code that reads scenes and studies: the directives ``keys``, ``wants`` and ``outputs``."""
 
 from __future__ import annotations
 
@@ -115,6 +115,15 @@ class Keys(_Parsed):
         return _table(("key", "allowed", "default", "meaning"), list(rows(schema, schema.get("$defs", {}))))
 
 
+class Wants(_Parsed):
+    """``{wants}``: what a scene can want."""
+
+    def lines(self) -> list[str]:
+        """Lines of the table."""
+        wants = import_module("flankfilm.scene.wants").WANTS
+        return _table(("want", "result"), [(f"`{name}`", want.meaning) for name, want in wants.items()])
+
+
 class Outputs(_Parsed):
     """``{outputs}``: what a study can ask for."""
 
@@ -128,5 +137,6 @@ class Outputs(_Parsed):
 def setup(app: Sphinx) -> dict[str, bool]:
     """Add the directives."""
     app.add_directive("keys", Keys)
+    app.add_directive("wants", Wants)
     app.add_directive("outputs", Outputs)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -37,6 +37,7 @@ def work_application(quick: bool) -> Levels:
     from flankfilm.runs.report import write_report
     from flankfilm.runs.run_scene import run_scene
     from flankfilm.scene import read_scene, template
+    from flankfilm.scene.wants import WANTS
     from flankfilm.studies.plan import read_plan
     from flankfilm.studies.row import Row, compute_row
 
@@ -49,7 +50,7 @@ def work_application(quick: bool) -> Levels:
     plan = read_plan(place / f"study{counts[-1]}.toml")
     tasks = [Row(i, plan.raw_scene(i), plan.outputs, use_cache=False) for i in range(counts[-1])]
     scene = read_scene(place / "scene.toml")
-    wanted = tuple(want for want in scene.wants if want not in ("vtk", "report"))
+    wanted = tuple(want for want in scene.wants if not WANTS[want].file)
     results = run_scene(scene.model_copy(update={"wants": wanted}), place / "run")
 
     def study(rows: int) -> None:

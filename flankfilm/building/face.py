@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypedDict
+from typing import TypedDict
 
 import gears
 from base import Fault, Faults
 from flankfilm.coupling.mesh.loaded_teeth import POSITIONS
-from flankfilm.scene.sections.alignment import LEAD_KEYS
+from flankfilm.scene.schema import Scene
 from flankfilm.scene.sections.dynamics import BY_FILM
+from flankfilm.scene.sections.gears import GEARS
 from flankfilm.scene.sections.ground import in_keys
-
-if TYPE_CHECKING:
-    from flankfilm.scene import Scene
+from flankfilm.scene.traits import given_keys, named
 
 __all__ = ["even_along_face", "face", "faults_of_face", "varies_by"]
 
@@ -58,17 +57,16 @@ def _even(gear: gears.Gear) -> gears.Gear:
 
 def varies_by(scene: Scene) -> list[str]:
     """Keys and sections of a scene by which the load varies along the face; empty where it is even."""
-    keys = [] if scene.alignment is None else ["[alignment]"]
-    for name in ("pinion", "wheel"):
-        gear = None if scene.pair is None else getattr(scene.pair, name)
-        if gear is None or scene.pair is None:
-            continue
-        if gear.face_width_mm not in (None, scene.pair.face_width_mm):
-            keys.append(f"pair.{name}.face_width_mm")
-        keys += [f"pair.{name}.{key}" for key in LEAD_KEYS if getattr(gear, key)]
-        if gear.deviations is not None:
-            keys += [f"pair.{name}.deviations.{key}" for key in gear.deviations.given_keys("lead", "map")]
-    return keys
+    whole = {
+        f"pair.{name}.face_width_mm"
+        for name in GEARS
+        if scene.pair is not None and getattr(scene.pair, name).face_width_mm == scene.pair.face_width_mm
+    }
+    return [
+        named(path)
+        for path, about, value in given_keys(scene, Scene)
+        if about.traits.along_face and value and path not in whole
+    ]
 
 
 def faults_of_face(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:

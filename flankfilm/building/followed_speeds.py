@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from base import Fault, RangeWarning
 from flankfilm.building.pair import pinion_torque, supports
 from flankfilm.scene.sections.section import required
+from flankfilm.scene.wants import ranges
 
 if TYPE_CHECKING:
     import gears
@@ -64,8 +65,8 @@ def faults_of_ranges(scene: Scene, pair: gears.GearPair | None) -> Iterator[Faul
         surely, _ = _bounds(scene, section, pair, in_rpm=True)
         if (rpm := operating.pinion_speed_rpm) is not None and rpm < surely:
             _warn_of_speed(rpm, surely)
-    for want, name in (("sweep", "sweep"), ("diagram", "diagram"), ("run-up", "run_up")):
-        ranged = getattr(section, name) if want in scene.wants and section is not None else None
+    for name in ranges(scene.wants):
+        ranged = getattr(section, name)
         if section is None or ranged is None:
             continue
         in_rpm = ranged.speed_rpm is not None

@@ -17,14 +17,14 @@ from flankfilm.building.followed_speeds import faults_of_ranges
 from flankfilm.building.pair import pinion_torque, supports, tip_roundings, warm_pair
 from flankfilm.scene import Scene
 from flankfilm.scene.sections.dynamics import DynamicsSection
+from flankfilm.scene.sections.gears import GEARS
 from flankfilm.scene.sections.ground import in_keys, under_keys
 from flankfilm.scene.sections.section import required
+from flankfilm.scene.wants import MOTIONS
 from gears.pair.hertz import half_width
 
 LEAST_SHARE = 0.5
 """Load of a pair at the pitch point, over that of pairs which share equally, that no pair there falls below."""
-
-MOTIONS = {"sweep", "diagram", "spectrum", "run-up", "dynamic-map"}
 
 ROUNDING = 1e-12
 """Overlap of flanks that is rounding [modules]."""
@@ -53,7 +53,7 @@ def refuse(scene: Scene) -> None:
             faults.extend(_faults(lambda: roughness(scene)))
         if scene.dynamics is not None and "diagram" in scene.wants:
             faults.extend(_undriven(scene.dynamics))
-        if MOTIONS & set(scene.wants) and not faults.found:
+        if {*MOTIONS} & set(scene.wants) and not faults.found:
             faults.extend(faults_of_ranges(scene, pair))
 
 
@@ -68,7 +68,7 @@ def _faults(build: Callable[[], object]) -> tuple[Fault, ...]:
 
 def _pressed(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
     """Fault of a motion of teeth that are pressed together, whose back flanks it does not know."""
-    asked = " and ".join(sorted(MOTIONS & set(scene.wants)))
+    asked = " and ".join(sorted({*MOTIONS} & set(scene.wants)))
     if not asked or pair.backlash >= -ROUNDING * pair.module:
         return
     section = required(scene.pair, "[pair]")
@@ -110,7 +110,7 @@ def _held(scene: Scene, pair: gears.GearPair) -> tuple[Fault, ...]:
 
     edges = Faults()
     MeshSetup(pair, tip_rounding=tip_roundings(scene)).check(edges)
-    keys = {f"tip_rounding[{k}]": f"{gear}.tip_rounding_um" for k, gear in enumerate(("pinion", "wheel"))}
+    keys = {f"tip_rounding[{k}]": f"{gear}.tip_rounding_um" for k, gear in enumerate(GEARS)}
     rounded = (replace(fault, where=keys.get(fault.where, fault.where)) for fault in edges.found)
     return (*_faults(build), *(in_keys(fault, scene.pair, "pair") for fault in rounded))
 

@@ -22,14 +22,13 @@ from flankfilm.plan.decisions import Candidate, Decision, per_cent, signed, stan
 from flankfilm.plan.film_choice import films
 from flankfilm.plan.options import FilmChange, Option, Options
 from flankfilm.plan.stiffness_choice import teeth
+from flankfilm.scene.wants import WANTS
 
 if TYPE_CHECKING:
     from flankfilm.scene import Scene
 
 SERIES = CostLaw("Fourier series", coarsest=0.05, seconds=0.1, power=2 / 3)
 """Root mean square that a series of order n leaves, about n^-3/2, against the time of a sweep, about n."""
-
-MOTION = {"fourier", "sweep", "diagram"}
 
 
 @dataclass(frozen=True)
@@ -146,7 +145,7 @@ def decide(scene: Scene, pair: gears.GearPair, foreseen: Callable[[], FilmChange
 
 def _series_to_find(scene: Scene) -> bool:
     asked = scene.dynamics is None or scene.dynamics.fourier_order == "auto"
-    return asked and bool(MOTION & set(scene.wants))
+    return asked and any(WANTS[want].series for want in scene.wants)
 
 
 def _decision(

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import reduce
 from typing import Any
 
 from base import Fault, shorten
 from flankfilm.scene.needs_of_shafts import faults_of_shafts
-from flankfilm.scene.sections.alignment import LEAD_KEYS, faults_of_leads
+from flankfilm.scene.schema import Scene
+from flankfilm.scene.sections.gears import GEARS, faults_of_leads
+from flankfilm.scene.traits import given_keys, named
+from flankfilm.scene.wants import BY_FINITE_ELEMENTS, FILMS, GEARED, MESHED, MOTIONS, UNLOADED, WANTS
 
-BY_FINITE_ELEMENTS = {"vtk", "root-stress", "torques", "revolution"}
-"""Wants that need the loaded contact by finite elements."""
-
-RANGED = ("sweep", "diagram", "run-up")
-"""Wants of motions over a range, which is a separate key in [dynamics]."""
-
-MOTIONS = (*RANGED, "spectrum", "dynamic-map")
-"""Wants that need the oscillator."""
+__all__ = ["MOTIONS", "faults_between_sections", "needs_of_finite_elements"]
 
 Raw = Mapping[str, Any]
 
@@ -48,17 +45,11 @@ def faults_between_sections(raw: Raw) -> list[Fault]:
 def needs_of_finite_elements(raw: Raw, listed: set[str]) -> list[str]:
     """Name the outputs and keys of a scene that only the coupled finite elements know."""
     asked = [f"the wanted {want}" for want in sorted(listed & BY_FINITE_ELEMENTS)]
-    asked += ["operating.friction"] if _table(raw, "operating").get("friction") else []
-    asked += ["stiffness.moving_contact"] if _table(raw, "stiffness").get("moving_contact") else []
-    asked += ["pair.tight"] if _table(raw, "pair").get("tight") else []
-    asked += ["stiffness.reference"] if _table(raw, "stiffness").get("reference") else []
-    asked += ["dynamics.stiffness_reference"] if _table(raw, "dynamics").get("stiffness_reference") else []
-    asked += ["[alignment]"] if raw.get("alignment") is not None else []
-    for gear in ("pinion", "wheel"):
-        keys = _table(_table(raw, "pair"), gear)
-        known = ("tip_rounding_um", "face_width_mm", *LEAD_KEYS, "deviations", "wear", "hub")
-        asked += [f"pair.{gear}.{key}" for key in known if keys.get(key)]
-    return asked
+    return asked + [
+        named(path)
+        for path, about, value in given_keys(raw, Scene)
+        if about.traits.finite_elements and (value or "." not in path)  # a section counts by being there
+    ]
 
 
 def _needed_sections(raw: Raw, listed: set[str]) -> Iterator[tuple[str, str]]:
@@ -66,8 +57,8 @@ def _needed_sections(raw: Raw, listed: set[str]) -> Iterator[tuple[str, str]]:
     stiffness, film = _table(raw, "stiffness"), _table(raw, "film")
     moving = listed & set(MOTIONS)
     physical = bool(moving) and "mean_force" not in _table(raw, "dynamics")
-    geared = listed & {"geometry", "closed-forms", "film", "losses", *BY_FINITE_ELEMENTS}
-    meshed = listed & {"stiffness", "fourier", *moving} and stiffness.get("model") != "given"
+    geared = listed & GEARED
+    meshed = listed & MESHED and stiffness.get("model") != "given"
     if geared:
         yield "pair", f"wants = [{_quoted(geared)}]"
     if meshed:
@@ -76,12 +67,12 @@ def _needed_sections(raw: Raw, listed: set[str]) -> Iterator[tuple[str, str]]:
         yield "dynamics", f"wants = [{_quoted(moving)}]"
     if physical:
         yield from ((name, "a [dynamics] in physical units") for name in ("pair", "material", "operating"))
-    if (geared or meshed) and not listed <= {"geometry", "report"}:
+    if (geared or meshed) and not listed <= UNLOADED:
         yield from ((name, f"wants = [{_quoted(listed)}]") for name in ("material", "operating"))
     model = film.get("model", "auto")
     if moving and _table(raw, "dynamics").get("damping_ratio") == "film":
         yield "lubricant", "the damping of films"
-    if "film" in listed or "losses" in listed:
+    if listed & set(FILMS):
         yield "lubricant", "the film" if "film" in listed else "the wanted losses"
     elif film and model not in ("none", "auto"):
         yield "lubricant", f"film.model = {shorten(model)}"
@@ -97,26 +88,17 @@ def _missing_keys(raw: Raw, listed: set[str]) -> Iterator[Fault]:
     operating, dynamics, stiffness = (_table(raw, n) for n in ("operating", "dynamics", "stiffness"))
     chosen = "film" in raw and _table(raw, "film").get("model", "auto") != "none"
     damped = bool(listed & set(MOTIONS)) and dynamics.get("damping_ratio") == "film"
-    lubricated = listed & {"film", "losses"} or damped or ("lubricant" in raw and chosen)
+    lubricated = listed & set(FILMS) or damped or ("lubricant" in raw and chosen)
     if lubricated and "operating" in raw and "pinion_speed_rpm" not in operating:
         yield _required("operating.pinion_speed_rpm", "the film", "Give the pinion's speed")
     if (hot := _heated(raw, listed)) and "lubricant" in raw and not _known_temperature(raw):
         remedy = "Give the oil's temperature, or those of the gears in [heat]"
         yield _required("lubricant.temperature_C", hot, remedy)
-    if "torques" in listed and "operating" in raw and not operating.get("torques_Nm"):
-        remedy = "Give a list, such as torques_Nm = [100, 300, 600]"
-        yield _required("operating.torques_Nm", "the wanted torques", remedy)
-    for want in RANGED:
-        name = want.replace("-", "_")
-        if want in listed and "dynamics" in raw and name not in dynamics:
-            remedy = f"Add {name} = {{ speed_rpm = [500, 30000] }}"
-            yield _required(f"dynamics.{name}", f"the wanted {want}", remedy)
-    if "dynamic-map" in listed and "operating" in raw and not operating.get("torques_Nm"):
-        remedy = "Give a list, such as torques_Nm = [100, 300, 600]"
-        yield _required("operating.torques_Nm", "the wanted dynamic-map", remedy)
-    if "dynamic-map" in listed and "dynamics" in raw and "speed_rpm" not in _table(dynamics, "sweep"):
-        remedy = "Add sweep = { speed_rpm = [500, 30000], points = 60 }"
-        yield _required("dynamics.sweep.speed_rpm", "the wanted dynamic-map", remedy)
+    for want, traits in WANTS.items():
+        if want in listed:
+            for needed in traits.keys:
+                if _lacks(raw, needed.path):
+                    yield _required(needed.path, f"the wanted {want}", needed.remedy)
     without_mean = stiffness.get("model") == "given" and "mean_N_per_m" not in stiffness
     if listed & set(MOTIONS) and without_mean and "mean_force" not in dynamics:
         yield _required("stiffness.mean_N_per_m", "a [dynamics] in physical units", "Give the mean")
@@ -137,7 +119,7 @@ def _models_that_do_not_fit(raw: Raw, listed: set[str]) -> Iterator[Fault]:
     if film.get("model") == "dowson" and constant:
         allowed = "does not know a viscosity that pressure leaves as it is"
         yield Fault("film.model", "'dowson'", allowed, solved)
-    for want in ("film", "losses"):
+    for want in FILMS:
         if want in listed and stiffness.get("model") == "given":
             allowed = f"has no load share, which the wanted {want} needs"
             yield Fault("stiffness.model", "'given'", allowed, f'Take "fem" or a closed form, or drop {want}')
@@ -177,17 +159,22 @@ def _without_damping(raw: Raw) -> Iterator[Fault]:
 
 def _heated(raw: Raw, listed: set[str]) -> str:
     """What asks for films with heat in any case; empty where nothing does."""
-    if "losses" in listed:
-        return "the wanted losses"
+    for want, traits in WANTS.items():
+        if traits.heat and want in listed:
+            return f"the wanted {want}"
     return 'film.heat = "on"' if _table(raw, "film").get("heat") == "on" and "film" in listed else ""
 
 
 def _known_temperature(raw: Raw) -> bool:
     """Whether the temperature of the flanks, or that of the oil, is known."""
     heat = _table(raw, "heat")
-    return "temperature_C" in _table(raw, "lubricant") or any(
-        f"{g}_temperature_C" in heat for g in ("pinion", "wheel")
-    )
+    return "temperature_C" in _table(raw, "lubricant") or any(f"{g}_temperature_C" in heat for g in GEARS)
+
+
+def _lacks(raw: Raw, path: str) -> bool:
+    """Whether a section that is there has not a key, or an empty list there."""
+    *tables, key = path.split(".")
+    return tables[0] in raw and reduce(_table, tables, raw).get(key) in (None, [])
 
 
 def _required(key: str, by: str, remedy: str) -> Fault:

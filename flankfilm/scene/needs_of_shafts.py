@@ -6,14 +6,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from base import Fault
-
-MOVING = ("sweep", "diagram", "spectrum", "run-up", "dynamic-map")
-"""Wants of motions, which need masses and springs in physical units beside shafts."""
-
-GEARS = ("pinion", "wheel")
-_HUB = ("radial_stiffness_N_per_m", "torsional_stiffness_Nm_per_rad")
-_ALIGNMENT = ("in_plane_um", "out_of_plane_um")
-_PORTRAITS = ("portraits_rpm", "portraits_frequency")
+from flankfilm.scene.schema import Scene
+from flankfilm.scene.sections.gears import GEARS
+from flankfilm.scene.traits import given_keys
+from flankfilm.scene.wants import MOTIONS
 
 
 def faults_of_shafts(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault]:
@@ -21,28 +17,18 @@ def faults_of_shafts(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault
     if "shafts" not in raw:
         return
     shafts, dynamics = _table(raw, "shafts"), _table(raw, "dynamics")
-    moving = any(want in listed for want in MOVING)
-    if moving and "mean_force" in dynamics:
+    if listed & set(MOTIONS) and "mean_force" in dynamics:
         allowed = "excludes the dimensionless form, which has no gears"
         yield Fault("[shafts]", "", allowed, "Give [dynamics] in physical units, or leave [shafts] out")
-    for name in _PORTRAITS:
-        if dynamics.get(name):
-            allowed = "is of the pair on rigid shafts, which [shafts] excludes"
-            yield Fault(f"dynamics.{name}", "", allowed, "Leave it out")
-    for gear in GEARS:
-        if not _table(shafts, gear).get("segments"):
-            continue
-        hub = _table(_table(_table(raw, "pair"), gear), "hub")
-        for name in _HUB:
-            if name in hub:
-                allowed = f"counts the shaft twice, beside shafts.{gear}.segments"
-                yield Fault(f"pair.{gear}.hub.{name}", f"{hub[name]}", allowed, "Leave one of them out")
-    bent = [f"shafts.{gear}.segments" for gear in GEARS if _table(shafts, gear).get("segments")]
-    aligned = _table(raw, "alignment")
-    for name in _ALIGNMENT:
-        if bent and name in aligned:
-            allowed = f"gives the alignment twice, beside {' and '.join(bent)}"
-            yield Fault(f"alignment.{name}", f"{aligned[name]}", allowed, "Leave one of them out")
+    bent = [gear for gear in GEARS if _table(shafts, gear).get("segments")]
+    for path, about, value in given_keys(raw, Scene):
+        if about.traits.beside_shafts and value:
+            yield Fault(path, "", about.traits.beside_shafts, "Leave it out")
+        gears = {part for part in path.split(".") if part in GEARS} or {*GEARS}
+        segments = " and ".join(f"shafts.{gear}.segments" for gear in bent if gear in gears)
+        if about.traits.beside_segments and segments:
+            allowed = f"{about.traits.beside_segments}, beside {segments}"
+            yield Fault(path, f"{value}", allowed, "Leave one of them out")
 
 
 def _table(raw: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -6,14 +6,14 @@ from collections.abc import Callable
 from typing import Any
 
 from flankfilm.scene.schema import Scene
-from flankfilm.scene.sections.alignment import LEAD_KEYS
 from flankfilm.scene.sections.gears import GearSection
+from flankfilm.scene.sections.key import key_of
 
 
 def plain_flanks(scene: Scene) -> Scene:
     """Give the scene with gears that have no relief, leads, deviations, wear or rounded edges: no mesh shows them."""
-    plain = {"tip_relief": None, "deviations": None, "wear": None, "tip_rounding_um": 0.0}
-    plain |= dict.fromkeys((*LEAD_KEYS, "end_relief_length_mm"), 0.0)
+    fields = GearSection.model_fields.items()
+    plain = {name: field.default for name, field in fields if not key_of(field).traits.meshed}
     return _changed(scene, lambda gear: plain)
 
 

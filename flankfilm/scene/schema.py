@@ -6,7 +6,7 @@ enough for every gear that is made and narrow enough to catch a wrong unit.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -16,32 +16,19 @@ from flankfilm.scene.sections.dynamics import DynamicsSection
 from flankfilm.scene.sections.film import FilmSection, LubricantSection, RoughnessSection
 from flankfilm.scene.sections.gears import PairSection
 from flankfilm.scene.sections.heat import HeatSection
-from flankfilm.scene.sections.key import key
+from flankfilm.scene.sections.key import Traits, key
 from flankfilm.scene.sections.materials import MaterialSection
 from flankfilm.scene.sections.operating import OperatingSection, StiffnessSection
 from flankfilm.scene.sections.section import Section
 from flankfilm.scene.sections.shafts import ShaftsSection
+from flankfilm.scene.wants import WANTS
 
 __all__ = ["Scene", "Want", "parse_tolerance"]
 
-Want = Literal[
-    "geometry",
-    "closed-forms",
-    "stiffness",
-    "torques",
-    "revolution",
-    "root-stress",
-    "film",
-    "losses",
-    "fourier",
-    "sweep",
-    "diagram",
-    "spectrum",
-    "run-up",
-    "dynamic-map",
-    "vtk",
-    "report",
-]
+if TYPE_CHECKING:
+    Want = str
+else:
+    Want = Literal[tuple(WANTS)]
 
 TOLERANCE = Limit(1e-5, 0.4)
 
@@ -105,6 +92,7 @@ class Scene(Section):
     alignment: AlignmentSection | None = key(
         "Axes out of parallel, and cells of the face; parallel if left out",
         None,
+        traits=Traits(finite_elements=True, along_face=True),
     )
     operating: OperatingSection | None = key("Load and speed", None, shown=True)
     lubricant: LubricantSection | None = key("Oil: properties, or grade and temperature", None, shown=True)

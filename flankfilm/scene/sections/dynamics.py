@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from base import Limit
 from dynamics.model.limits import OSCILLATOR as LIMITS
 from flankfilm.scene.sections.error_curve import AMPLITUDE_UM, PHASE_DEG, ErrorCurveSection, harmonics
-from flankfilm.scene.sections.key import key, within
+from flankfilm.scene.sections.key import BY_ELEMENTS, Traits, key, within
 from flankfilm.scene.sections.section import Limits, Section, refused
 
 Positive = Annotated[float, Field(gt=0)]
@@ -42,6 +42,8 @@ _DAMPING = replace(LIMITS["damping_ratio"], high=5.0)
 
 BY_FILM = "film"
 """Damping ratio that is the films'."""
+
+ON_RIGID_SHAFTS = Traits(beside_shafts="is of the pair on rigid shafts, which [shafts] excludes")
 
 _INERTIA = Limit(0.0, 1e9, "kg m2")
 
@@ -143,6 +145,7 @@ class DynamicsSection(Section):
         "older name of stiffness.reference, which counts for all deflections of the scene",
         None,
         such_as="bore",
+        traits=BY_ELEMENTS,
     )
     damping_ratio: Annotated[float, within(_DAMPING)] | Literal["film"] = key(
         'damping of the mesh over the critical one, or "film": the damping of its oil films alone',
@@ -204,10 +207,18 @@ class DynamicsSection(Section):
         "range of the wanted run-up and coast-down", None, such_as={"speed_rpm": (500, 30000), "seconds": 5}
     )
     portraits_rpm: Several = key(
-        "speeds of phase portraits; chosen from the sweep if left out", (), such_as=(9000,), max_length=12
+        "speeds of phase portraits; chosen from the sweep if left out",
+        (),
+        such_as=(9000,),
+        max_length=12,
+        traits=ON_RIGID_SHAFTS,
     )
     portraits_frequency: Several = key(
-        "mesh frequencies of phase portraits, of the dimensionless form", (), such_as=(0.6,), max_length=12
+        "mesh frequencies of phase portraits, of the dimensionless form",
+        (),
+        such_as=(0.6,),
+        max_length=12,
+        traits=ON_RIGID_SHAFTS,
     )
 
     @property

@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from base import Fault, Limit
-from flankfilm.scene.sections.key import key
+from flankfilm.scene.sections.key import Traits, key
 from flankfilm.scene.sections.point_sections import (
     BETWEEN,
     MOST_POINTS,
@@ -171,11 +171,13 @@ class DeviationsSection(Section):
         "its twist is left out, and named",
         None,
         such_as={"file": "pinion_map.csv"},
+        traits=Traits(along_face=True),
     )
     lead: LeadSection | None = key(
         "measured lead of the flanks, on top of crowning, slope and end relief: the load is computed along the face",
         None,
         such_as={"z_mm": (-20.0, 0.0, 20.0), "material_um": (-6.0, 0.0, -10.0)},
+        traits=Traits(along_face=True),
     )
     single_pitch_um: Numbers | None = key(
         "single pitch deviations, one for each tooth in the order of meshing",

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
-from base import InputError, Limit
+from base import Fault, InputError, Limit
 from flankfilm.scene.sections.flank_sections import DeviationsSection, WearSection, wrong_counts
-from flankfilm.scene.sections.key import key
+from flankfilm.scene.sections.key import BY_ELEMENTS, Traits, key
 from flankfilm.scene.sections.section import Limits, Section, refused
 from gears.pair.gear_pair import BACKLASH
 from gears.pair.gear_pair import LIMITS as PAIR
@@ -18,7 +20,17 @@ from gears.tooth.gear import LIMITS as GEAR
 from gears.tooth.gear import RELIEF_LIMITS as RELIEF
 from gears.tooth.rack import LIMITS as RACK
 
+GEARS = ("pinion", "wheel")
+
 TIP_DIAMETER = Limit.above(0.0, 1e4, "m")
+
+FLANK_FORM = Traits(finite_elements=True, meshed=False)
+"""Of what changes the flanks by micrometres."""
+
+LEAD_FORM = replace(FLANK_FORM, along_face=True)
+"""Of what changes them along the face."""
+
+SHAFT_STIFFNESS = Traits(beside_segments="counts the shaft twice")
 
 
 class RackSection(Section):
@@ -86,10 +98,16 @@ class HubSection(Section):
     }
 
     radial_stiffness_N_per_m: float | None = key(
-        "stiffness of bearings and shaft along the line of action; rigid if left out", None, such_as=5e8
+        "stiffness of bearings and shaft along the line of action; rigid if left out",
+        None,
+        such_as=5e8,
+        traits=SHAFT_STIFFNESS,
     )
     torsional_stiffness_Nm_per_rad: float | None = key(
-        "torsional stiffness of the shaft; rigid if left out", None, such_as=1e6
+        "torsional stiffness of the shaft; rigid if left out",
+        None,
+        such_as=1e6,
+        traits=SHAFT_STIFFNESS,
     )
     hub_mm: float | None = key(
         "diameter of the rigid hub, larger than the bore; the bore's if left out",
@@ -125,18 +143,22 @@ class GearSection(Section):
         such_as=76.0,
     )
     thickness_allowance_um: float = key("thins each tooth, arc at the reference circle", 0.0)
-    tip_relief: ReliefSection | None = key("material removed towards the tip; none if left out", None)
+    tip_relief: ReliefSection | None = key(
+        "material removed towards the tip; none if left out", None, traits=Traits(meshed=False)
+    )
     tip_chamfer_mm: float = key("height of a chamfer of 45 degrees at the tip's edges", 0.0)
     tip_rounding_um: float = key(
         "rounding radius of the tip edges that touch; the default of the finite elements if left out",
         0.0,
         of=None,
         limit=Limit(0.0, 0.05, "m"),
+        traits=FLANK_FORM,
     )
     face_width_mm: float | None = key(
         "face width of this gear, where it is wider than the face in contact; pair.face_width_mm if left out",
         None,
         such_as=45,
+        traits=replace(BY_ELEMENTS, along_face=True),
     )
     face_offset_mm: float = key(
         "place of the middle of this gear's face along the axis, from that of the face in contact",
@@ -148,6 +170,7 @@ class GearSection(Section):
         0.0,
         of="lead.crowning",
         such_as=10,
+        traits=LEAD_FORM,
     )
     lead_slope_um: float = key(
         "lead slope: deviation over the face width, zero at mid-face; above 0 material lacks towards the end where "
@@ -155,34 +178,40 @@ class GearSection(Section):
         0.0,
         of="lead.slope",
         such_as=5,
+        traits=LEAD_FORM,
     )
     end_relief_um: float = key(
         "end relief: material removed at both ends of the face, by a parabola over end_relief_length_mm",
         0.0,
         of="lead.end_relief",
         such_as=8,
+        traits=LEAD_FORM,
     )
     end_relief_length_mm: float = key(
         "length of the end relief from either end, at most half the face width",
         0.0,
         of="lead.end_relief_length",
         such_as=5,
+        traits=Traits(meshed=False),
     )
     deviations: DeviationsSection | None = key(
         "deviations of the flanks as made; none if left out",
         None,
         such_as={"profile": {"roll_deg": (10.0, 28.0), "material_um": (0.0, -10.0)}},
+        traits=FLANK_FORM,
     )
     wear: WearSection | None = key(
         "material worn off the loaded flanks; none if left out",
         None,
         such_as={"roll_deg": (10.0, 20.0, 28.0), "depth_um": (12.0, 0.0, 5.0)},
+        traits=FLANK_FORM,
     )
     hub: HubSection | None = key(
         "rigid hub on an elastic shaft and bearings; a rigid shaft in the bore if left out",
         None,
         of="support",
         such_as={"hub_mm": 40.0, "radial_stiffness_N_per_m": 5e8},
+        traits=BY_ELEMENTS,
     )
 
     @model_validator(mode="after")
@@ -232,10 +261,25 @@ class PairSection(Section):
     )
 
     tight: bool = key(
-        "whether teeth may be thicker than their gaps, so that both sides bear; refused if false", False
+        "whether teeth may be thicker than their gaps, so that both sides bear; refused if false",
+        False,
+        traits=BY_ELEMENTS,
     )
 
     @property
     def each(self) -> tuple[GearSection, GearSection]:
         """Pinion and wheel."""
         return self.pinion, self.wheel
+
+
+def faults_of_leads(raw: Mapping[str, Any]) -> Iterator[Fault]:
+    """End relief without a length, in the unchecked file: it is listed beside faults of other keys."""
+    pair = raw.get("pair")
+    for gear in GEARS:
+        keys = pair.get(gear) if isinstance(pair, Mapping) else None
+        if not isinstance(keys, Mapping) or not isinstance(keys.get("end_relief_um"), int | float):
+            continue
+        if keys["end_relief_um"] > 0.0 and not keys.get("end_relief_length_mm"):
+            allowed = "must be more than 0 mm with end_relief_um"
+            remedy = "Give its length from either end"
+            yield Fault(f"pair.{gear}.end_relief_length_mm", "0", allowed, remedy)

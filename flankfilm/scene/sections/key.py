@@ -15,7 +15,35 @@ from pydantic.fields import FieldInfo
 from base import Limit
 from base.units import factor, suffix, unit_of
 
-__all__ = ["Key", "key", "key_of", "within"]
+__all__ = ["BY_ELEMENTS", "Key", "Traits", "key", "key_of", "within"]
+
+
+@dataclass(frozen=True)
+class Traits:
+    """What rules between sections ask of a key, whatever its name.
+
+    Attributes
+    ----------
+    finite_elements : bool
+        Whether finite elements alone know it: no closed form and no given stiffness does.
+    along_face : bool
+        Whether the load varies along the face by it.
+    meshed : bool
+        Whether a mesh of the teeth shows it.
+    beside_shafts, beside_segments : str
+        Why it cannot stand beside [shafts], or beside steps of a shaft (its gear's, or any for a key of no gear); empty
+        for a key that can.
+    """
+
+    finite_elements: bool = False
+    along_face: bool = False
+    meshed: bool = True
+    beside_shafts: str = ""
+    beside_segments: str = ""
+
+
+BY_ELEMENTS = Traits(finite_elements=True)
+"""Of keys that finite elements alone know."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +72,8 @@ class Key:
         Whether the template shows the key behind a comment sign.
     constraints : mapping
         Of pydantic: lengths.
+    traits : Traits
+        What rules between sections ask of it.
     """
 
     meaning: str
@@ -57,6 +87,7 @@ class Key:
     example: Any = None
     commented: bool = False
     constraints: Mapping[str, Any] = field(default_factory=dict)
+    traits: Traits = Traits()
 
     def __set_name__(self, owner: type, name: str) -> None:
         """Take unit, name and bounds in the ground from where the key stands, and become pydantic's field."""
@@ -126,6 +157,7 @@ def key(
     diameter: str = "",
     celsius: str = "",
     limit: Limit | None = None,
+    traits: Traits = Traits(),
     **constraints: Any,
 ) -> Any:
     """Key of a section; its unit is the one in which its name ends, its bounds are the ground's.
@@ -142,6 +174,8 @@ def key(
         The ground's name where it is another: of the same quantity, of the radius, of the absolute temperature.
     limit : Limit, optional
         Bounds that the section's `ground` does not hold, in SI; of a list's entries see `within`.
+    traits : Traits
+        What rules between sections ask of the key.
     **constraints
         Of pydantic: lengths.
     """
@@ -155,6 +189,7 @@ def key(
         example=such_as if example is None else example,
         commented=commented,
         constraints=constraints,
+        traits=traits,
     )
     if diameter:
         return replace(written, of=diameter, scale=0.5, note="a diameter")

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from base import Limit
 from base.units import factor
-from flankfilm.scene.sections.key import key, within
+from flankfilm.scene.sections.key import BY_ELEMENTS, key, within
 from flankfilm.scene.sections.section import Limits, Section, refused
 
 TORQUE = Limit(-1e9, 1e9, "N m")
@@ -69,6 +69,7 @@ class OperatingSection(Section):
         " separately",
         0.0,
         such_as=0.05,
+        traits=BY_ELEMENTS,
     )
     torques_Nm: Annotated[tuple[Annotated[float, within(TORQUE)], ...], Field(strict=False)] = key(
         "torques on the pinion, of the wanted torques, of either sign; none if left out",
@@ -142,12 +143,14 @@ class StiffnessSection(Section):
         "whether the deflection shifts the contacts of coupled finite elements along the flanks; plastics if left out",
         None,
         such_as=True,
+        traits=BY_ELEMENTS,
     )
     reference: Literal["body", "bore", "teeth"] | None = key(
         "what every deflection and stiffness by finite elements is measured against: the rotation of the bodies, whose "
         "inertia balances the torque, of the bores, or of the root circles; body if left out",
         None,
         such_as="bore",
+        traits=BY_ELEMENTS,
     )
     mean_N_per_m: float | None = key(
         "mean of a given stiffness; 1 if left out", None, limit=Limit(1.0, 1e15, "N/m"), such_as=7.6e8

@@ -9,6 +9,7 @@ from typing import Any
 from base import Fault, InputError
 from flankfilm.scene.sections.error_curve import POINTS
 from flankfilm.scene.sections.flank_sections import PLACES, POSITIONS
+from flankfilm.scene.sections.gears import GEARS
 from flankfilm.scene.tables.error_curve_file import names_the_error, read_error_file, without_points
 
 __all__ = ["CURVES", "names_a_file", "read_flank_files", "without_curves"]
@@ -77,7 +78,7 @@ def read_flank_files(raw: dict[str, Any], folder: Path, keys: Sequence[str] = ()
 def names_a_file(key: str) -> bool:
     """Whether a dotted key of a scene names a file of flanks, or of the transmission error."""
     return names_the_error(key) or any(
-        key == f"pair.{gear}.{'.'.join(path)}.file" for gear in ("pinion", "wheel") for path in FILES
+        key == f"pair.{gear}.{'.'.join(path)}.file" for gear in GEARS for path in FILES
     )
 
 
@@ -96,7 +97,7 @@ def _tables(
 ) -> Iterator[tuple[str, dict[str, Any], dict[str, Any], tuple[str, Mapping[str, Any]]]]:
     """Tables that name a file: path below the pair, table, the table it is in, what `FILES` says of it."""
     pair = raw.get("pair")
-    for gear in ("pinion", "wheel"):
+    for gear in GEARS:
         for keys, kind in FILES.items():
             above: Any = None
             here: Any = pair
