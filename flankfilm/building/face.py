@@ -32,17 +32,13 @@ def face(scene: Scene) -> FaceOptions:
     section = scene.alignment
     if section is None:
         return {}
-    alignment = gears.Alignment(**section.si())
     options: FaceOptions = {
-        "alignment": alignment,
+        "alignment": section.alignment(),
         "cells": section.cells,
         "face_model": section.face_model,
     }
     if (under := scene.shafts_under_face) is not None:
-        first, second = (
-            None if shaft_section is None else shaft_section.shaft() for shaft_section in under.each
-        )
-        options["shafts"] = first, second
+        options["shafts"] = under.shafts()
     return options
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,14 +11,10 @@ import numpy as np
 import gears
 from base import Array, Faults, InputError
 from flankfilm.scene.schema import Scene
-from flankfilm.scene.sections.flank_sections import (
-    CurveSection,
-    DeviationsSection,
-    LeadSection,
-    MapSection,
-    WearSection,
-)
-from flankfilm.scene.sections.gears import GearSection
+from flankfilm.scene.sections.curve_sections import CurveSection
+from flankfilm.scene.sections.flank_sections import DeviationsSection, LeadSection, WearSection
+from flankfilm.scene.sections.gears import GEARS, GearSection
+from flankfilm.scene.sections.map_section import MapSection
 from flankfilm.scene.sections.section import required
 
 __all__ = ["deviations", "lead_trace"]
@@ -47,7 +42,7 @@ def deviations(scene: Scene, pair: gears.GearPair, *, every_tooth: bool) -> Both
     gear_deviations = []
     with Faults() as faults:
         for name, section, radius, active in zip(
-            ("pinion", "wheel"),
+            GEARS,
             required(scene.pair, "[pair]").each,
             pair.base_radii,
             (ends, line - ends[::-1]),
@@ -89,14 +84,14 @@ def lead_trace(
     source: LeadSection | MapSection
     if made.map is not None:
         source, kind = made.map, "map"
-        parts = _parts(made.map, base_radius)
+        parts = made.map.flank_map(base_radius)
         trace = parts.lead
         if parts.twist > LEAST_TWIST:
             twist = f"{name}: the map's twist, up to {1e6 * parts.twist:.2g} um of material, is left out"
             warnings.warn(twist, gears.GeometryWarning, stacklevel=2)
     elif made.lead is not None:
         source, kind = made.lead, "lead"
-        trace = gears.LeadTrace(source.value("z_mm"), source.value("material_um"), source.form)
+        trace = made.lead.trace()
     half, slack = 0.5 * face_width, SLACK * face_width
     apart = trace.z[-1] <= -half or trace.z[0] >= half
     short = trace.z[0] > slack - half or trace.z[-1] < half - slack
@@ -112,19 +107,13 @@ def lead_trace(
     return trace
 
 
-def _parts(section: MapSection, base_radius: float) -> gears.FlankMap:
-    """Profile, lead and twist of a map."""
-    rho = radii_of(section, base_radius)
-    return gears.flank_map(rho, section.value("z_mm"), section.value("material_um"), section.form)
-
-
 def _of_gear(
     curves: _Curves, section: DeviationsSection | None, wear: WearSection | None
 ) -> gears.GearDeviations | None:
     """Deviations of a gear as its keys give them."""
     made = gears.GearDeviations()
     if section is not None:
-        made = gears.GearDeviations(curves.profile(section), _pitches(section))
+        made = gears.GearDeviations(curves.profile(section), section.pitches())
     if wear is not None and wear.factor > 0.0:  # a factor of 0 is the gear unworn
         made = gears.GearDeviations(made.profile, made.pitch, curves.wear(wear))
     return _plain_as_none(made)
@@ -132,13 +121,6 @@ def _of_gear(
 
 def _plain_as_none(gear_deviations: gears.GearDeviations) -> gears.GearDeviations | None:
     return gear_deviations if gear_deviations.curved or gear_deviations.pitch is not None else None
-
-
-def _pitches(section: DeviationsSection) -> gears.PitchDeviations | None:
-    values = section.si("single_pitch_um", "cumulative_pitch_um")
-    if "single" in values:
-        return gears.PitchDeviations.from_single(values["single"])
-    return gears.PitchDeviations(values["cumulative"]) if "cumulative" in values else None
 
 
 @dataclass(frozen=True)
@@ -166,38 +148,29 @@ class _Curves:
         self, measured: DeviationsSection
     ) -> gears.ProfileDeviation | tuple[gears.ProfileDeviation, ...] | None:
         """Measured profile of all teeth, or of each."""
-
-        def built(section: CurveSection) -> gears.ProfileDeviation:
-            return gears.ProfileDeviation(
-                radii_of(section, self.base_radius), section.value("material_um"), section.form
-            )
-
         if (traces := measured.traces) is not None and traces.teeth is not None:
             at = "deviations.traces." + ("file" if traces.file else "teeth")
             self._cover(at, traces.teeth, traces.beyond == "hold")
-            return tuple(map(built, traces.teeth))
+            return tuple(curve.profile(self.base_radius) for curve in traces.teeth)
         if measured.map is not None:
             self._cover(
                 "deviations.map" + (".file" if measured.map.file else ""),
                 [measured.map],
                 measured.map.beyond == "hold",
             )
-            return None if self.faults.found else _parts(measured.map, self.base_radius).profile
+            return None if self.faults.found else measured.map.flank_map(self.base_radius).profile
         if measured.profile is None:
             return None
         self._cover("deviations.profile", [measured.profile], hold=True)
-        return built(measured.profile)
+        return measured.profile.profile(self.base_radius)
 
     def wear(self, worn: WearSection) -> gears.WearDepth | tuple[gears.WearDepth, ...]:
         """Wear of all teeth, or of each."""
-
-        def built(section: CurveSection) -> gears.WearDepth:
-            depth = worn.factor * np.array(section.value("depth_um"))
-            return gears.WearDepth(radii_of(section, self.base_radius), tuple(depth.tolist()), section.form)
-
         at = "wear.file" if worn.file else "wear" if worn.teeth is None else "wear.teeth"
         self._cover(at, worn.teeth or [worn], worn.beyond == "hold", ends_at_nothing=True)
-        return built(worn) if worn.teeth is None else tuple(map(built, worn.teeth))
+        if worn.teeth is None:
+            return worn.worn(self.base_radius, worn.factor)
+        return tuple(curve.worn(self.base_radius, worn.factor) for curve in worn.teeth)
 
     def _cover(
         self, at: str, curves: Sequence[CurveSection], hold: bool, ends_at_nothing: bool = False
@@ -206,7 +179,7 @@ class _Curves:
         low, high = self.active
         slack, bad = SLACK * (high - low), []
         for number, section in enumerate(curves):
-            rho, values = np.array(radii_of(section, self.base_radius)), getattr(section, section.values[0])
+            rho, values = np.array(section.radii(self.base_radius)), getattr(section, section.values[0])
             missing = (rho[0] > low + slack, rho[-1] < high - slack)
             if ends_at_nothing:
                 missing = (missing[0] and values[0] != 0.0, missing[1] and values[-1] != 0.0)
@@ -218,11 +191,12 @@ class _Curves:
         number, section, apart = bad[0]
         by = section.measured_by
         places = getattr(section, by)
-        unit, spoken = by.rpartition("_")[2], self._spoken(by)
+        unit = by.rpartition("_")[2]
+        ends = " to ".join(f"{section.place(float(rho), self.base_radius):.5g}" for rho in (low, high))
         more = f", and {len(bad) - 1} more teeth" if len(bad) > 1 else ""
         tooth = f"tooth {number}: " if len(curves) > 1 else ""
         value = f"{tooth}{places[0]:.6g} to {places[-1]:.6g} {unit}{more}"
-        span = f"the active profile, {spoken(low):.5g} to {spoken(high):.5g} {unit}"
+        span = f"the active profile, {ends} {unit}"
         if apart:
             remedy = "Check the unit, and whether the points are on the involute"
             self.faults.add(f"{self.path}.{at}", value, f"must lie on {span}", remedy)
@@ -230,23 +204,3 @@ class _Curves:
             remedy = 'Measure farther, or give beyond = "hold": the ends then keep their value'
             allowed = f"must cover {span}, but for a twentieth at either end"
             self.faults.add(f"{self.path}.{at}", value, allowed, remedy)
-
-    def _spoken(self, by: str) -> Callable[[float], float]:
-        """From curvature radii to the positions that a key holds."""
-        if by == "roll_deg":
-            return lambda rho: math.degrees(rho / self.base_radius)
-        if by == "diameter_mm":
-            return lambda rho: 2e3 * math.hypot(rho, self.base_radius)
-        return lambda rho: 1e3 * rho
-
-
-def radii_of(section: CurveSection, base_radius: float) -> tuple[float, ...]:
-    """Curvature radii of a curve's points [m]; nan below the base circle [m]."""
-    by = section.measured_by
-    places = np.array(section.value(by))
-    if by == "roll_deg":
-        places = base_radius * places
-    elif by == "diameter_mm":
-        square = (0.5 * places) ** 2 - base_radius**2
-        places = np.where(square >= 0.0, np.sqrt(np.maximum(square, 0.0)), np.nan)
-    return tuple(places.tolist())

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from base import Fault, InputError
-from flankfilm.building.pair import ISO_53, gear_pair
+from flankfilm.building.pair import gear_pair
 from flankfilm.exchange.draft import Draft, scene_text
 from flankfilm.exchange.rexs_file import read_model
 from flankfilm.exchange.rexs_pair import draft_of
 from flankfilm.scene import parse_scene
+from flankfilm.scene.sections.rack import ISO_53
 
 MOST_NOTES = 50
 """Notes that are kept: a file may have thousands of modifications."""

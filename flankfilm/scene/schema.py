@@ -13,12 +13,14 @@ from pydantic import BeforeValidator, Field
 from base import InputError, Limit
 from flankfilm.scene.sections.alignment import AlignmentSection
 from flankfilm.scene.sections.dynamics import DynamicsSection
-from flankfilm.scene.sections.film import FilmSection, LubricantSection, RoughnessSection
+from flankfilm.scene.sections.film import FilmSection
 from flankfilm.scene.sections.gears import PairSection
 from flankfilm.scene.sections.heat import HeatSection
 from flankfilm.scene.sections.key import Traits, key
+from flankfilm.scene.sections.lubricant import LubricantSection
 from flankfilm.scene.sections.materials import MaterialSection
 from flankfilm.scene.sections.operating import OperatingSection, StiffnessSection
+from flankfilm.scene.sections.roughness import RoughnessSection
 from flankfilm.scene.sections.section import Section
 from flankfilm.scene.sections.shafts import ShaftsSection
 from flankfilm.scene.wants import WANTS

@@ -140,6 +140,13 @@ def test_all_faults_come_at_once():
     assert {"pair.pinion.teeth", "pair.module_mm", "lubricants", "[lubricant]"} <= set(faults(text))
 
 
+def test_keys_of_a_measured_map_are_shown_and_suggested_as_those_of_other_tables():
+    assert 'file = "pinion_map.csv"' in template()
+    points = "roll_deg = [5.0, 32.0], z_mm = [-20.0, 20.0], materal_um = [[0.0, 1.0], [1.0, 0.0]]"
+    text = template().replace("teeth = 36", f"deviations = {{ map = {{ {points} }} }}, teeth = 36", 1)
+    assert "Did you mean material_um" in faults(text)["pair.pinion.deviations.map.materal_um"]
+
+
 def test_dynamics_alone_is_a_complete_scene():
     scene = parse_scene(
         'wants = ["sweep"]\n[stiffness]\nmodel = "given"\namplitudes = [0.18]\n'

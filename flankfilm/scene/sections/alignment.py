@@ -6,6 +6,7 @@ from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
+import gears
 from base import Limit
 from fem.pair.face_setting import CELLS, FREE_ENDS, USUAL
 from flankfilm.scene.sections.key import Traits, key
@@ -65,3 +66,7 @@ class AlignmentSection(Section):
                 value=f"{self.cells}",
             )
         return self
+
+    def alignment(self) -> gears.Alignment:
+        """Alignment in SI."""
+        return gears.Alignment(**self.si())

@@ -7,8 +7,11 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+import gears
 from base import Fault, Limit
+from flankfilm.scene.sections.curve_sections import POSITIONS, DepthSection, ProfileSection
 from flankfilm.scene.sections.key import Traits, key
+from flankfilm.scene.sections.map_section import PLACES, MapSection
 from flankfilm.scene.sections.point_sections import (
     BETWEEN,
     MOST_POINTS,
@@ -16,59 +19,11 @@ from flankfilm.scene.sections.point_sections import (
     Form,
     Numbers,
     PointsSection,
-    not_rising,
-    outside,
     points,
 )
 from flankfilm.scene.sections.section import Section, refused
 
-POSITIONS = {
-    "roll_deg": Limit(0.0, 180.0, "deg", "give roll angles from the start of the involute"),
-    "diameter_mm": Limit.above(0.0, 2e4, "mm", "give diameters in millimetres"),
-    "roll_length_mm": Limit(0.0, 2e4, "mm", "give lengths of roll, the curvature radii of the flank"),
-}
-"""Keys by one of which a curve says where its points are, and what they may be."""
-
-PLACES = {"z_mm": Limit(-1e4, 1e4, "mm", "give places in millimetres from the middle of the face")}
-"""The same of a lead's points."""
-
 LEAD = Limit(-1000.0, 1000.0, "um", "check the unit: micrometres, positive for too much material")
-EXCESS = Limit(-2000.0, 2000.0, "um", "check the unit: micrometres, positive for too much material")
-DEPTH = Limit(0.0, 2000.0, "um", "wear removes material; give what is in excess as a profile")
-
-
-class CurveSection(PointsSection):
-    """What curves over a flank have in common: positions from root to tip."""
-
-    positions = POSITIONS
-
-    roll_deg: Numbers | None = points("roll angles of the points, rising", such_as=(10.0, 20.0, 28.0))
-    diameter_mm: Numbers | None = points("or their diameters", such_as=(69.0, 73.0, 76.0))
-    roll_length_mm: Numbers | None = points(
-        "or their lengths of roll: curvature radii of the flank", such_as=(6.0, 12.0, 17.0)
-    )
-    form: Form = key(BETWEEN, "smooth")
-
-
-class ProfileSection(CurveSection):
-    """Deviation of flanks from the involute, a curve through points."""
-
-    values = ("material_um", EXCESS)
-
-    material_um: Numbers | None = points(
-        "deviation at each point, normal to the flank; positive: too much material",
-        such_as=(0.0, 0.0, -10.0),
-    )
-
-
-class DepthSection(CurveSection):
-    """Depth of wear, a curve through points."""
-
-    values = ("depth_um", DEPTH)
-
-    depth_um: Numbers | None = points(
-        "material worn off at each point, normal to the flank, at least 0", such_as=(12.0, 0.0, 5.0)
-    )
 
 
 class LeadSection(PointsSection):
@@ -97,6 +52,10 @@ class LeadSection(PointsSection):
         "where the trace leaves more than a twentieth of the face out at an end: refuse it, or hold its value",
         "refuse",
     )
+
+    def trace(self) -> gears.LeadTrace:
+        """Lead in SI."""
+        return gears.LeadTrace(self.value("z_mm"), self.value("material_um"), self.form)
 
 
 BEYOND = "where a curve leaves more than a twentieth of the active profile out at an end: refuse it, or hold its value"
@@ -202,59 +161,12 @@ class DeviationsSection(Section):
             raise refused(f"must have map, or {' and '.join(clash)}, not both", "Leave one out")
         return self
 
-
-class MapSection(CurveSection):
-    """Measured map of a gear's flanks, over profile and face; its twist is left out."""
-
-    values = ("material_um", EXCESS)
-
-    file: str | None = key(
-        "CSV file beside the scene instead of points: columns z_mm, position, material_um, rows of a full grid",
-        None,
-        such_as="pinion_map.csv",
-        max_length=1000,
-    )
-    z_mm: Numbers | None = points(
-        "places along the face, rising, 0 at the middle of this gear's face", such_as=(-20.0, 0.0, 20.0)
-    )
-    material_um: Annotated[tuple[Numbers, ...], Field(strict=False)] | None = key(
-        "deviations normal to the flank, a row of all places along the face for each position; positive: too much "
-        "material",
-        None,
-        of=None,
-        such_as=((-6.0, 0.0, -9.0), (-8.0, -2.0, -11.0), (-12.0, -6.0, -15.0)),
-        min_length=2,
-        max_length=1000,
-    )
-    beyond: Beyond = key(
-        "where the map leaves out more than a twentieth of face or active profile: refuse it, or hold its value",
-        "refuse",
-    )
-
-    def _faults(self) -> Iterator[Fault]:
-        """What is wrong with the places, and rows that do not fit them."""
-        by, rows, places = self.given_keys(*POSITIONS), self.material_um, self.z_mm
-        if len(by) != 1 or rows is None or places is None:
-            keys = ", ".join(POSITIONS)
-            yield Fault(
-                "", " and ".join(by), f"must have one of {keys}, z_mm, and material_um", "Give all three"
-            )
-            return
-        over = getattr(self, by[0])
-        for name, values, limit in ((by[0], over, POSITIONS[by[0]]), ("z_mm", places, PLACES["z_mm"])):
-            yield from outside(name, values, limit)
-            yield from not_rising(name, values)
-        wrong = [k for k, row in enumerate(rows, start=1) if len(row) != len(places)]
-        if len(rows) != len(over) or wrong:
-            value = f"{len(rows)} rows" + (
-                f", row {wrong[0]} of {len(rows[wrong[0] - 1])} values" if wrong else ""
-            )
-            allowed = (
-                f"must have a row for each of {len(over)} {by[0]} with a value for each of {len(places)} z_mm"
-            )
-            yield Fault("material_um", value, allowed, "Give a full grid")
-        for row in rows:
-            yield from outside("material_um", row, EXCESS)
+    def pitches(self) -> gears.PitchDeviations | None:
+        """Pitches in SI; None where they were not given."""
+        values = self.si("single_pitch_um", "cumulative_pitch_um")
+        if "single" in values:
+            return gears.PitchDeviations.from_single(values["single"])
+        return gears.PitchDeviations(values["cumulative"]) if "cumulative" in values else None
 
 
 def wrong_counts(

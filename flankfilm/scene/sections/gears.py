@@ -8,9 +8,12 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
+import fem
+import gears
 from base import Fault, InputError, Limit
 from flankfilm.scene.sections.flank_sections import DeviationsSection, WearSection, wrong_counts
 from flankfilm.scene.sections.key import BY_ELEMENTS, Traits, key
+from flankfilm.scene.sections.rack import RackSection, ToolSection, basic_rack
 from flankfilm.scene.sections.section import Limits, Section, refused
 from gears.pair.gear_pair import BACKLASH
 from gears.pair.gear_pair import LIMITS as PAIR
@@ -18,11 +21,13 @@ from gears.tooth.blank import LIMITS as BLANK
 from gears.tooth.face import LEAD_LIMITS as LEAD
 from gears.tooth.gear import LIMITS as GEAR
 from gears.tooth.gear import RELIEF_LIMITS as RELIEF
-from gears.tooth.rack import LIMITS as RACK
 
 GEARS = ("pinion", "wheel")
 
 TIP_DIAMETER = Limit.above(0.0, 1e4, "m")
+
+TIP_DIGITS = 12
+"""Decimal places of a tip alteration that follows from a tip diameter: below them it is rounding."""
 
 FLANK_FORM = Traits(finite_elements=True, meshed=False)
 """Of what changes the flanks by micrometres."""
@@ -33,31 +38,6 @@ LEAD_FORM = replace(FLANK_FORM, along_face=True)
 SHAFT_STIFFNESS = Traits(beside_segments="counts the shaft twice")
 
 
-class RackSection(Section):
-    """Basic rack in modules, for racks outside ISO 53."""
-
-    ground = RACK
-
-    h_aP: float = key("addendum, times the module", example=1.0)
-    h_fP: float = key("dedendum, times the module", example=1.25)
-    rho_fP: float = key("radius of the fillet, times the module", example=0.38)
-    alpha_deg: float = key("pressure angle", 20.0)
-
-
-class ToolSection(Section):
-    """Rack-shaped tool that cuts both gears, in place of dedendum and fillet radius of the rack."""
-
-    ground: ClassVar[Limits] = {**RACK, "protuberance": Limit(-1.0, 1.0, "m")}
-
-    h_aP0: float = key(
-        "addendum of the tool, times the module: the rack's dedendum h_fP", of="h_fP", example=1.25
-    )
-    rho_aP0: float = key("radius of the tool's tip, times the module", of="rho_fP", example=0.38)
-    protuberance_um: float = key(
-        "protuberance of the tool; only 0, since fillets are those of a tool with straight flanks", 0.0
-    )
-
-
 class ReliefSection(Section):
     """Tip relief: material removed normal to the flank."""
 
@@ -66,6 +46,10 @@ class ReliefSection(Section):
     amount_um: float = key("material removed at the tip", example=20)
     length_mm: float = key("length along the path of contact, from the tip", example=2.0)
     form: Literal["linear", "parabolic"] = key("how the relief grows towards the tip", "linear")
+
+    def relief(self) -> gears.TipRelief:
+        """Tip relief in SI."""
+        return gears.TipRelief(**self.si())
 
 
 class BlankSection(Section):
@@ -86,6 +70,10 @@ class BlankSection(Section):
         "three-dimensional",
         0.0,
     )
+
+    def blank(self) -> gears.Blank:
+        """Blank in SI."""
+        return gears.Blank(**self.si())
 
 
 class HubSection(Section):
@@ -115,6 +103,10 @@ class HubSection(Section):
         diameter="hub_radius",
         such_as=40.0,
     )
+
+    def support(self) -> fem.Support:
+        """Support of the bore in SI."""
+        return fem.Support(**self.si())
 
 
 class GearSection(Section):
@@ -226,6 +218,36 @@ class GearSection(Section):
             raise InputError(faults)
         return self
 
+    def gear(self, module: float, rack: gears.BasicRack, trace: gears.LeadTrace | None) -> gears.Gear:
+        """Gear in SI.
+
+        Parameters
+        ----------
+        module : float
+            [m]
+        rack : gears.BasicRack
+        trace : gears.LeadTrace or None
+            Measured lead, over the whole face.
+        """
+        return gears.Gear(
+            **self.si() | self._tip(module, rack),
+            tip_relief=None if self.tip_relief is None else self.tip_relief.relief(),
+            blank=None if self.blank is None else self.blank.blank(),
+            lead=gears.Lead(**self.si_of("lead"), trace=trace),
+        )
+
+    def _tip(self, module: float, rack: gears.BasicRack) -> dict[str, float]:
+        """Tip alteration of a gear whose tip diameter is given; nothing where it is not."""
+        diameter = self.value("tip_diameter_mm")
+        if diameter is None:
+            return {}
+        above_reference = 0.5 * (diameter / module - self.teeth)
+        return {"tip_alteration": round(above_reference - rack.h_aP - self.profile_shift, TIP_DIGITS)}
+
+    def support(self) -> fem.Support:
+        """Support of the bore in SI: that of the hub, or a rigid shaft."""
+        return fem.Support() if self.hub is None else self.hub.support()
+
 
 class PairSection(Section):
     """Geometry of the pair."""
@@ -270,6 +292,10 @@ class PairSection(Section):
     def each(self) -> tuple[GearSection, GearSection]:
         """Pinion and wheel."""
         return self.pinion, self.wheel
+
+    def basic_rack(self) -> gears.BasicRack:
+        """Rack of both gears, with dedendum and fillet radius by the tool where there is one."""
+        return basic_rack(self.rack, self.tool)
 
 
 def faults_of_leads(raw: Mapping[str, Any]) -> Iterator[Fault]:

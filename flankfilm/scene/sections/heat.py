@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
+import gears
 from base import Limit
 from flankfilm.scene.sections.key import key
 from flankfilm.scene.sections.section import Limits, Section, refused
@@ -91,3 +92,15 @@ class HeatSection(Section):
                 "must have heat_transfer_W_per_K beside ambient_temperature_C", "Give both, or none"
             )
         return self
+
+    def growth(self) -> gears.Heat:
+        """Temperatures and expansion of gears and housing, in SI."""
+        return gears.Heat(**self.si(*GROWTH))
+
+    @property
+    def flank_temperatures(self) -> tuple[float, float] | None:
+        """Temperatures of the flanks of pinion and wheel [K]; None where they have the oil's."""
+        if not self.given_keys("pinion_temperature_C", "wheel_temperature_C"):
+            return None
+        heat = self.growth()
+        return heat.pinion_temperature, heat.wheel_temperature

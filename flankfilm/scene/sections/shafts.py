@@ -220,6 +220,26 @@ class ShaftsSection(Section):
         """Whether one of the shafts has steps, which bend and twist."""
         return any(shaft is not None and not shaft.rigid for shaft in self.each)
 
+    def shafts(self) -> tuple[gears.Shaft | None, gears.Shaft | None]:
+        """Shafts of pinion and wheel in SI; None for a rigid one."""
+        pinion, wheel = (None if section is None else section.shaft() for section in self.each)
+        return pinion, wheel
+
+    def drive_arguments(self) -> dict[str, Any]:
+        """What `flankfilm.coupling.pair_drive` takes of the section, in SI."""
+        ends = [ShaftSection() if section is None else section for section in self.each]
+        damping: dict[str, Any] = {"shaft_damping_ratio": self.damping_ratio}
+        if self.rayleigh is not None:
+            damping = {"rayleigh": self.rayleigh.each}
+        return {
+            "shafts": self.shafts(),
+            "end_inertias": tuple(section.inertia_kg_m2 for section in ends),
+            "couplings": tuple(section.value("coupling_stiffness_Nm_per_rad") for section in ends),
+            "damping_band": self.damping_band,
+            "reduction_tolerance": self.reduction_tolerance,
+            **damping,
+        }
+
     @model_validator(mode="before")
     @classmethod
     def _one_ratio_as_a_list(cls, raw: object) -> object:

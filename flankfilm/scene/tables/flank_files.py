@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from base import Fault, InputError
+from flankfilm.scene.sections.curve_sections import POSITIONS
 from flankfilm.scene.sections.error_curve import POINTS
-from flankfilm.scene.sections.flank_sections import PLACES, POSITIONS
 from flankfilm.scene.sections.gears import GEARS
+from flankfilm.scene.sections.map_section import PLACES
 from flankfilm.scene.tables.error_curve_file import names_the_error, read_error_file, without_points
 
 __all__ = ["CURVES", "names_a_file", "read_flank_files", "without_curves"]

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from base import Faults, InputError, shorten
-from flankfilm.scene.sections.flank_sections import POSITIONS
+from flankfilm.scene.sections.curve_sections import POSITIONS
 from flankfilm.scene.tables.trace_files import VALUES, TableRow, table_rows
 
 __all__ = ["read_map"]

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 from base import Faults, InputError, shorten
 from flankfilm.files.folder import content_of
-from flankfilm.scene.sections.flank_sections import POSITIONS
+from flankfilm.scene.sections.curve_sections import POSITIONS
 
 __all__ = ["VALUES", "TableRow", "read_curves", "table_rows"]
 
