@@ -16,6 +16,7 @@ from flankfilm.building.flanks import deviations
 from flankfilm.building.followed_speeds import faults_of_ranges
 from flankfilm.building.pair import pinion_torque, supports, tip_roundings, warm_pair
 from flankfilm.scene import Scene
+from flankfilm.scene.needs import faults_between_sections
 from flankfilm.scene.sections.dynamics import DynamicsSection
 from flankfilm.scene.sections.gears import GEARS
 from flankfilm.scene.sections.ground import in_keys, under_keys
@@ -38,6 +39,8 @@ def refuse(scene: Scene) -> None:
     InputError
         With all of them, each under the scene's key.
     """
+    if between := faults_between_sections(scene.as_given):  # of a scene that no file was read for
+        raise InputError(between)
     with Faults() as faults:
         pair = None
         if scene.pair is not None:

@@ -10,7 +10,7 @@ from typing import Any
 from base import InputError, shorten
 from flankfilm.files.folder import readable, refuse_missing
 from flankfilm.scene import Scene, read_scene
-from flankfilm.scene.reader import bounded, validated
+from flankfilm.scene.reader import bounded, reread
 
 SUFFIX = ".nc"
 
@@ -64,16 +64,7 @@ def _scene(text: str, name: str) -> Scene:
     if not isinstance(raw, dict):
         raise InputError.at(name, shorten(raw), "holds a damaged scene", "Name the scene file")
     bounded(raw, name)
-    return validated(_without_none(raw))
-
-
-def _without_none(raw: Mapping[str, Any]) -> dict[str, Any]:
-    """A scene as it is written: what was not given is not there."""
-    return {
-        key: _without_none(value) if isinstance(value, dict) else value
-        for key, value in raw.items()
-        if value is not None
-    }
+    return reread(raw)
 
 
 def _differences(held: Mapping[str, str]) -> tuple[str, ...]:

@@ -50,7 +50,7 @@ def teeth(scene: Scene, pair: gears.GearPair) -> Options:
     if asked != "auto":
         reason = f"{said(scene, 'stiffness', 'model')}; its error is unknown until verified"
         return Options((Option(asked, None, stiffness_laws(asked, pairs)),), reason)
-    if needed := needs_of_finite_elements(scene.model_dump(exclude_none=True), set(scene.wants)):
+    if needed := needs_of_finite_elements(scene.as_given, set(scene.wants)):
         return Options((elements,), f"finite elements, which {' and '.join(needed)} needs")
     if outside := _outside(scene, pair):
         return Options((elements,), f"finite elements; closed forms were not compared where {outside}")

@@ -8,11 +8,10 @@ from typing import Any, TypeVar
 
 from flankfilm.building.film import lubricant
 from flankfilm.building.pair import gear_pair, warm_pair
-from flankfilm.building.preflight import refuse
 from flankfilm.files.cache import Cache
-from flankfilm.products.catalogue import goals
+from flankfilm.runs.begin import begin
 from flankfilm.scene import Scene
-from flankfilm.stages.engine import Engine, Stage
+from flankfilm.stages.engine import Stage
 from flankfilm.stages.mesh import PLAN
 
 T = TypeVar("T")
@@ -33,7 +32,7 @@ def check_scene(scene: Scene) -> list[str]:
     SolverError
         Where no models meet the tolerance.
     """
-    _, foreseen = _built(refuse, scene)
+    (engine, wanted), foreseen = _built(lambda scene: begin(scene, Cache(None)), scene)
     lines = [f"{scene.title or 'The scene'} is valid."]
     if scene.pair is not None:
         pair, warned = _built(gear_pair, scene)
@@ -55,9 +54,7 @@ def check_scene(scene: Scene) -> list[str]:
         )
         lines += warned
     lines += foreseen
-    wanted = goals(scene)
     if scene.stiffness.model != "given" and any(PLAN in needed(stage) for stage in wanted):
-        engine = Engine(scene, Cache(None))
         plan = engine[PLAN]  # models and shares, from cheap estimates
         lines += [f"Warning: {text}" for text in engine.runs[PLAN.name].warnings]
         lines += [decision.line for decision in plan.decisions]

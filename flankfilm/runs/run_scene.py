@@ -8,13 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from base import InputError, SolverError
-from flankfilm.building.preflight import refuse
 from flankfilm.files.cache import results_cache
 from flankfilm.files.folder import claim, locked
 from flankfilm.files.manifest import MANIFEST, conclude
 from flankfilm.outcome.results import Results
-from flankfilm.processes.progress import Progress, in_steps, silent
-from flankfilm.products.catalogue import goals
+from flankfilm.processes.progress import Progress, silent
+from flankfilm.runs.begin import begin
 from flankfilm.runs.dataset import not_computed, results_dataset, write_data
 from flankfilm.scene import Scene
 from flankfilm.stages.computed import Computed
@@ -95,10 +94,7 @@ def _fields(folder: Path, engine: Engine, progress: Progress) -> list[Path]:
 def _computed(scene: Scene, use_cache: bool, progress: Progress) -> tuple[Results, Engine]:
     """Results without files, and the engine that has them."""
     start = time.perf_counter()
-    refuse(scene)
-    wanted = goals(scene)
-    announce = in_steps(progress, len(wanted) + 2)
-    engine = Engine(scene, results_cache(use_cache), lambda stage: announce(stage.title), progress=progress)
+    engine, wanted = begin(scene, results_cache(use_cache), progress)
     for stage in wanted:
         with suppress(InputError, SolverError):  # the engine keeps it, and the other stages go on
             engine[stage]

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
+from pydantic_core import to_jsonable_python
 
 from base import Fault, InputError, shorten
 from flankfilm.files.folder import content_of
-from flankfilm.scene.explain import explain_all
+from flankfilm.scene.explain import explain_all, model_in
 from flankfilm.scene.needs import faults_between_sections
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.tables.flank_files import read_flank_files
@@ -131,6 +132,29 @@ def validated(raw: dict[str, Any], faults: Sequence[Fault] = ()) -> Scene:
     if between:
         raise InputError(between)
     return scene
+
+
+def reread(raw: Mapping[str, Any]) -> Scene:
+    """Check a scene that was written with all its defaults, of which the rules between sections must not hear.
+
+    Raises
+    ------
+    InputError
+        With every fault; a scene that was checked before has none.
+    """
+    return validated(_as_given(raw, Scene))
+
+
+def _as_given(raw: Mapping[str, Any], model: type[BaseModel]) -> dict[str, Any]:
+    """Keys of a table whose values are not the defaults."""
+    kept = {}
+    for name, value in raw.items():
+        field = model.model_fields.get(name)
+        inner = None if field is None else model_in(field.annotation)
+        default = None if field is None or field.is_required() else to_jsonable_python(field.default)
+        if value is not None and value != default:
+            kept[name] = _as_given(value, inner) if inner and isinstance(value, dict) else value
+    return kept
 
 
 def refuse_long_lists(raw: Any, path: str = "") -> None:

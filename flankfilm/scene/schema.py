@@ -110,6 +110,11 @@ class Scene(Section):
     )
 
     @property
+    def as_given(self) -> dict[str, Any]:
+        """What the scene was made from, as a file has it: without defaults and without what is None."""
+        return self.model_dump(mode="json", exclude_unset=True, exclude_none=True)
+
+    @property
     def reference(self) -> Literal["body", "bore", "teeth"] | None:
         """What the scene says that deflections by finite elements are measured against; None where it does not."""
         return self.stiffness.reference or (

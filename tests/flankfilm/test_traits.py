@@ -14,7 +14,7 @@ from flankfilm.scene.explain import model_in
 from flankfilm.scene.plain_gears import plain_flanks
 from flankfilm.scene.reader import validated
 from flankfilm.scene.schema import Want
-from flankfilm.scene.sections.key import key_of
+from flankfilm.scene.sections.key import Traits, key_of
 from flankfilm.scene.wants import MOTIONS, WANTS, ranges
 
 RANGE = {"speed_rpm": [500, 30000]}
@@ -119,6 +119,33 @@ def test_a_key_of_finite_elements_is_refused_with_a_closed_form(path: str, field
     assert faults(closed) == ()
     said = {fault.where: fault.allowed for fault in faults(put(closed, path, value_of(path, field)))}
     assert said["stiffness.model"] == f'must be "fem" for {name}'
+
+
+LEADS = {"crowning_um", "lead_slope_um", "end_relief_um"}
+FLANKS = {*LEADS, "tip_rounding_um", "deviations", "wear"}
+
+
+@pytest.mark.parametrize(
+    ("trait", "names"),
+    [
+        (
+            "finite_elements",
+            FLANKS | {"face_width_mm", "hub", "tight", "alignment", "friction", "moving_contact"}
+            | {"reference", "stiffness_reference"},
+        ),
+        ("along_face", LEADS | {"face_width_mm", "map", "lead", "alignment"}),
+        ("meshed", FLANKS | {"tip_relief", "end_relief_length_mm"}),
+        ("beside_shafts", {"portraits_rpm", "portraits_frequency"}),
+        ("beside_segments", {"radial_stiffness_N_per_m", "torsional_stiffness_Nm_per_rad"}
+         | {"in_plane_um", "out_of_plane_um"}),
+    ],
+)  # fmt: skip
+def test_keys_with_a_trait(trait: str, names: set[str]):
+    usual = getattr(Traits(), trait)
+    others = [path for path, field in keys() if getattr(key_of(field).traits, trait) != usual]
+    last = [path.rpartition(".")[2] for path in others if not path.startswith("pair.wheel.")]
+    assert sorted(last) == sorted(names)
+    assert {path.replace(".pinion.", ".wheel.") for path in others} >= {p for p in others if ".wheel." in p}
 
 
 def test_no_other_key_is_named_by_that_rule():

@@ -233,8 +233,13 @@ class GearSection(Section):
             **self.si() | self._tip(module, rack),
             tip_relief=None if self.tip_relief is None else self.tip_relief.relief(),
             blank=None if self.blank is None else self.blank.blank(),
-            lead=gears.Lead(**self.si_of("lead"), trace=trace),
+            lead=self._lead(trace),
         )
+
+    def _lead(self, trace: gears.LeadTrace | None) -> gears.Lead:
+        """Lead in SI; a length of end relief without any is that of a straight lead."""
+        lead = self.si_of("lead")
+        return gears.Lead(**lead if self.end_relief_um else lead | {"end_relief_length": 0.0}, trace=trace)
 
     def _tip(self, module: float, rack: gears.BasicRack) -> dict[str, float]:
         """Tip alteration of a gear whose tip diameter is given; nothing where it is not."""
