@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import stat
-import sys
 import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -142,17 +141,17 @@ def locked(folder: Path) -> Iterator[None]:
     InputError
         Where another one is at work there.
     """
-    if sys.platform == "win32":
-        yield  # no lock that a killed process lets go of by itself is at hand there
-        return
-    import fcntl
+    from filelock import FileLock, Timeout
 
     path = folder / ".lock"
     refuse_irregular(path)
-    with path.open("a") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as fault:
-            allowed = "another run or study is at work there"
-            raise InputError.at(folder, "", allowed, "Wait for it, or name another --out") from fault
+    lock = FileLock(path)
+    try:
+        lock.acquire(timeout=0)
+    except Timeout as fault:
+        allowed = "another run or study is at work there"
+        raise InputError.at(folder, "", allowed, "Wait for it, or name another --out") from fault
+    try:
         yield
+    finally:
+        lock.release()

@@ -247,6 +247,30 @@ def test_two_runs_do_not_share_a_folder(tmp_path):
         assert "another run or study is at work there" in ended(begun, status=2)
 
 
+HOLDS = """
+import sys, time
+from pathlib import Path
+from flankfilm.files.folder import locked
+
+with locked(Path(sys.argv[1])):
+    print("held", flush=True)
+    time.sleep(60)
+"""
+
+
+def test_the_lock_of_a_killed_process_goes_with_it(tmp_path):
+    with subprocess.Popen(
+        [sys.executable, "-c", HOLDS, str(tmp_path)], stdout=subprocess.PIPE, text=True
+    ) as holder:
+        assert holder.stdout is not None
+        assert holder.stdout.readline() == "held\n"
+        with pytest.raises(InputError, match="at work there"), locked(tmp_path):
+            pass
+        holder.kill()
+    with locked(tmp_path):
+        pass
+
+
 class TestManifest:
     """Files of an earlier run go, those of somebody stay."""
 
