@@ -17,6 +17,7 @@ from cyclopts import App, Parameter, Token
 from base import InputError, printable
 from flankfilm.processes.exit_status import BY_SIGNAL, PART_FAILED, SOLVER_FAULT, guarded, open_streams, say
 from flankfilm.studies.execution import Execution
+from flankfilm.studies.executors import Kind
 
 if TYPE_CHECKING:
     from flankfilm.scene import Scene
@@ -59,8 +60,29 @@ class SceneOptions:
     cache: bool = True
 
 
+@dataclass(frozen=True)
+class RowOptions(Execution):
+    """Options of the commands that compute rows: an executor is named.
+
+    Parameters
+    ----------
+    executor : {"processes", "dask", "mpi"}
+        Where the rows are computed.
+    workers : int, optional
+        Processes; one for each core if left out.
+    resume : bool
+        Go on from the rows in the folder.
+    cache : bool
+        Use results of earlier runs whose inputs and code are the same.
+    """
+
+    executor: Kind = "processes"
+
+
 ForScene = Annotated[SceneOptions, Parameter(name="*")]
-HowRows = Annotated[Execution, Parameter(name="*")]
+
+
+HowRows = Annotated[RowOptions, Parameter(name="*")]
 RowsFolder = Annotated[Folder, Parameter(help="Folder for the rows and what is made of them.")]
 
 
@@ -164,7 +186,7 @@ def study(
     out: RowsFolder,
     part: str | None = None,
     merge: Annotated[bool, Parameter(negative="")] = False,
-    how: HowRows = Execution(),
+    how: HowRows = RowOptions(),
 ) -> int:
     """Compute the rows of STUDY, each kept as it arrives, and write them as one dataset.
 
@@ -207,7 +229,7 @@ def study(
 
 
 @app.command
-def optimise(task: Path, /, *, out: RowsFolder, how: HowRows = Execution()) -> int:
+def optimise(task: Path, /, *, out: RowsFolder, how: HowRows = RowOptions()) -> int:
     """Look for the minimum of one output, or the trade-off of several, over keys of a scene within bounds.
 
     Parameters

@@ -4,6 +4,10 @@ A child that is ordered to (by a closed pipe, also when its parent has died) end
 what it writes is whole at any moment. Compiled code may keep the interpreter busy for minutes; so where the system can
 end a child by itself, it is asked to.
 
+Neither `concurrent.futures` nor loky does so: of both, workers that are busy in compiled code outlive a parent that was
+killed, and are waited for by one that was interrupted. From Python 3.14 on a pool can kill its workers, which would
+serve the second case alone. Pools are therefore the standard ones, with `work_until_told` as the start of a worker.
+
 A module runs as a child that ends with its parent by
 ``python -m flankfilm.processes.worker_processes PARENT MODULE ARGUMENTS``.
 """

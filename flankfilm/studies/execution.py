@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 from base import InputError, Limit
 from flankfilm.studies.executors import Kind, default_workers
@@ -25,23 +26,27 @@ class Execution:
 
     Parameters
     ----------
-    executor : {"processes", "dask", "mpi"}
-        Where the rows are computed.
+    executor : {"processes", "dask", "mpi"} or concurrent.futures.Executor
+        Where the rows are computed. An executor of your own is used as it is, and not shut down.
     workers : int, optional
-        Processes; one for each core if left out.
+        Processes; one for each core if left out. Of your own executor: how many rows it computes at once.
     resume : bool
         Go on from the rows in the folder.
     cache : bool
         Use results of earlier runs whose inputs and code are the same.
     """
 
-    executor: Kind = "processes"
+    executor: Kind | Executor = "processes"
     workers: int | None = None
     resume: bool = False
     cache: bool = True
 
     def __post_init__(self) -> None:
-        """Refuse a number of workers that cannot be."""
+        """Refuse an executor that is none, and a number of workers that cannot be."""
+        if not isinstance(self.executor, Executor) and self.executor not in get_args(Kind):
+            names = ", ".join(get_args(Kind))
+            allowed = f"must be one of {names}, or a concurrent.futures.Executor"
+            raise InputError.at("executor", repr(self.executor), allowed, "Such as ThreadPoolExecutor(4)")
         if self.workers is not None and (faults := WORKERS.faults("workers", self.workers)):
             raise InputError(faults)
 

@@ -1,4 +1,4 @@
-"""Where rows are computed: processes of this machine, a dask cluster, or MPI."""
+"""Where rows are computed: processes of this machine, a dask cluster, MPI, or any executor of the caller."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from dask.distributed import Client
 
 Kind = Literal["processes", "dask", "mpi"]
+"""Executors that are started here, by their names."""
 
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 """Variables that limit the threads of libraries."""
@@ -48,23 +49,26 @@ def default_workers() -> int:
 
 
 @contextmanager
-def executor(kind: Kind, workers: int) -> Iterator[Pool]:
-    """Give an executor whose workers use one thread each.
+def executor(kind: Kind | Executor, workers: int) -> Iterator[Pool]:
+    """Give an executor: the caller's own as it is, or one that is started here, whose workers use one thread each.
 
     Parameters
     ----------
-    kind : {"processes", "dask", "mpi"}
+    kind : {"processes", "dask", "mpi"} or Executor
         ``dask`` connects to the scheduler that dask's own configuration names (``DASK_SCHEDULER_ADDRESS``),
         else starts workers here; ``mpi`` takes the ranks that ``mpiexec -n N python -m mpi4py.futures`` made.
+        An executor of the caller is not shut down.
     workers : int
-        Number of workers of an executor that is started here.
+        Number of workers of an executor that is started here, or that the caller's has.
 
     Raises
     ------
     InputError
         Where the library for it is not installed.
     """
-    if kind == "processes":
+    if isinstance(kind, Executor):
+        yield Pool(kind, lambda: workers)
+    elif kind == "processes":
         yield from _processes(workers)
     elif kind == "dask":
         yield from _dask(workers)

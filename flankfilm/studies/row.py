@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 import time
 import traceback
 import warnings
@@ -62,6 +63,8 @@ class RowResult:
         return self.fault.startswith(NOT_COMPUTED)
 
 
+_one_at_a_time = threading.Lock()  # the filters of warnings are those of the whole process
+
 NOT_COMPUTED = "not computed: "
 """Begins the fault of a row that failed for want of memory, disk or its process, not of a result."""
 
@@ -72,7 +75,15 @@ def failed(row: Row, fault: str, seconds: float = 0.0) -> RowResult:
 
 
 def compute_row(row: Row) -> RowResult:
-    """Compute the outputs of a row; whatever goes wrong becomes its fault, and leaves the other outputs."""
+    """Compute the outputs of a row; whatever goes wrong becomes its fault, and leaves the other outputs.
+
+    Threads of one process compute one row after the other.
+    """
+    with _one_at_a_time:
+        return _computed(row)
+
+
+def _computed(row: Row) -> RowResult:
     from base import InputError, SolverError
     from flankfilm.files.cache import keep_compiled_code, results_cache
 
