@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import tempfile
 import warnings
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from base import PartWarning
 from flankfilm.files.cache import keep_compiled_code, results_cache
@@ -23,7 +21,6 @@ if TYPE_CHECKING:
     from flankfilm.studies.plan import Plan
     from flankfilm.studies.run import StudyResults
 
-T = TypeVar("T")
 SceneOrPath = Scene | Path | str
 
 
@@ -78,7 +75,7 @@ def run(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = True
     from flankfilm.runs.run_scene import run_scene
     from flankfilm.stages.failures import lines
 
-    results = run_scene(_scene(scene), None if out is None else Path(out), use_cache=cache)
+    results = run_scene(_scene(scene), _folder(out), use_cache=cache)
     for line in lines(results.failures):
         warnings.warn(line, PartWarning, stacklevel=2)
     return results
@@ -109,14 +106,9 @@ def verify(scene: SceneOrPath, out: Path | str | None = None, *, cache: bool = T
     >>> round(verification.difference("Ishikawa", "held to the path"), 2)
     0.09
     """
-    from flankfilm.verification.run import verify_scene
-    from flankfilm.verification.tables import write_verification
+    from flankfilm.verification.run import verification_outcome
 
-    read, folder = _scene(scene), None if out is None else Path(out)
-    verification = verify_scene(read, folder, use_cache=cache)
-    if folder is not None:
-        write_verification(verification, read, folder)
-    return verification
+    return verification_outcome(_scene(scene), _folder(out), use_cache=cache).result
 
 
 def write_vtk(scene: SceneOrPath, out: Path | str, *, cache: bool = True) -> list[Path]:
@@ -159,12 +151,11 @@ def study(
     --------
     >>> found = study("studies/torque.toml", "out/torque")  # doctest: +SKIP
     """
-    from flankfilm.studies.files import write_study
+    from flankfilm.studies.files import study_outcome
     from flankfilm.studies.plan import read_plan
-    from flankfilm.studies.run import run_study
 
     plan = read_plan(Path(study)) if isinstance(study, str | Path) else study
-    return _rows(lambda folder: run_study(plan, folder, how), write_study, out)
+    return study_outcome(plan, _folder(out), how).result
 
 
 def optimise(task: Task | Path | str, out: Path | str | None = None, how: Execution = Execution()) -> Optimum:
@@ -174,12 +165,11 @@ def optimise(task: Task | Path | str, out: Path | str | None = None, how: Execut
     --------
     >>> best = optimise("optimise/root_film.toml", "out/root_film")  # doctest: +SKIP
     """
-    from flankfilm.optimisation.files import write_optimum
-    from flankfilm.optimisation.run import optimise as search
+    from flankfilm.optimisation.files import optimum_outcome
     from flankfilm.optimisation.task import read_task
 
     asked = read_task(Path(task)) if isinstance(task, str | Path) else task
-    return _rows(lambda folder: search(asked, folder, how), write_optimum, out)
+    return optimum_outcome(asked, _folder(out), how).result
 
 
 def _scene(source: SceneOrPath) -> Scene:
@@ -187,11 +177,5 @@ def _scene(source: SceneOrPath) -> Scene:
     return source if isinstance(source, Scene) else scene_in(Path(source))[0]
 
 
-def _rows(compute: Callable[[Path], T], write: Callable[[T, Path], object], out: Path | str | None) -> T:
-    """Rows computed and written in the folder that was named, or computed in one that goes away."""
-    if out is None:
-        with tempfile.TemporaryDirectory(prefix="flankfilm-") as folder:
-            return compute(Path(folder))
-    results = compute(Path(out))
-    write(results, Path(out))
-    return results
+def _folder(out: Path | str | None) -> Path | None:
+    return None if out is None else Path(out)

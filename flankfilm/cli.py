@@ -10,16 +10,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import App, Parameter, Token
 
 from base import InputError, printable
-from flankfilm.processes.exit_status import BY_SIGNAL, PART_FAILED, SOLVER_FAULT, guarded, open_streams, say
+from flankfilm.processes.exit_status import BY_SIGNAL, guarded, open_streams, say
 from flankfilm.studies.execution import Execution
 from flankfilm.studies.executors import Kind
 
 if TYPE_CHECKING:
+    from flankfilm.outcome.outcome import Outcome
     from flankfilm.scene import Scene
 
 app = App(
@@ -117,20 +118,14 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     # a scene with faults is refused before what computes it is loaded
     wanted = _read(scene, options.tolerance)
     from flankfilm.processes.progress import console_progress
-    from flankfilm.runs.report import summary
-    from flankfilm.runs.run_scene import run_scene
-    from flankfilm.stages.failures import lines as not_computed
+    from flankfilm.runs.run_scene import run_outcome
 
     # a results file is called like all others: its folder distinguishes it
     name = scene.absolute().parent.name if scene.suffix == ".nc" else scene.stem
     folder = options.out or Path(f"{name}-results")
     with console_progress() as progress:
-        results = run_scene(wanted, folder, use_cache=options.cache, progress=progress)
-    for line in summary(results):
-        print(printable(line))
-    for line in not_computed(results.failures):
-        print(f"flankfilm: {printable(line)}", file=sys.stderr)
-    return PART_FAILED if results.failures else 0
+        outcome = run_outcome(wanted, folder, use_cache=options.cache, progress=progress)
+    return _shown(outcome)
 
 
 @app.command
@@ -144,27 +139,13 @@ def verify(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     """
     _prepare()
     wanted = _read(scene, options.tolerance)
-    from rich.console import Console
-
     from flankfilm.processes.progress import console_progress
-    from flankfilm.verification.run import verify_scene
-    from flankfilm.verification.tables import costs, face_table, table, write_verification
+    from flankfilm.verification.run import verification_outcome
 
     folder = options.out or Path(f"{scene.stem}-verify")
     with console_progress() as progress:
-        verification = verify_scene(wanted, folder, use_cache=options.cache, progress=progress)
-        files = write_verification(verification, wanted, folder)
-    screen = Console(width=None if sys.stdout.isatty() else 160)
-    for reference in (verification.references[0], verification.like_for_like):
-        screen.print(table(verification, reference))
-    if verification.over_face is not None:
-        screen.print(face_table(verification.over_face))
-    elif verification.message:
-        print(printable(verification.message))
-    print(f"verify.csv holds the rest: {', '.join(r.label for r in verification.references[1:-1])}")
-    print(costs(verification))
-    print(f"{len(files)} files in {folder}: {', '.join(path.name for path in files)}")
-    return 0
+        outcome = verification_outcome(wanted, folder, use_cache=options.cache, progress=progress)
+    return _shown(outcome)
 
 
 @app.command
@@ -201,11 +182,10 @@ def study(
     """
     _prepare()
     from flankfilm.processes.progress import console_rows
-    from flankfilm.studies.files import summary, write_study
-    from flankfilm.studies.parts import Part
-    from flankfilm.studies.parts import merge as merged
+    from flankfilm.studies.files import study_outcome
+    from flankfilm.studies.parts import Part, part_outcome
+    from flankfilm.studies.parts import merge as merge_parts
     from flankfilm.studies.plan import read_plan
-    from flankfilm.studies.run import run_study
 
     if part is not None and merge:
         raise InputError.at(
@@ -214,18 +194,13 @@ def study(
     one_part = None if part is None else Part.read(part)
     plan = read_plan(study)
     if merge:
-        study_results = merged(plan, out)
-    else:
-        folder, rows = (out, None) if one_part is None else (one_part.folder(out), one_part.rows(plan))
-        with console_rows() as progress:
-            study_results = run_study(plan, folder, how, progress, rows)
-    if one_part is None:
-        _conclude(summary(study_results), out, write_study(study_results, out))
-    else:
-        _conclude(summary(study_results), one_part.folder(out), ())
-    if study_results.failures:
-        return SOLVER_FAULT if all(row.lost for row in study_results.rows) else PART_FAILED
-    return 0
+        return _shown(merge_parts(plan, out))
+    with console_rows() as progress:
+        if one_part is None:
+            outcome = study_outcome(plan, out, how, progress)
+        else:
+            outcome = part_outcome(one_part, plan, out, how, progress)
+    return _shown(outcome)
 
 
 @app.command
@@ -238,22 +213,28 @@ def optimise(task: Path, /, *, out: RowsFolder, how: HowRows = RowOptions()) -> 
         The optimisation file (TOML): a scene, ranges of its keys, outputs to minimise or maximise, limits.
     """
     _prepare()
-    from flankfilm.optimisation.files import summary, write_optimum
-    from flankfilm.optimisation.run import optimise as find
+    from flankfilm.optimisation.files import optimum_outcome
     from flankfilm.optimisation.task import read_task
     from flankfilm.processes.progress import console_rows
 
     asked = read_task(task)
     with console_rows() as progress:
-        optimum = find(asked, out, how, progress)
-    _conclude(summary(optimum), out, write_optimum(optimum, out))
-    return 0
+        outcome = optimum_outcome(asked, out, how, progress)
+    return _shown(outcome)
 
 
-def _conclude(lines: Sequence[str], out: Path, files: Sequence[Path]) -> None:
-    """Print what rows gave, and where they are."""
-    for line in (*lines, ", ".join(str(path) for path in (out / "rows.csv", *files))):
-        print(printable(line))
+def _shown(outcome: Outcome[Any]) -> int:
+    """Print what a command gave; its exit status."""
+    for line in outcome.lines:
+        if isinstance(line, str):
+            print(printable(line))
+        else:
+            from rich.console import Console
+
+            Console(width=None if sys.stdout.isatty() else 160).print(line)
+    for fault in outcome.faults:
+        print(f"flankfilm: {printable(fault)}", file=sys.stderr)
+    return outcome.status
 
 
 @app.command

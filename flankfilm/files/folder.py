@@ -25,12 +25,18 @@ REPORTS = {
     "optimum.nc": "an optimisation",
     "verify.nc": "a verification",
 }
-"""Files of data that have a ``report.html`` beside them, and of what they are: a folder holds one of them."""
+"""Files of data that have a page beside them, and of what they are: a folder holds one of them."""
+
+PAGE = "report.html"
+"""Name of that page."""
+
+MANIFEST = "files.json"
+"""Name of the list of a folder's files."""
 
 AWAY = "Move it away, or name another folder with --out"
 
 
-def claim(folder: Path, data: str = "", files: Iterable[str] = (), folders: Iterable[str] = ()) -> None:
+def claim(folder: Path, data: str = "", folders: Iterable[str] = ()) -> None:
     """Make the folder and see that it can be written before anything is computed.
 
     Parameters
@@ -38,17 +44,17 @@ def claim(folder: Path, data: str = "", files: Iterable[str] = (), folders: Iter
     folder : Path
     data : str
         Which of `REPORTS` will be written: no other one may be there with its report, which would be replaced.
-    files, folders : iterable of str
-        Names in it that will be files and folders: none of them may be there as the other.
+    folders : iterable of str
+        Names in it that will be folders: neither they nor the files beside them may be there as the other.
     """
     if folder.exists() and not folder.is_dir():
         raise InputError.at(folder, "", "is a file, not a folder", ELSEWHERE)
     with Faults() as faults:
         others = [name for name in REPORTS if name != data and (folder / name).exists()]
-        if data and others and (folder / "report.html").exists():
-            clash = f"holds {REPORTS[others[0]]} ({others[0]}), whose report.html would be replaced"
+        if data and others and (folder / PAGE).exists():
+            clash = f"holds {REPORTS[others[0]]} ({others[0]}), whose {PAGE} would be replaced"
             faults.add(str(folder), "", clash, ELSEWHERE)
-        for path in (folder / name for name in files):
+        for path in (folder / name for name in (data, PAGE, MANIFEST) if data):
             if path.is_dir():
                 faults.add(str(path), "", "is a folder, and a file of that name will be written", AWAY)
         for path in (folder / name for name in folders):
@@ -155,3 +161,14 @@ def locked(folder: Path) -> Iterator[None]:
         yield
     finally:
         lock.release()
+
+
+@contextmanager
+def occupied(folder: Path | None, data: str = "", folders: Iterable[str] = ()) -> Iterator[None]:
+    """Claim a folder, and keep others out of it meanwhile; parameters as of `claim`. None is nobody's."""
+    if folder is None:
+        yield
+        return
+    claim(folder, data, folders)
+    with locked(folder):
+        yield

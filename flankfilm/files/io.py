@@ -6,13 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from base import InputError
-from flankfilm.files.folder import readable, refuse_missing
+from flankfilm.files.folder import REPORTS, readable, refuse_missing
 
 if TYPE_CHECKING:
     import xarray as xr
-
-NAMES = ("results.nc", "study.nc", "optimum.nc", "verify.nc")
-"""What a folder is looked through for, in this order."""
 
 REMEDY = "Name a results.nc, study.nc, optimum.nc or verify.nc, or the folder of one"
 
@@ -57,9 +54,9 @@ def open_results(path: Path | str) -> xr.Dataset:
 def _file(path: Path) -> Path:
     """The file itself, or the first of those that a folder may hold."""
     if path.is_dir():
-        files = [path / name for name in NAMES if (path / name).is_file()]
+        files = [path / name for name in REPORTS if (path / name).is_file()]
         if not files:
-            raise InputError.at(path, "", f"holds none of {', '.join(NAMES)}", REMEDY)
+            raise InputError.at(path, "", f"holds none of {', '.join(REPORTS)}", REMEDY)
         return files[0]
     refuse_missing(path, REMEDY)
     return path

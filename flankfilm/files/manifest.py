@@ -1,4 +1,4 @@
-"""Which files of a folder a run wrote, so that the next one there leaves none of another pair beside its own."""
+"""Which files of a folder a command wrote, so that the next one there leaves none of another pair beside its own."""
 
 from __future__ import annotations
 
@@ -10,11 +10,10 @@ from contextlib import suppress
 from pathlib import Path, PurePosixPath
 
 from base.files import replacing
+from flankfilm.files.folder import MANIFEST, REPORTS
 
-MANIFEST = "files.json"
-"""Name of the list in the folder."""
-
-UNLISTED = (MANIFEST, ".lock")
+UNLISTED = (MANIFEST, ".lock", "study.json", "optimisation.json")
+"""What belongs to the folder itself: the list, the lock, and the notes of whose rows it holds."""
 
 LARGEST = 50_000_000
 """Bytes of a list above which it is not ours."""
@@ -24,7 +23,7 @@ def conclude(folder: Path, files: Iterable[Path]) -> tuple[str, ...]:
     """List what a run wrote, and remove what an earlier one left there.
 
     A file of an earlier run goes only if it is as that run wrote it; files that somebody changed, and all that no run
-    wrote, are kept.
+    wrote, are kept, and so is what an earlier study is to a run.
 
     Parameters
     ----------
@@ -38,7 +37,9 @@ def conclude(folder: Path, files: Iterable[Path]) -> tuple[str, ...]:
         Files in the folder that are not of this run.
     """
     written = {_name(folder, path): _digest(path) for path in _with_references(files)}
-    for name, digest in _listed(folder).items():
+    earlier = _listed(folder)
+    of_its_kind = not any(name in REPORTS and name not in written for name in earlier)
+    for name, digest in earlier.items() if of_its_kind else ():
         path = folder / name
         if name not in written and path.is_file() and not path.is_symlink() and _digest(path) == digest:
             path.unlink()

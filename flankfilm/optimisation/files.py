@@ -1,48 +1,33 @@
-"""An optimum as a table, a scene that can be run, and a figure."""
+"""An optimum as a dataset, as files, a page and lines."""
 
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flankfilm import figures
+from flankfilm.figures.optima import can_be_mapped
 from flankfilm.optimisation.optimum import Optimum
+from flankfilm.optimisation.page import write_optimum_page
+from flankfilm.optimisation.run import searched, work_of_task
+from flankfilm.optimisation.task import Task
 from flankfilm.optimisation.words import claims
-from flankfilm.output.files import provenance, write_csv, write_netcdf, write_text
+from flankfilm.outcome.outcome import Outcome, Picture, concluded
+from flankfilm.output.files import provenance, write_csv, write_text
 from flankfilm.scene.toml import toml_lines
-from flankfilm.studies.files import of_rows
+from flankfilm.studies.execution import Execution, Progress
+from flankfilm.studies.files import listed, of_rows
+from flankfilm.studies.kept import kept_rows
 from flankfilm.studies.outputs import ERROR_OF
+from flankfilm.studies.table import ROWS
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-def summary(optimum: Optimum) -> list[str]:
-    """Lines for the terminal."""
-    task = optimum.task
-    coarse_at, fine_at = (f"{100 * tolerance:g} %" for tolerance in task.tolerances)
-    lines = [
-        f"{optimum.points} of at most {task.asked.evaluations} points, {optimum.computed} of them computed in "
-        f"{optimum.seconds:.1f} s, at tolerances of {coarse_at} and then {fine_at}"
-    ]
-    if (phase_costs := phases(optimum)) is not None:
-        coarse, fine, saved = phase_costs
-        lines.append(
-            f"a point took {coarse:.3g} s at the first tolerance and {fine:.3g} s at the second: "
-            f"{100 * abs(saved):.0f} % {'less' if saved >= 0 else 'more'} in all than with every point at the second"
-        )
-    if len(optimum.best) > 1:
-        lines.append(f"{len(optimum.best)} points on the front, from the minimum {task.objectives[0]}:")
-    for place in optimum.best[:10]:
-        point = optimum.evaluations[place]
-        keys = ", ".join(f"{k} = {v:.6g}" for k, v in zip(task.keys, point.values, strict=True))
-        outputs = ", ".join(f"{n} = {v:.5g}" for n, v in zip(task.outputs, point.result.values, strict=True))
-        lines.append(f"{keys}: {outputs}")
-    if len(optimum.best) > 10:
-        lines.append(f"{len(optimum.best) - 10} more in optimum.csv")
-    return [*lines, *claims(optimum)]
 
 
 def phases(optimum: Optimum) -> tuple[float, float, float] | None:
@@ -123,25 +108,95 @@ def _start(optimum: Optimum, data: xr.Dataset) -> dict[str, tuple[tuple[()], flo
     }
 
 
-def write_optimum(optimisation: Optimum, folder: Path) -> list[Path]:
-    """Write all points, the front, the first one's scene, the figures, and a page with all; return the files."""
-    from flankfilm.figures import optimum, optimum_map
-    from flankfilm.figures.optima import can_be_mapped
-    from flankfilm.figures.style import save
-    from flankfilm.optimisation.page import write_optimum_page
+@dataclass(frozen=True, eq=False)
+class OptimumOutcome(Outcome[Optimum]):
+    """All points, the front as a table, the first one's scene, the pictures, and a page with all."""
 
-    task = optimisation.task
-    chosen = [optimisation.evaluations[place] for place in optimisation.best]
-    table, scene, points, picture = (folder / f"optimum.{suffix}" for suffix in ("csv", "toml", "nc", "svg"))
-    rows = zip(*((*point.values, *point.result.values) for point in chosen), strict=True)
-    write_csv(table, dict(zip((*task.keys, *task.outputs), rows, strict=True)))
-    raw = task.raw_scene(chosen[0].values, task.tolerances[1])
-    write_text(scene, "\n".join(toml_lines(raw)) + "\n")
-    held = dataset(optimisation)
-    write_netcdf(points, held)
-    save(optimum(held), picture)
-    drawn = [picture]
-    if can_be_mapped(held):
-        drawn.append(folder / "optimum_map.svg")
-        save(optimum_map(held), drawn[-1])
-    return [table, scene, points, *drawn, write_optimum_page(optimisation, held, folder)]
+    data = "optimum.nc"
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """Points along ``point``."""
+        return dataset(self.result)
+
+    @property
+    def lines(self) -> list[str]:
+        """Points, the best of them, what may be claimed, and the files."""
+        optimum, task = self.result, self.result.task
+        coarse_at, fine_at = (f"{100 * tolerance:g} %" for tolerance in task.tolerances)
+        lines = [
+            f"{optimum.points} of at most {task.asked.evaluations} points, {optimum.computed} of them computed in "
+            f"{optimum.seconds:.1f} s, at tolerances of {coarse_at} and then {fine_at}"
+        ]
+        if (phase_costs := phases(optimum)) is not None:
+            coarse, fine, saved = phase_costs
+            less = f"{100 * abs(saved):.0f} % {'less' if saved >= 0 else 'more'} in all"
+            lines.append(
+                f"a point took {coarse:.3g} s at the first tolerance and {fine:.3g} s at the second: "
+                f"{less} than with every point at the second"
+            )
+        if len(optimum.best) > 1:
+            lines.append(f"{len(optimum.best)} points on the front, from the minimum {task.objectives[0]}:")
+        for place in optimum.best[:10]:
+            point = optimum.evaluations[place]
+            keys = ", ".join(f"{k} = {v:.6g}" for k, v in zip(task.keys, point.values, strict=True))
+            outputs = ", ".join(
+                f"{n} = {v:.5g}" for n, v in zip(task.outputs, point.result.values, strict=True)
+            )
+            lines.append(f"{keys}: {outputs}")
+        if len(optimum.best) > 10:
+            lines.append(f"{len(optimum.best) - 10} more in optimum.csv")
+        return [*lines, *claims(optimum), listed(self.files)]
+
+    def tables(self, folder: Path) -> list[Path]:
+        """Write the front, and the scene of its first point; the rows are there."""
+        task, points = self.result.task, self.result.evaluations
+        chosen = [points[place] for place in self.result.best]
+        table, scene = (folder / f"optimum.{suffix}" for suffix in ("csv", "toml"))
+        rows = zip(*((*point.values, *point.result.values) for point in chosen), strict=True)
+        write_csv(table, dict(zip((*task.keys, *task.outputs), rows, strict=True)))
+        raw = task.raw_scene(chosen[0].values, task.tolerances[1])
+        write_text(scene, "\n".join(toml_lines(raw)) + "\n")
+        return [folder / ROWS, table, scene]
+
+    @property
+    def pictures(self) -> dict[str, Picture]:
+        """The points, and a map of two keys."""
+        drawn: dict[str, Picture] = {"optimum": figures.optimum}
+        return {**drawn, "optimum_map": figures.optimum_map} if can_be_mapped(self.dataset) else drawn
+
+    def page(self, folder: Path) -> Path:
+        """Write the page."""
+        return write_optimum_page(self.result, self.dataset, folder)
+
+
+def optimum_outcome(
+    task: Task,
+    folder: Path | None,
+    how: Execution = Execution(),
+    progress: Progress = lambda done, total: None,
+) -> OptimumOutcome:
+    """Search the best points of a task, and write what is made of them; every evaluation goes into ``rows.csv``.
+
+    The search is the same whenever it runs: taken up again, it asks for the same points, finds those that are
+    there, and goes on to the same end.
+
+    Parameters
+    ----------
+    task : Task
+    folder : Path or None
+        Made when it does not exist; None leaves nothing behind.
+    how : Execution
+        Where points are computed, and whether a search that was begun in the folder is taken up.
+    progress : callable
+        Called with evaluations done and evaluations in all.
+
+    Raises
+    ------
+    InputError
+        Where the folder holds something else, or evaluations of this task without ``resume``.
+    SolverError
+        Where no point keeps the limits.
+    """
+    with kept_rows(folder, work_of_task(task), how.resume) as kept:
+        return concluded(OptimumOutcome(searched(task, kept, how, progress)), folder)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +15,7 @@ from flankfilm.optimisation.search import front, search
 from flankfilm.optimisation.start import NOT_THERE
 from flankfilm.optimisation.task import Task
 from flankfilm.studies.execution import Execution, Progress
-from flankfilm.studies.kept import KeptRows, Work, kept_rows
+from flankfilm.studies.kept import KeptRows, Work
 from flankfilm.studies.row import Row, RowResult
 from flankfilm.studies.study_file import Value
 from flankfilm.studies.table import ROWS, WITHOUT_IT, Columns, Line
@@ -84,38 +83,22 @@ class _Evaluator:
         return [self.known[point] for point in points]
 
 
-def optimise(
-    task: Task,
-    folder: Path,
-    how: Execution = Execution(),
-    progress: Progress = lambda done, total: None,
-) -> Optimum:
-    """Search the best points of a task; every evaluation goes into ``rows.csv`` of a folder.
+def work_of_task(task: Task) -> Work:
+    """What the rows of an optimisation's folder are of."""
+    columns = Columns(("tolerance", *task.keys), task.outputs)
+    return Work("optimisation", task.asked.title, {"task": _plain(task), "scene": task.scene}, columns)
 
-    The search is the same whenever it runs: taken up again, it asks for the same points, finds those that are
-    there, and goes on to the same end.
 
-    Parameters
-    ----------
-    task : Task
-    folder : Path
-        Made when it does not exist.
-    how : Execution
-        Where points are computed, and whether a search that was begun in the folder is taken up.
-    progress : callable
-        Called with evaluations done and evaluations in all.
+def searched(task: Task, kept: KeptRows, how: Execution, progress: Progress) -> Optimum:
+    """Search the best points of a task; those that are not kept are computed, and kept as they arrive.
 
     Raises
     ------
-    InputError
-        Where the folder holds something else, or evaluations of this task without ``resume``.
     SolverError
         Where no point keeps the limits.
     """
     began = time.perf_counter()
-    columns = Columns(("tolerance", *task.keys), task.outputs)
-    work = Work("optimisation", task.asked.title, {"task": _plain(task), "scene": task.scene}, columns)
-    with kept_rows(folder, work, how.resume) as kept, how.staff() as staff:
+    with how.staff() as staff:
         evaluator = _Evaluator(task, kept, staff, how.cache, progress, dict(_points(task, kept.lines)))
         start = evaluator.start()
         polished = search(task, evaluator)

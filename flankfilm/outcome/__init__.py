@@ -1,4 +1,4 @@
-"""What a run returns: the record, and its picture.
+"""What commands give, in one form: data, files, page, lines and picture; and the record of a run.
 
 Public, in `flankfilm`: `Results`.
 """

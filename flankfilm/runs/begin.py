@@ -7,9 +7,9 @@ from typing import Any
 from flankfilm.building.preflight import refuse
 from flankfilm.files.cache import Cache
 from flankfilm.processes.progress import Progress, in_steps, silent
+from flankfilm.products.catalogue import goals
 from flankfilm.scene import Scene
 from flankfilm.stages.engine import Engine, Stage
-from flankfilm.products.catalogue import goals
 
 
 def begin(scene: Scene, cache: Cache, progress: Progress = silent) -> tuple[Engine, tuple[Stage[Any], ...]]:

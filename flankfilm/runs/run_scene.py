@@ -4,25 +4,115 @@ from __future__ import annotations
 
 import time
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from base import InputError, SolverError
 from flankfilm.files.cache import results_cache
-from flankfilm.files.folder import claim, locked
-from flankfilm.files.manifest import MANIFEST, conclude
+from flankfilm.files.folder import occupied
+from flankfilm.outcome.outcome import Outcome, concluded
 from flankfilm.outcome.results import Results
+from flankfilm.processes.exit_status import PART_FAILED
 from flankfilm.processes.progress import Progress, silent
 from flankfilm.runs.begin import begin
 from flankfilm.runs.dataset import not_computed, results_dataset, write_data
 from flankfilm.scene import Scene
 from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine
+from flankfilm.stages.failures import lines as failure_lines
 from flankfilm.stages.mesh import FIELDS
 from flankfilm.stages.vtk import write_fields
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 PREPARATIONS = {"plan", "heat"}
 """Stages that no want is for: what they give is no result of a run whose other parts failed."""
+
+
+@dataclass(frozen=True, eq=False)
+class RunOutcome(Outcome[Results]):
+    """Everything as data, a table for each curve, fields for ParaView and a report where the scene wants them.
+
+    Attributes
+    ----------
+    engine : Engine
+        That has the results.
+    progress : callable
+    """
+
+    data = "results.nc"
+    folders = ("csv", "vtk")
+    """Names of folders beside the file of data."""
+
+    engine: Engine = field(kw_only=True)
+    progress: Progress = field(kw_only=True)
+
+    @property
+    def dataset(self) -> xr.Dataset:
+        """Everything that was found."""
+        return self.result.dataset
+
+    @property
+    def lines(self) -> list[str]:
+        """Headline figures with errors, decisions, and the files."""
+        from flankfilm.runs.report import summary
+
+        return summary(self.result)
+
+    @property
+    def faults(self) -> list[str]:
+        """Parts that could not be computed."""
+        return failure_lines(self.result.failures)
+
+    @property
+    def status(self) -> int:
+        """Whether parts failed."""
+        return PART_FAILED if self.result.failures else 0
+
+    def tables(self, folder: Path) -> list[Path]:
+        """Write the data, and a table for each curve."""
+        return write_data(folder, self.dataset)
+
+    def page(self, folder: Path) -> Path:
+        """Write the report."""
+        from flankfilm.runs.report import write_report
+
+        return write_report(self.result, folder)
+
+    def written(self, folder: Path) -> RunOutcome:
+        """Write all that the scene wants; fields that cannot be written are a part that failed, which the data say."""
+        results, engine, began = self.result, self.engine, time.perf_counter()
+        self.progress("netCDF and CSV files", 1, 1)
+        files = engine.timed("data files", "netCDF and CSV files", lambda: self.tables(folder))
+        if "vtk" in results.scene.wants:
+            files += _fields(folder, engine, self.progress)
+        if len(engine.failures) > len(results.failures):
+            results = replace(results, failures=tuple(engine.failures.values()))
+            results = replace(results, dataset=results.dataset.assign_attrs(not_computed(results.failures)))
+            write_data(folder, results.dataset)
+        seconds = results.seconds + time.perf_counter() - began
+        outcome = replace(
+            self, result=replace(results, folder=folder, files=tuple(files), seconds=seconds), folder=folder
+        )
+        if "report" in results.scene.wants:
+            self.progress("writing the report", 1, 1)
+            files.append(outcome.page(folder))
+        return replace(outcome, files=tuple(files))
+
+
+def run_outcome(
+    scene: Scene, folder: Path | None, *, use_cache: bool = True, progress: Progress = silent
+) -> RunOutcome:
+    """Compute what a scene wants and write it where there is a folder; arguments and faults as of `run_scene`."""
+    start = time.perf_counter()
+    with occupied(folder, RunOutcome.data, RunOutcome.folders):
+        outcome = concluded(_computed(scene, use_cache, progress), folder)
+    results = replace(
+        outcome.result, files=outcome.files, others=outcome.others, seconds=time.perf_counter() - start
+    )
+    return replace(outcome, result=results)
 
 
 def run_scene(
@@ -53,30 +143,7 @@ def run_scene(
     SolverError
         Where no part that the scene wants could be computed; parts that failed beside others are in `failures`.
     """
-    start = time.perf_counter()
-    if folder is None:
-        return _computed(scene, use_cache, progress)[0]
-    claim(folder, "results.nc", files=("results.nc", "report.html", MANIFEST), folders=("csv", "vtk"))
-    with locked(folder):
-        results, engine = _computed(scene, use_cache, progress)
-        progress("netCDF and CSV files", 1, 1)
-        files = engine.timed(
-            "data files", "netCDF and CSV files", lambda: write_data(folder, results.dataset)
-        )
-        if "vtk" in scene.wants:
-            files += _fields(folder, engine, progress)
-        if len(engine.failures) > len(results.failures):
-            results = replace(results, failures=tuple(engine.failures.values()))
-            results = replace(results, dataset=results.dataset.assign_attrs(not_computed(results.failures)))
-            write_data(folder, results.dataset)
-        results = replace(results, folder=folder, files=tuple(files), seconds=time.perf_counter() - start)
-        if "report" in scene.wants:
-            from flankfilm.runs.report import write_report
-
-            progress("writing the report", 1, 1)
-            files.append(write_report(results, folder))
-        others = conclude(folder, files)
-    return replace(results, files=tuple(files), others=others, seconds=time.perf_counter() - start)
+    return run_outcome(scene, folder, use_cache=use_cache, progress=progress).result
 
 
 def _fields(folder: Path, engine: Engine, progress: Progress) -> list[Path]:
@@ -91,8 +158,8 @@ def _fields(folder: Path, engine: Engine, progress: Progress) -> list[Path]:
         return []
 
 
-def _computed(scene: Scene, use_cache: bool, progress: Progress) -> tuple[Results, Engine]:
-    """Results without files, and the engine that has them."""
+def _computed(scene: Scene, use_cache: bool, progress: Progress) -> RunOutcome:
+    """Results without files."""
     start = time.perf_counter()
     engine, wanted = begin(scene, results_cache(use_cache), progress)
     for stage in wanted:
@@ -107,4 +174,5 @@ def _computed(scene: Scene, use_cache: bool, progress: Progress) -> tuple[Result
     values = engine.results()
     dataset = results_dataset(Computed(scene, values, failures))
     seconds = time.perf_counter() - start
-    return Results(scene, None, values, engine.runs, (), seconds, dataset, failures=failures), engine
+    results = Results(scene, None, values, engine.runs, (), seconds, dataset, failures=failures)
+    return RunOutcome(results, engine=engine, progress=progress)

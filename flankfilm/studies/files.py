@@ -1,20 +1,31 @@
-"""A finished study as one dataset with units, and as a figure."""
+"""A finished study as one dataset with units, and as files, a page and lines."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base.units import unit_of
-from flankfilm.output.files import provenance, write_netcdf
+from flankfilm import figures
+from flankfilm.figures.studies import varied_numbers
+from flankfilm.outcome.outcome import Outcome, Picture, concluded
+from flankfilm.output.files import provenance
+from flankfilm.processes.exit_status import PART_FAILED, SOLVER_FAULT
+from flankfilm.studies.execution import Execution, Progress
+from flankfilm.studies.kept import kept_rows
 from flankfilm.studies.outputs import OUTPUTS
+from flankfilm.studies.page import write_study_page
+from flankfilm.studies.plan import Plan
 from flankfilm.studies.row import RowResult
-from flankfilm.studies.run import StudyResults
+from flankfilm.studies.run import StudyResults, computed, work_of_plan
 from flankfilm.studies.study_file import Value
+from flankfilm.studies.table import ROWS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -65,33 +76,67 @@ def of_rows(
     return xr.Dataset({**variables, "seconds": cost}, varied)
 
 
-def write_study(study_results: StudyResults, folder: Path) -> list[Path]:
-    """Write ``study.nc``, ``study.svg`` where numbers vary, and a page with all; return the files."""
-    from flankfilm.figures import study
-    from flankfilm.figures.studies import varied_numbers
-    from flankfilm.figures.style import save
-    from flankfilm.studies.page import write_study_page
+@dataclass(frozen=True, eq=False)
+class StudyOutcome(Outcome[StudyResults]):
+    """Rows of a study, ``study.nc``, ``study.svg`` where numbers vary, and a page with all."""
 
-    files = [folder / "study.nc"]
-    content = dataset(study_results)
-    write_netcdf(files[0], content)
-    keys = study_results.plan.keys[: study_results.plan.varied]
-    if varied_numbers(content, keys):
-        files.append(folder / "study.svg")
-        save(study(content, keys, study_results.plan.outputs), files[-1])
-    return [*files, write_study_page(study_results, content, folder)]
+    data = "study.nc"
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """Rows along ``row``."""
+        return dataset(self.result)
+
+    @property
+    def lines(self) -> list[str]:
+        """Rows, rate, the first faults, and the files."""
+        rows, computed, spent = self.result.rows, self.result.computed, self.result.seconds
+        rate = f", {computed / spent:.2g} rows/s" if computed else ""
+        failures = self.result.failures
+        lines = [f"{len(rows)} rows, {computed} of them computed in {spent:.1f} s{rate}"]
+        lines += [f"row {row.index} failed: {row.fault}" for row in failures[:5]]
+        if len(failures) > 5:
+            lines.append(f"{len(failures)} rows failed in all; the column fault of rows.csv says why")
+        return [*lines, listed(self.files)]
+
+    @property
+    def status(self) -> int:
+        """Whether rows failed, or all of them with all their outputs."""
+        if not self.result.failures:
+            return 0
+        return SOLVER_FAULT if all(row.lost for row in self.result.rows) else PART_FAILED
+
+    def tables(self, folder: Path) -> list[Path]:
+        """The rows, which are there."""
+        return [folder / ROWS]
+
+    @property
+    def pictures(self) -> dict[str, Picture]:
+        """Every output against the keys that vary, where numbers do."""
+        plan = self.result.plan
+        keys = plan.keys[: plan.varied]
+        draw = partial(figures.study, keys=keys, outputs=plan.outputs)
+        return {"study": draw} if varied_numbers(self.dataset, keys) else {}
+
+    def page(self, folder: Path) -> Path:
+        """Write the page."""
+        return write_study_page(self.result, self.dataset, folder)
 
 
-def summary(study_results: StudyResults) -> list[str]:
-    """Lines for the terminal: rows, rate, and the first faults."""
-    rate = f", {study_results.computed / study_results.seconds:.2g} rows/s" if study_results.computed else ""
-    lines = [
-        f"{len(study_results.rows)} rows, {study_results.computed} of them computed in "
-        f"{study_results.seconds:.1f} s{rate}"
-    ]
-    lines += [f"row {row.index} failed: {row.fault}" for row in study_results.failures[:5]]
-    if len(study_results.failures) > 5:
-        lines.append(
-            f"{len(study_results.failures)} rows failed in all; the column fault of rows.csv says why"
-        )
-    return lines
+def study_outcome(
+    plan: Plan,
+    folder: Path | None,
+    how: Execution = Execution(),
+    progress: Progress = lambda done, total: None,
+) -> StudyOutcome:
+    """Compute the rows of a plan and write what is made of them; parameters as of `flankfilm.studies.run.run_study`.
+
+    Without a folder nothing stays.
+    """
+    with kept_rows(folder, work_of_plan(plan), how.resume) as kept:
+        return concluded(StudyOutcome(computed(plan, kept, how, progress, range(len(plan.rows)))), folder)
+
+
+def listed(files: Sequence[Path]) -> str:
+    """Files in a line."""
+    return ", ".join(map(str, files))

@@ -7,11 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Literal
 
 from base import InputError
 from flankfilm.files.cache import PACKAGES, code_digest
-from flankfilm.files.folder import claim, locked, refuse_irregular
+from flankfilm.files.folder import occupied, refuse_irregular
 from flankfilm.output.files import write_text
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.table import ROWS, Columns, Line, append, forget, read_lines
@@ -67,15 +68,15 @@ class KeptRows:
 
 
 @contextmanager
-def kept_rows(folder: Path, work: Work, resume: bool) -> Iterator[KeptRows]:
+def kept_rows(folder: Path | None, work: Work, resume: bool) -> Iterator[KeptRows]:
     """Take up the rows that a folder holds of some work, and note the work in a folder that holds none.
 
     Rows that failed for want of memory, disk or a process are forgotten, to be computed again.
 
     Parameters
     ----------
-    folder : Path
-        Made when it does not exist; nobody else may use it meanwhile.
+    folder : Path or None
+        Made when it does not exist; nobody else may use it meanwhile. None: one that goes away.
     work : Work
     resume : bool
         Whether to go on from rows that are there.
@@ -86,10 +87,13 @@ def kept_rows(folder: Path, work: Work, resume: bool) -> Iterator[KeptRows]:
         Where the folder cannot be written or another process works there, where it holds rows of something else or of
         other code, or of this work without `resume`.
     """
-    claim(folder, work.data)
-    for path in (folder / ROWS, _note(folder, work)):
-        refuse_irregular(path)
-    with locked(folder):
+    if folder is None:
+        with TemporaryDirectory(prefix="flankfilm-") as place, kept_rows(Path(place), work, resume) as kept:
+            yield kept
+        return
+    with occupied(folder, work.data):
+        for path in (folder / ROWS, _note(folder, work)):
+            refuse_irregular(path)
         digest = code_digest(PACKAGES)
         lines = _rows_there(folder, work, resume, digest)
         plain = {"title": work.title, work.kind: work.identity, "code_sha256": digest}

@@ -13,9 +13,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from base import InputError
+from flankfilm.outcome.outcome import concluded
+from flankfilm.studies.execution import Execution, Progress
+from flankfilm.studies.files import StudyOutcome
 from flankfilm.studies.kept import kept_rows
 from flankfilm.studies.plan import Plan
-from flankfilm.studies.run import StudyResults, refuse_unknown, work_of_plan
+from flankfilm.studies.run import StudyResults, refuse_unknown, run_study, work_of_plan
 from flankfilm.studies.table import ROWS, Line
 
 PARTS = "parts"
@@ -81,8 +84,15 @@ class Part:
         return range(self.number - 1, len(plan.rows), self.of)
 
 
-def merge(plan: Plan, folder: Path) -> StudyResults:
-    """Gather the rows of all parts into ``rows.csv`` of the study's folder.
+def part_outcome(part: Part, plan: Plan, folder: Path, how: Execution, progress: Progress) -> StudyOutcome:
+    """Compute the rows of a part, kept in its place within the study's folder; nothing is made of them yet."""
+    place = part.folder(folder)
+    rows = run_study(plan, place, how, progress, part.rows(plan))
+    return StudyOutcome(rows, place, (place / ROWS,))
+
+
+def merge(plan: Plan, folder: Path) -> StudyOutcome:
+    """Gather the rows of all parts into ``rows.csv`` of the study's folder, and write what is made of them.
 
     Rows that are there already stay; parts may be of any number, and overlap.
 
@@ -97,8 +107,8 @@ def merge(plan: Plan, folder: Path) -> StudyResults:
     InputError
         Where rows are missing, a part is of another study or of other code, or is being computed.
     """
-    start, work = time.perf_counter(), work_of_plan(plan)
-    with kept_rows(folder, work, resume=True) as kept:
+    start = time.perf_counter()
+    with kept_rows(folder, work_of_plan(plan), resume=True) as kept:
         refuse_unknown(folder, kept.lines, plan)
         done = {line.result.index: line.result for line in kept.lines}
         for path, lines in _parts(plan, folder):
@@ -107,16 +117,15 @@ def merge(plan: Plan, folder: Path) -> StudyResults:
                 if line.result.index not in done:
                     kept.add(plan.rows[line.result.index], line.result)
                     done[line.result.index] = line.result
-    missing = [str(index) for index in range(len(plan.rows)) if index not in done]
-    if missing:
-        listed = ", ".join(missing[:MOST_LISTED]) + (", ..." if len(missing) > MOST_LISTED else "")
-        rows = f"{len(missing)} of {len(plan.rows)} rows are missing: {listed}"
-        raise InputError.at(
-            folder, "", rows, "Compute their parts, with --resume where one was begun, and merge again"
-        )
-    return StudyResults(
-        plan, tuple(done[index] for index in range(len(plan.rows))), 0, time.perf_counter() - start
-    )
+        missing = [str(index) for index in range(len(plan.rows)) if index not in done]
+        if missing:
+            listed = ", ".join(missing[:MOST_LISTED]) + (", ..." if len(missing) > MOST_LISTED else "")
+            rows = f"{len(missing)} of {len(plan.rows)} rows are missing: {listed}"
+            remedy = "Compute their parts, with --resume where one was begun, and merge again"
+            raise InputError.at(folder, "", rows, remedy)
+        ordered = tuple(done[index] for index in range(len(plan.rows)))
+        gathered = StudyResults(plan, ordered, 0, time.perf_counter() - start)
+        return concluded(StudyOutcome(gathered), folder)
 
 
 def _parts(plan: Plan, folder: Path) -> Iterator[tuple[Path, tuple[Line, ...]]]:

@@ -11,7 +11,7 @@ from base import Faults, plot, view
 from flankfilm.figures.views import register
 from flankfilm.output.files import cell
 from flankfilm.studies.execution import Execution, Progress
-from flankfilm.studies.kept import Work, kept_rows
+from flankfilm.studies.kept import KeptRows, Work, kept_rows
 from flankfilm.studies.plan import Plan
 from flankfilm.studies.row import Row, RowResult
 from flankfilm.studies.table import ROWS, WITHOUT_IT, Columns, Line
@@ -75,7 +75,7 @@ def run_study(
     progress: Progress = lambda done, total: None,
     rows: Sequence[int] | None = None,
 ) -> StudyResults:
-    """Compute the rows of a plan into ``rows.csv`` of a folder.
+    """Compute the rows of a plan into ``rows.csv`` of a folder, and write nothing else.
 
     Parameters
     ----------
@@ -98,11 +98,18 @@ def run_study(
     InputError
         Where the folder holds another study, or rows of this one without ``resume``.
     """
+    with kept_rows(folder, work_of_plan(plan), how.resume) as kept:
+        return computed(plan, kept, how, progress, range(len(plan.rows)) if rows is None else rows)
+
+
+def computed(
+    plan: Plan, kept: KeptRows, how: Execution, progress: Progress, numbers: Sequence[int]
+) -> StudyResults:
+    """Compute those rows of a plan that are not kept, each kept as it arrives."""
     start = time.perf_counter()
-    numbers = range(len(plan.rows)) if rows is None else rows
-    with kept_rows(folder, work_of_plan(plan), how.resume) as kept, how.staff() as staff:
+    refuse_unknown(kept.path.parent, kept.lines, plan)
+    with how.staff() as staff:
         done = {line.result.index: line.result for line in kept.lines}
-        refuse_unknown(folder, kept.lines, plan)
         missing = [
             Row(index, plan.raw_scene(index), plan.outputs, how.cache)
             for index in numbers

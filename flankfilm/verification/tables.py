@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from base.results import EXACT
 from flankfilm.coupling.mesh.verification import Curves, Verification
 from flankfilm.output.drawing_data import outlines, points
-from flankfilm.output.files import provenance, write_csv, write_netcdf
+from flankfilm.output.files import provenance, write_csv
 from flankfilm.output.variables import identifier, merged, of_models, of_quantities, of_record
 
 if TYPE_CHECKING:
@@ -95,25 +95,14 @@ def dataset(verification: Verification, scene: Scene) -> xr.Dataset:
     return merged(parts, {"title": scene.title, **provenance(scene.model_dump_json())})
 
 
-def write_verification(comparison: Verification, scene: Scene, folder: Path) -> list[Path]:
-    """Write curves and differences as netCDF and CSV, the figure, and a page with all; return the files."""
-    from flankfilm.figures import verification
-    from flankfilm.figures.style import save
-    from flankfilm.verification.page import write_verification_page
-
-    held, files = dataset(comparison, scene), [folder / f"verify.{suffix}" for suffix in ("nc", "svg")]
-    write_netcdf(files[0], held)
-    save(verification(held), files[1])
-    return [*_write_tables(comparison, folder), *files, write_verification_page(comparison, held, folder)]
-
-
 def _column(name: str, verification: Verification) -> list[Any]:
     """One figure of all differences, in per cent where its name says so."""
     values = [getattr(difference, name.removesuffix("_percent")) for difference in verification.differences]
     return [100 * value for value in values] if name.endswith("_percent") else values
 
 
-def _write_tables(verification: Verification, folder: Path) -> list[Path]:
+def write_tables(verification: Verification, folder: Path) -> list[Path]:
+    """Write curves and differences as CSV files; return these."""
     names = "figure unit reference reference_value reference_error_percent model value difference_percent"
     curves = {
         identifier(c.label): c

@@ -8,7 +8,7 @@ import xarray as xr
 
 import flankfilm as ff
 from base import InputError
-from flankfilm.studies.files import write_study
+from flankfilm.studies.files import StudyOutcome
 from flankfilm.studies.plan import plan_of
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.run import StudyResults
@@ -41,7 +41,8 @@ def test_a_run_opens_with_coordinates_units_and_errors(folder):
 def test_a_study_opens_too(tmp_path):
     raw = {"scene": ff_scene(tmp_path), "outputs": ["contact_ratio"], "vary": {"pair.module_mm": [1.5, 2.0]}}
     plan = plan_of(StudyFile.model_validate(raw), tmp_path)
-    write_study(StudyResults(plan, (RowResult(0, (1.6,), 0.1), RowResult(1, (1.7,), 0.1)), 2, 1.0), tmp_path)
+    rows = (RowResult(0, (1.6,), 0.1), RowResult(1, (1.7,), 0.1))
+    StudyOutcome(StudyResults(plan, rows, 2, 1.0)).written(tmp_path)
     data = ff.open_results(tmp_path)
     assert data["pair.module_mm"].values.tolist() == [1.5, 2.0]
     assert data.contact_ratio.values.tolist() == [1.6, 1.7]

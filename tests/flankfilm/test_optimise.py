@@ -15,7 +15,7 @@ from flankfilm import figures
 from flankfilm.building.pair import gear_pair
 from flankfilm.optimisation.files import dataset, phases
 from flankfilm.optimisation.optimum import Evaluation, Optimum
-from flankfilm.optimisation.run import optimise
+from flankfilm.optimisation.run import searched, work_of_task
 from flankfilm.optimisation.search import front
 from flankfilm.optimisation.start import NOT_THERE
 from flankfilm.optimisation.task import read_task
@@ -23,6 +23,7 @@ from flankfilm.optimisation.words import gained, tied
 from flankfilm.scene import read_scene
 from flankfilm.scene.reader import validated
 from flankfilm.studies.execution import Execution
+from flankfilm.studies.kept import kept_rows
 from flankfilm.studies.row import RowResult
 from tests.flankfilm.program import flankfilm
 
@@ -41,6 +42,12 @@ def task_file(folder, wanted, rest=SHIFT):
     scene = (EXAMPLES / "article.toml").as_posix()
     path.write_text(f'scene = "{scene}"\npopulation = 12\n{wanted}\n{rest}', encoding="utf-8")
     return path
+
+
+def optimise(task, folder, how):
+    """The search alone, without its files."""
+    with kept_rows(folder, work_of_task(task), how.resume) as kept:
+        return searched(task, kept, how, lambda done, total: None)
 
 
 def balance(task, shift):

@@ -71,12 +71,12 @@ def test_missing_rows_are_named(tmp_path, plan):
     with pytest.raises(InputError, match=re.escape("3 of 8 rows are missing: 1, 4, 7")):
         merge(plan, tmp_path / "out")
     computed(plan, tmp_path / "out", Part(2, 3))
-    assert [row.index for row in merge(plan, tmp_path / "out").rows] == list(range(8))
+    assert [row.index for row in merge(plan, tmp_path / "out").result.rows] == list(range(8))
 
 
 def test_parts_of_several_divisions_join(tmp_path, plan):
     computed(plan, tmp_path / "out", Part(1, 2), Part(1, 4), Part(2, 4), Part(4, 4))
-    assert len(merge(plan, tmp_path / "out").rows) == 8
+    assert len(merge(plan, tmp_path / "out").result.rows) == 8
 
 
 def test_a_part_begins_again_only_with_resume(tmp_path, plan):

@@ -9,8 +9,8 @@ from base import InputError
 from flankfilm.building.pair import gear_pair
 from flankfilm.coupling.mesh.verification import POINTS, UNITS, mesh_figures, single_figures, stations
 from flankfilm.scene import parse_scene, read_scene
-from flankfilm.verification.run import unknown_over_face, verify_scene
-from flankfilm.verification.tables import face_table, write_verification
+from flankfilm.verification.run import unknown_over_face, verification_outcome
+from flankfilm.verification.tables import face_table
 from gears import BasicRack, Gear, GearPair, closed_form
 from gears.sharing.events import Sampled, arcs_between_events
 from gears.sharing.mesh_figures import CURVES, MeshArcs
@@ -134,14 +134,14 @@ def test_the_load_over_the_face_stands_beside_slices_and_iso(tmp_path):
     import pandas as pd
 
     scene = parse_scene(FACE)
-    found = verify_scene(scene, None, use_cache=False)
-    over = found.over_face
+    outcome = verification_outcome(scene, tmp_path, use_cache=False)
+    over = outcome.result.over_face
     assert over.model == ("between walls", "independent slices", "ISO 6336-1, method C")
     first, slices, iso = over.pitch_point_factor
     assert iso == closed_form.iso6336_face_load(gear_pair(scene), 100.0, 20e-6).K_Hbeta
     np.testing.assert_allclose(over.factor_difference, [0.0, slices / first - 1.0, iso / first - 1.0])
     assert over.factor_difference[1] < -0.01  # slices bear too evenly
-    files = {path.name for path in write_verification(found, scene, tmp_path)}
+    files = {path.name for path in outcome.files}
     assert {"verify_face.csv", "verify_line_load.csv"} <= files
     table = pd.read_csv(tmp_path / "verify_face.csv")
     np.testing.assert_allclose(table.difference_percent, 100 * over.factor_difference, rtol=1e-6, atol=1e-12)
