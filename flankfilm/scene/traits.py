@@ -34,17 +34,18 @@ def given_keys(
     >>> [(path, value) for path, _, value in given_keys({"teeth": 36, "hub": {"hub_mm": 40.0}}, GearSection)]
     [('teeth', 36), ('hub', {'hub_mm': 40.0}), ('hub.hub_mm', 40.0)]
     """
-    tables = []
+    tables: list[tuple[Mapping[str, Any] | Section, type[BaseModel], str]] = []
     for name, field in model.model_fields.items():
         value = table.get(name) if isinstance(table, Mapping) else getattr(table, name)
         if value is None:
             continue
         yield f"{path}{name}", key_of(field), value
-        inner = model_in(field.annotation)
-        if inner is not None and isinstance(value, Mapping | Section):
-            tables.append((value, type(value) if isinstance(value, Section) else inner, f"{path}{name}."))
-    for value, inner, start in tables:
-        yield from given_keys(value, inner, start)
+        if isinstance(value, Section):
+            tables.append((value, type(value), f"{path}{name}."))
+        elif isinstance(value, Mapping) and (inner := model_in(field.annotation)) is not None:
+            tables.append((value, inner, f"{path}{name}."))
+    for inside, of, start in tables:
+        yield from given_keys(inside, of, start)
 
 
 def named(path: str) -> str:
