@@ -1,3 +1,8 @@
+from .closed_forms import closed_form as closed_form
+from .closed_forms import single_pairs as single_pairs
+from .closed_forms import verification as verification
+from .curves import curves as curves
+from .curves import film_response as film_response
 from .drives import drive_map as drive_map
 from .drives import drive_modes as drive_modes
 from .drives import drive_run_up as drive_run_up
@@ -20,6 +25,7 @@ from .gear import gears_in_mesh as gears_in_mesh
 from .gear import kinematics as kinematics
 from .gear import root_stress as root_stress
 from .gear import tooth_stress as tooth_stress
+from .heat import heat_along_path as heat_along_path
 from .heat import losses_along_path as losses_along_path
 from .heat import temperature_field as temperature_field
 from .heat import temperatures_along_path as temperatures_along_path
@@ -29,6 +35,11 @@ from .motion import resonance as resonance
 from .motion import sweep as sweep
 from .optima import optimum as optimum
 from .optima import optimum_map as optimum_map
+from .orbits import attractors as attractors
+from .orbits import basins as basins
+from .orbits import exponents as exponents
+from .orbits import locus as locus
+from .orbits import trajectory as trajectory
 from .rendering.animation import Frame as Frame
 from .rendering.animation import animate_cycle as animate_cycle
 from .rendering.animation import teeth_scene as teeth_scene
@@ -39,10 +50,9 @@ from .speeds import run_up as run_up
 from .speeds import waterfall as waterfall
 from .stiffness import fourier as fourier
 from .stiffness import load_share as load_share
+from .stiffness import mesh_cycle as mesh_cycle
 from .stiffness import mesh_stiffness as mesh_stiffness
 from .stiffness import over_torque as over_torque
 from .stiffness import revolution as revolution
-from .stiffness import single_pairs as single_pairs
 from .stiffness import transmission_error as transmission_error
-from .stiffness import verification as verification
 from .studies import study as study

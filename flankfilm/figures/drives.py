@@ -99,7 +99,7 @@ def drive_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     with sheet(style, len(panels_of), height=1.2 + 1.9 * len(panels_of), legend=0) as (drawn, panels):
         for axes, (label, values) in zip(panels, panels_of, strict=True):
             for row, load, colour in zip(values, torques, 5 * colours(7), strict=False):
-                axes.plot(speed.values, row, color=colour, label=f"{load:g} N m")
+                axes.plot(speed.values, row, color=colour, linestyle="-", label=f"{load:g} N m")
             _mark(axes, marks, speed.values)
             axes.set_ylabel(label)
         legend_over(panels[0], 5)
@@ -155,15 +155,20 @@ def _mark(axes: Axes, marks: Array, over: Array) -> None:
 
 
 def resonances(results: xr.Dataset, speeds: bool = True) -> Array:
-    """Pinion speeds [rpm], or frequencies over the pair's, at which the mesh meets the natural ones of the train."""
+    """Pinion speeds [rpm], or frequencies over the pair's, at which the mesh meets the natural ones of the train.
+
+    None where the train is not known.
+    """
     if not speeds:
         natural = results["drive_natural_frequencies"].values
         return np.asarray(natural / float(results["oscillator_natural_frequency"]))
+    if "drive_resonance_speeds" not in results:
+        return np.zeros(0)
     return read(results, "drive_resonance_speeds").values
 
 
 def drive_modes(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw the displacements of every freedom in every mode of the drive train.
+    """Draw the displacements of every freedom in every mode of the drive train, the largest of each mode 1.
 
     Parameters
     ----------
@@ -174,19 +179,9 @@ def drive_modes(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """
     need(results, DRIVE, "drive_mode_shapes", "drive_natural_frequencies")
     names = [str(name) for name in results["drive_freedoms"].values]
-    return modes(
-        results["drive_natural_frequencies"].values,
-        results["drive_mode_shapes"].values,
-        results["drive_mesh_share"].values,
-        names,
-        style,
+    frequencies, shapes, shares = (
+        results[f"drive_{name}"].values for name in ("natural_frequencies", "mode_shapes", "mesh_share")
     )
-
-
-def modes(
-    frequencies: Array, shapes: Array, shares: Array, names: Sequence[str], style: Style | None = None
-) -> Figure:
-    """Draw a table of modes: colour and number are displacements, the largest of each mode 1."""
     with sheet(style, height=1.6 + 0.3 * len(frequencies), legend=0) as (drawn, (axes,)):
         shade = axes.imshow(shapes, cmap="RdBu_r", vmin=-1.0, vmax=1.0, aspect="auto")
         for (row, column), value in np.ndenumerate(shapes):

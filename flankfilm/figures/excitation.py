@@ -103,11 +103,13 @@ def spectrum(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         if f"spectrum_{figure}" in results.variables:
             reading = read(results, f"spectrum_{figure}")
             shown.append((reading.values.max(axis=1), reading.named(label)))
-    with sheet(style, len(shown), height=1.0 + 1.9 * len(shown), legend=2) as (drawn, panels):
+    modes = results["spectrum_mode_order"].values if "spectrum_mode_order" in results else np.zeros(0)
+    at = f", at {rpm_text(results)}" if "spectrum_frequency" in results else ""
+    with sheet(style, len(shown), height=1.0 + 1.9 * len(shown), legend=3) as (drawn, panels):
         for axes, (values, label) in zip(panels, shown, strict=True):
-            _lines(axes, order, values, results["spectrum_mode_order"].values)
+            _lines(axes, order, values, modes)
             axes.set_ylabel(label)
-        panels[-1].set(xlabel=f"mesh order [-], at {rpm_text(results)}")
+        panels[-1].set(xlabel=f"mesh order [-]{at}")
     return drawn
 
 

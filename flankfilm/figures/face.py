@@ -2,35 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array
-from flankfilm.figures.of_records import curves
 from flankfilm.figures.panels import curves as family
-from flankfilm.figures.panels import mark_path, over_path, over_two_pitches
-from flankfilm.figures.reading import Reading, need, read, read_figure
-from flankfilm.figures.style import Style, colours, from_zero, sheet
+from flankfilm.figures.panels import over_path, over_two_pitches
+from flankfilm.figures.reading import Reading, need, read
+from flankfilm.figures.style import Style, from_zero, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    import fem
-    from flankfilm import coupling
-
 FACE = "run a scene whose pair has a lead or an alignment"
+
+DRY_FACE = "dry_face"
+"""Prefix of what the face bears without a film."""
 
 MAPS = ("line_load", "hertz_pressure")
 """Figures of the cells that are painted."""
-
-
-FILMS = ("line_load", "minimum_thickness")
-"""Figures of the cells' films that are painted."""
 
 TIMES_LEAST = 1.5
 """How many times the minimum film colours resolve."""
@@ -102,7 +97,7 @@ class FlankMap:
         axes.set(ylabel="place on the\nface [mm]", ylim=(-half, half))
 
 
-def flank_map(results: xr.Dataset, *, prefix: str = "dry_face", style: Style | None = None) -> Figure:
+def flank_map(results: xr.Dataset, *, prefix: str = DRY_FACE, style: Style | None = None) -> Figure:
     """Draw line load and Hertz pressure over path and face.
 
     Parameters
@@ -114,15 +109,19 @@ def flank_map(results: xr.Dataset, *, prefix: str = "dry_face", style: Style | N
     style : mapping, optional
         rcParams that overrule the house's; ``image.cmap`` is the scale of colours.
     """
-    places = [f"{prefix}_{name}" for name in ("travel", "face_position")]
-    painted = [f"{prefix}_{name}" for name in MAPS]
-    need(results, FACE, *places, *painted, "path_point_rho1")
-    travel, face = (read(results, name) for name in places)
-    with sheet(style, len(painted), height=2.3 * len(painted), legend=0) as (drawn, panels):
-        for axes, name in zip(panels, painted, strict=True):
-            FlankMap.of(travel, face, read(results, name)).paint(axes)
-        over_path(results, *panels)
+    with sheet(style, len(MAPS), height=2.3 * len(MAPS), legend=0) as (drawn, panels):
+        paint(results, prefix, dict(zip(MAPS, panels, strict=True)))
     return drawn
+
+
+def paint(results: xr.Dataset, prefix: str, panels: Mapping[str, Axes]) -> None:
+    """Paint figures of the cells, each in its panel, with the points of the path."""
+    places = [f"{prefix}_{name}" for name in ("travel", "face_position")]
+    need(results, FACE, *places, *(f"{prefix}_{name}" for name in panels), "path_point_rho1")
+    travel, face = (read(results, name) for name in places)
+    for name, axes in panels.items():
+        FlankMap.of(travel, face, read(results, f"{prefix}_{name}")).paint(axes)
+    over_path(results, *panels.values())
 
 
 def film_map(results: xr.Dataset, *, prefix: str = "film_face", style: Style | None = None) -> Figure:
@@ -159,12 +158,17 @@ def face_load_factor(results: xr.Dataset, *, prefix: str = "dry_face", style: St
     results, prefix, style
         As of `flank_map`.
     """
+    with sheet(style, height=2.4, legend=0) as (drawn, (axes,)):
+        factor(axes, results, prefix)
+    return drawn
+
+
+def factor(axes: Axes, results: xr.Dataset, prefix: str) -> None:
+    """Draw the face-load factor over two base pitches into a panel."""
     position, name = f"{prefix.removesuffix('_face')}_position", f"{prefix}_face_load_factor"
     need(results, FACE, position, name)
-    with sheet(style, height=2.4, legend=0) as (drawn, (axes,)):
-        over_two_pitches(axes, read(results, position), {"": read(results, name)}, "face-load factor")
-        axes.set_ylim(bottom=1.0)
-    return drawn
+    over_two_pitches(axes, read(results, position), {"": read(results, name)}, "face-load factor")
+    axes.set_ylim(bottom=1.0)
 
 
 def line_load_models(results: xr.Dataset, *, style: Style | None = None) -> Figure:
@@ -179,62 +183,14 @@ def line_load_models(results: xr.Dataset, *, style: Style | None = None) -> Figu
     """
     face, load, model = (f"face_models_{name}" for name in ("face_position", "line_load", "model"))
     need(results, FACE, face, load, model)
-    return _by_models(read(results, face), read(results, load), tuple(map(str, results[model].values)), style)
-
-
-def face_loads(loads: fem.FaceLoads) -> Figure:
-    """Draw line load and Hertz pressure over path and face."""
-    with sheet(None, len(MAPS), height=2.3 * len(MAPS), legend=0) as (drawn, panels):
-        _painted(panels, loads, MAPS)
-    return drawn
-
-
-def face_films(films: coupling.FaceFilms) -> Figure:
-    """Draw line load and minimum film over path and face."""
-    span = _thin(read_figure(films, "minimum_thickness"))
-    with sheet(None, len(FILMS), height=2.3 * len(FILMS), legend=0) as (drawn, panels):
-        _painted(panels, films, FILMS, {"minimum_thickness": span})
-    return drawn
-
-
-def loaded_contact(cycle: fem.MeshCycle) -> Figure:
-    """Draw stiffness and transmission error, or what the face bears where it has cells."""
-    if cycle.face is None:
-        return curves(cycle)
-    with sheet(None, 3, height=6.4, legend=0, sharex=False) as (drawn, panels):
-        _painted(panels[:1], cycle.face, MAPS[:1])
-        at = read_figure(cycle, "position")
-        factor, error = read_figure(cycle.face, "face_load_factor"), read_figure(cycle, "transmission_error")
-        for axes, reading, label in zip(
-            panels[1:],
-            (factor, error),
-            ("face-load factor [-]", "transmission\nerror [µm]"),
-            strict=True,
-        ):
-            axes.plot(at.values, reading.values, color=colours(1)[0])
-            axes.set(ylabel=label, xlabel=at.label)
-        panels[1].sharex(panels[2])
-        panels[1].tick_params(labelbottom=False)
-        panels[1].set_xlabel("")
-    return drawn
-
-
-def face_models(models: coupling.FaceLoadModels) -> Figure:
-    """Draw the line load over the face of a comparison of models."""
-    return _by_models(
-        read_figure(models, "face_position"), read_figure(models, "line_load"), models.model, None
-    )
-
-
-def _by_models(face: Reading, load: Reading, labels: tuple[str, ...], style: Style | None) -> Figure:
-    """Curve of each model that has an answer."""
+    shown, labels = read(results, load), tuple(map(str, results[model].values))
     known = {
-        label: Reading(values, load.meaning, load.unit)
-        for label, values in zip(labels, load.values, strict=True)
+        label: replace(shown, values=values)
+        for label, values in zip(labels, shown.values, strict=True)
         if np.isfinite(values).all()
     }
     with sheet(style, height=3.0, legend=4) as (drawn, (axes,)):
-        family(axes, face.values, known, "line load at the pitch point")
+        family(axes, read(results, face).values, known, "line load at the pitch point")
         axes.set_xlabel("place on the face [mm]")
         from_zero(axes)
     return drawn
@@ -244,17 +200,3 @@ def _thin(film: Reading) -> tuple[float, float]:
     """Span of the films that count: from the smallest to some times as much, if there are any so thick."""
     least, most = float(np.nanmin(film.values)), float(np.nanmax(film.values))
     return least, min(TIMES_LEAST * least, most)
-
-
-def _painted(
-    panels: Sequence[Axes],
-    record: fem.FaceLoads | coupling.FaceFilms,
-    names: Sequence[str],
-    spans: Mapping[str, tuple[float, float]] | None = None,
-) -> None:
-    """Paint figures of the cells of a record, over given spans, with the points of its pair's path."""
-    travel, face = read_figure(record, "travel"), read_figure(record, "face_position")
-    for axes, name in zip(panels, names, strict=True):
-        FlankMap.of(travel, face, read_figure(record, name)).paint(axes, (spans or {}).get(name))
-    points = record.pair.points
-    mark_path({name: 1e3 * (getattr(points, name) - points.A) for name in "ABCDE"}, *panels)

@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flankfilm.figures.face import FlankMap
-from flankfilm.figures.reading import GEARS, Reading, need, read, read_figure
+from flankfilm.figures.reading import GEARS, Reading, need, read
 from flankfilm.figures.style import Style, colours, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from fem.stress.gear_root import FaceRootStress
 
 NEEDED = 'run a scene that wants "root-stress" and whose pair has a lead or an alignment'
 
@@ -31,31 +29,24 @@ def root_face_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     Parameters
     ----------
     results : xarray.Dataset
-        Of a run that wants ``root-stress`` and whose pair has a lead or an alignment.
+        Of a run that wants ``root-stress`` and whose pair has a lead or an alignment, or of one gear's record.
     style : mapping, optional
         rcParams that overrule the house's; ``image.cmap`` is the scale of colours.
     """
-    names = {gear: [f"root_face_{gear}_{name}" for name in SHOWN] for gear in GEARS}
+    gears = {gear: f"root_face_{gear}" for gear in GEARS}
+    if "root_face_tension" in results:
+        gears = {"root": "root_face"}
+    names = {gear: [f"{prefix}_{name}" for name in SHOWN] for gear, prefix in gears.items()}
     need(results, NEEDED, *(name for of_gear in names.values() for name in of_gear))
-    with sheet(style, 3, height=6.8, legend=0, sharex=False) as (drawn, panels):
-        for axes, gear, colour in zip(panels, GEARS, colours(2), strict=False):
+    rows = 1 + len(gears)
+    with sheet(style, rows, height=2.27 * rows, legend=0, sharex=False) as (drawn, panels):
+        for axes, gear, colour in zip(panels, gears, colours(2), strict=False):
             travel, face, tension, most = (read(results, name) for name in names[gear])
             _paint(axes, gear, travel, face, tension)
-            panels[2].plot(face.values, most.values, color=colour, label=gear)
-        panels[2].set(xlabel="place on the face [mm]", ylabel=f"maximum of a\ncycle [{most.unit}]")
-        from_zero(panels[2])
-        legend_over(panels[2], 2)
-    return drawn
-
-
-def face_root_stress(stress: FaceRootStress) -> Figure:
-    """Draw one gear's maximum tension over the way of a tooth and the face, and that of a cycle over the face."""
-    travel, face, tension, most = (read_figure(stress, name) for name in SHOWN)
-    with sheet(None, 2, height=4.6, legend=0, sharex=False) as (drawn, panels):
-        _paint(panels[0], "root", travel, face, tension)
-        panels[1].plot(face.values, most.values, color=colours(1)[0])
-        panels[1].set(xlabel="place on the face [mm]", ylabel=f"{most.meaning}\n[{most.unit}]")
-        from_zero(panels[1])
+            panels[-1].plot(face.values, most.values, color=colour, label=gear)
+        panels[-1].set(xlabel="place on the face [mm]", ylabel=f"maximum of a\ncycle [{most.unit}]")
+        from_zero(panels[-1])
+        legend_over(panels[-1], 2)
     return drawn
 
 

@@ -43,7 +43,7 @@ def film_along_path(results: xr.Dataset, *, style: Style | None = None) -> Figur
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, FILM, "film_rho1", "film_central_thickness", "path_point_rho1")
+    need(results, FILM, "film_rho1", "film_central_thickness")
     at, pressure = travel(results, "film_rho1"), read(results, "film_hertz_pressure")
     films = {f"{name} film": read(results, f"film_{name}_thickness") for name in ("central", "minimum")}
     with sheet(style, 2, height=4.2, height_ratios=(3, 2)) as (drawn, (upper, lower)):

@@ -9,7 +9,7 @@ import numpy as np
 
 from base import Array
 from flankfilm.figures.panels import curves, over_path
-from flankfilm.figures.reading import need, read, text, travel
+from flankfilm.figures.reading import Reading, need, read, text, travel
 from flankfilm.figures.style import Style, colours, legend_over, sheet
 
 if TYPE_CHECKING:
@@ -127,35 +127,40 @@ def kinematics(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, PAIR, "path_rho1", "path_point_rho1", "path_specific_sliding")
-    at, known = travel(results, "path_rho1"), "path_sliding" in results
+    need(results, PAIR, "path_rho1", "path_rho2", "path_radius")
+    at = travel(results, "path_rho1")
+    speeds, slides = (f"path_{name}" in results for name in ("sliding", "specific_sliding"))
     radii = {"pinion, R1": "path_rho1", "wheel, R2": "path_rho2", "reduced, R": "path_radius"}
-    with sheet(style, 2 + known, height=6.6 if known else 4.6) as (drawn, panels):
+    rows = 1 + speeds + slides
+    with sheet(style, rows, height=0.6 + 2.0 * rows) as (drawn, panels):
         curves(
             panels[0], at, {label: read(results, name) for label, name in radii.items()}, "curvature radius"
         )
-        if known:
+        if speeds:
             mean, sliding = read(results, "path_entrainment"), read(results, "path_sliding")
             flanks = {"pinion, u1": 0.5, "wheel, u2": -0.5}
-            speeds = {
+            velocities = {
                 n: replace(mean, values=mean.values + part * sliding.values) for n, part in flanks.items()
             }
-            speeds |= {mean.meaning: mean, sliding.meaning: sliding}
-            curves(panels[1], at, speeds, "velocity")
+            velocities |= {mean.meaning: mean, sliding.meaning: sliding}
+            curves(panels[1], at, velocities, "velocity")
             legend_over(panels[1], 4)
-        sliding = read(results, "path_specific_sliding")
-        flank = {
-            name: replace(sliding, values=of_flank)
-            for name, of_flank in zip(
-                ("pinion, (u1 - u2)/u1", "wheel, (u2 - u1)/u2"), sliding.values.T, strict=True
-            )
-        }
-        curves(panels[-1], at, flank)
-        # unbounded where a flank stands still, on its base circle
-        panels[-1].set_ylim(bottom=max(-SLIDING_SHOWN, 1.08 * float(sliding.values.min())))
-        legend_over(panels[-1], 2)
+        if slides:
+            _specific_sliding(panels[-1], at, read(results, "path_specific_sliding"))
         over_path(results, *panels)
     return drawn
+
+
+def _specific_sliding(axes: Axes, at: Array, sliding: Reading) -> None:
+    """Draw the specific sliding of both flanks."""
+    names = "pinion, (u1 - u2)/u1", "wheel, (u2 - u1)/u2"
+    flanks = {
+        name: replace(sliding, values=values) for name, values in zip(names, sliding.values.T, strict=True)
+    }
+    curves(axes, at, flanks)
+    # unbounded where a flank stands still, on its base circle
+    axes.set_ylim(bottom=max(-SLIDING_SHOWN, 1.08 * float(sliding.values.min())))
+    legend_over(axes, 2)
 
 
 def tooth_stress(results: xr.Dataset, *, style: Style | None = None) -> Figure:

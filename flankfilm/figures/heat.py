@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,24 +39,30 @@ def losses_along_path(results: xr.Dataset, *, style: Style | None = None) -> Fig
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, LOSSES, "losses_path_rho1", "path_point_rho1")
+    with sheet(style, 3, height=5.8, height_ratios=(3, 3, 2), legend=2) as (drawn, panels):
+        _losses(panels, results)
+        over_path(results, *panels)
+    return drawn
+
+
+def _losses(panels: Sequence[Axes], results: xr.Dataset) -> None:
+    """Draw friction, power, and pressure times sliding into three panels."""
+    need(results, LOSSES, "losses_path_rho1", "losses_path_friction_coefficient")
+    upper, middle, lower = panels
     at, stress = travel(results, "losses_path_rho1"), read(results, "losses_path_pressure_times_sliding")
     friction = read(results, "losses_path_friction_coefficient")
-    lost = {way: read(results, f"losses_path_{way}_loss") for way in ("sliding", "rolling")}
-    band = results["losses_band_friction_coefficient"].values
-    stresses = read(results, "losses_band_eyring_stress").values
-    with sheet(style, 3, height=5.8, height_ratios=(3, 3, 2), legend=2) as (drawn, (upper, middle, lower)):
-        curves(middle, at, {f"lost by {way}": power for way, power in lost.items()}, "power of one contact")
-        ends = " to ".join(f"{stress:g}" for stress in np.sort(stresses))
-        upper.fill_between(at, *band, color=BAND, label=f"Eyring stress {ends} MPa")
-        upper.plot(at, friction.values, color=colours(3)[2], label="this run's")
-        upper.set(ylabel=friction.named("coefficient of friction"))
-        lower.plot(at, 1e-9 * stress.values, color=colours(4)[3])
-        lower.set(ylabel="Hertz pressure ×\nsliding [GPa m/s]")
-        from_zero(upper, middle, lower)
-        over_path(results, upper, middle, lower)
-        legend_over(middle, 2)
-    return drawn
+    lost = {f"lost by {way}": read(results, f"losses_path_{way}_loss") for way in ("sliding", "rolling")}
+    if "losses_band_eyring_stress" in results:
+        stresses = np.sort(read(results, "losses_band_eyring_stress").values)
+        ends, band = " to ".join(f"{end:g}" for end in stresses), results["losses_band_friction_coefficient"]
+        upper.fill_between(at, *band.values, color=BAND, label=f"Eyring stress {ends} MPa")
+    upper.plot(at, friction.values, color=colours(3)[2], label="this run's")
+    upper.set(ylabel=friction.named("coefficient of friction"))
+    curves(middle, at, lost, "power of one contact")
+    lower.plot(at, 1e-9 * stress.values, color=colours(4)[3])
+    lower.set(ylabel="Hertz pressure ×\nsliding [GPa m/s]")
+    from_zero(upper, middle, lower)
+    legend_over(middle, 2)
 
 
 def temperatures_along_path(results: xr.Dataset, *, style: Style | None = None) -> Figure:
@@ -67,31 +75,55 @@ def temperatures_along_path(results: xr.Dataset, *, style: Style | None = None) 
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, LOSSES, "losses_path_rho1", "path_point_rho1")
+    with sheet(style, 2, height=4.8, height_ratios=(3, 2), legend=2) as (drawn, panels):
+        _temperatures(panels, results)
+        over_path(results, *panels)
+    return drawn
+
+
+def heat_along_path(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw friction, power and pressure times sliding, and below them temperatures and film.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``losses``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    with sheet(style, 5, height=10.4, height_ratios=(3, 3, 2.4, 3, 2.4), legend=2) as (drawn, panels):
+        _losses(panels[:3], results)
+        _temperatures(panels[3:], results)
+        over_path(results, *panels)
+        legend_over(panels[3], 2)
+    return drawn
+
+
+def _temperatures(panels: Sequence[Axes], results: xr.Dataset) -> None:
+    """Draw temperature rises, and the film with and without heat, into two panels."""
+    need(results, LOSSES, "losses_path_rho1", "losses_path_surface_temperature_rise")
+    upper, lower = panels
     at, flanks = travel(results, "losses_path_rho1"), read(results, "losses_path_surface_temperature_rise")
     rises = {"oil, maximum": read(results, "losses_path_oil_temperature_rise")}
     rises |= {
-        f"flank of the {gear}": Reading(flanks.values[k], flanks.meaning, flanks.unit)
-        for k, gear in enumerate(GEARS)
+        f"flank of the {gear}": replace(flanks, values=rise)
+        for gear, rise in zip(GEARS, flanks.values, strict=True)
     }
     rises[BLOK] = read(results, "losses_path_flash_temperature")
-    with sheet(style, 2, height=4.8, height_ratios=(3, 2), legend=2) as (drawn, (upper, lower)):
-        curves(upper, at, rises, "rise above the bulk temperature")
-        films = {"minimum film with heat": (at, read(results, "losses_path_minimum_thickness"))}
-        if "film_minimum_thickness" in results:
-            isothermal = read(results, "film_minimum_thickness")
-            films["isothermal"] = travel(results, "film_rho1"), isothermal
-        for (label, (places, film)), colour, dash in zip(
-            films.items(), colours(6)[4:], ("-", "--"), strict=False
-        ):
-            lower.plot(places, film.values, color=colour, linestyle=dash, label=label)
-            lower.set(ylabel=film.named("minimum film"))
-        from_zero(upper)
-        films_from_zero(lower)
-        over_path(results, upper, lower)
-        if len(films) > 1:
-            legend_over(lower, 2)
-    return drawn
+    curves(upper, at, rises, "rise above the\nbulk temperature")
+    films = {"minimum film with heat": (at, read(results, "losses_path_minimum_thickness"))}
+    if "film_minimum_thickness" in results:
+        isothermal = read(results, "film_minimum_thickness")
+        films["isothermal"] = travel(results, "film_rho1"), isothermal
+    for (label, (places, film)), colour, dash in zip(
+        films.items(), colours(6)[4:], ("-", "--"), strict=False
+    ):
+        lower.plot(places, film.values, color=colour, linestyle=dash, label=label)
+        lower.set(ylabel=film.named("minimum film"))
+    from_zero(upper)
+    films_from_zero(lower)
+    if len(films) > 1:
+        legend_over(lower, 2)
 
 
 def temperature_field(results: xr.Dataset, *, style: Style | None = None) -> Figure:

@@ -20,7 +20,12 @@ if TYPE_CHECKING:
 SMOOTH = 5000
 """Most points of a curve that is drawn as a curve; longer ones become pixels, so that files stay small."""
 
-MARKS = {"saddle-node": ("o", COLOURS[5]), "period-doubling": ("s", COLOURS[1]), "grazing": ("x", "#555555")}
+MARKS = {
+    "saddle-node": ("o", COLOURS[5]),
+    "period-doubling": ("s", COLOURS[1]),
+    "grazing": ("x", "#555555"),
+    "neimark-sacker": ("D", COLOURS[2]),
+}
 """Mark and colour of each kind of special point."""
 
 SWEEP = 'run a scene that wants "sweep"'
@@ -36,9 +41,10 @@ def sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, SWEEP, "sweep_frequency", "sweep_up", "sweep_down")
+    ways = [way for way in ("up", "down") if f"sweep_{way}" in results] or ["up", "down"]
+    need(results, SWEEP, "sweep_frequency", *(f"sweep_{way}" for way in ways))
     parameter = over_speed(results, "sweep")
-    rows = {d: [str(n) for n in results[f"sweep_{d}_label"].values] for d in ("up", "down")}
+    rows = {d: [str(n) for n in results[f"sweep_{d}_label"].values] for d in ways}
     names = _most_frequent([label for row in rows.values() for label in row], 8)
     rest = ["other"] if any(label not in names for row in rows.values() for label in row) else []
     below = 0.19 * max(4, len(names) + len(rest))
@@ -46,7 +52,7 @@ def sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         pair = colours(6)[5], colours(1)[0]
         # the larger dots lie below, so that both show where the sweeps agree
         length = scale(results, "length")
-        for direction, colour, size in zip(rows, pair, (3.4, 1.3), strict=True):
+        for direction, colour, size in zip(rows, pair, (3.4, 1.3), strict=False):
             points = results[f"sweep_{direction}"].values
             x, y = np.repeat(parameter.values, points.shape[1]), length.values * points[:, :, 0].ravel()
             upper.plot(x, y, ".", color=colour, markersize=size, rasterized=True)
@@ -55,7 +61,7 @@ def sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         if length.unit != "-":
             beside(upper, float(length.values), "over the length scale [-]")
             beside(upper, rpm_of_one(results), "mesh over natural frequency [-]", "top")
-        for row, colour, shift in zip(rows.values(), pair, (0.12, -0.12), strict=True):
+        for row, colour, shift in zip(rows.values(), pair, (0.12, -0.12), strict=False):
             height = np.array([names.index(label) if label in names else len(names) for label in row])
             lower.plot(parameter.values, height + shift, ".", color=colour, markersize=2, rasterized=True)
         lower.set_yticks(range(len(names) + len(rest)), [*names, *rest])
@@ -191,13 +197,26 @@ def diagram(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     need(
         results, 'run a scene that wants "diagram"', "diagram_branch", "special_kind", "special_displacement"
     )
-    forces = results["force_frequency"].size > 0
-    with sheet(style, 1 + forces, height=5.6 if forces else 3.6) as (drawn, panels):
+    forces = "force_frequency" in results and results["force_frequency"].size > 0
+    with sheet(style, 1 + forces, height=5.6 if forces else 3.6, legend=4) as (drawn, panels):
+        _jumps(panels[0], results)
         _branches(panels[0], results)
         if forces:
             _forces(panels[1], results)
         panels[-1].set(xlabel=over_speed(results, "diagram").label)
     return drawn
+
+
+def _jumps(axes: Axes, results: xr.Dataset) -> None:
+    """Draw where a stable motion ends, with the error of the place."""
+    if "jump_error" not in results:
+        return
+    places = over_speed(results, "jump").values.tolist()
+    for number, (at, error) in enumerate(zip(places, results["jump_error"].values.tolist(), strict=True)):
+        if np.isfinite(error):
+            axes.axvspan(at * (1.0 - error), at * (1.0 + error), color="#dddddd", zorder=0)
+        label = None if number else "jump, with its error"
+        axes.axvline(at, color=MARK, linestyle="-", linewidth=0.8, zorder=0, label=label)
 
 
 def _branches(axes: Axes, results: xr.Dataset) -> None:
@@ -209,9 +228,13 @@ def _branches(axes: Axes, results: xr.Dataset) -> None:
             keep[1:] |= keep[:-1].copy()
             height = np.where(keep, float(length.values) * heights, np.nan)
             axes.plot(values, height, dash, color=colour, linewidth=width)
+    for label, dash, width in (("stable", "-", 1.4), ("unstable", "--", 0.6)):
+        axes.plot([], [], dash, color=colour, linewidth=width, label=label)
     kinds = results["special_kind"].values
     for kind, (mark, shade) in MARKS.items():
         mine = kinds == kind
+        if not mine.any():
+            continue
         at = over_speed(results, "special").values[mine]
         height = float(length.values) * results["special_displacement"].values[mine]
         axes.plot(at, height, mark, color=shade, markersize=3.5, linestyle="none", label=kind)

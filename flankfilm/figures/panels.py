@@ -20,6 +20,8 @@ NARROW = 0.03
 
 PATH_LABEL = "travel along the path of contact from A [mm]"
 
+RADIUS_LABEL = "radius of curvature of the pinion's flank [mm]"
+
 
 def curves(axes: Axes, x: Array, family: Mapping[str, Reading], meaning: str = "", **options: Any) -> None:
     """Draw curves by their labels in the style's colours and dashes, and title the vertical axis.
@@ -89,20 +91,15 @@ def beside(axes: Axes, scale: float, label: str, way: str = "right") -> None:
 
 
 def over_path(results: xr.Dataset, *panels: Axes) -> None:
-    """Mark A to E in panels over the travel along the path, name them above the first, and title the last."""
-    places = travel(results, "path_point_rho1").tolist()
-    mark_path(dict(zip(map(str, results["path_point"].values), places, strict=True)), *panels)
+    """Mark A to E in panels over the travel along the path, name them above the first, and title the last.
 
-
-def mark_path(points: Mapping[str, float], *panels: Axes) -> None:
-    """Mark points in panels over the travel along the path; arguments as of `over_path`.
-
-    Parameters
-    ----------
-    points : mapping
-        Name to travel [mm].
-    panels : matplotlib.axes.Axes
+    Of records that do not know their path, panels are over the radius of the pinion's flank.
     """
+    if "path_point_rho1" not in results:
+        panels[-1].set(xlabel=RADIUS_LABEL)
+        return
+    places = travel(results, "path_point_rho1").tolist()
+    points = dict(zip(map(str, results["path_point"].values), places, strict=True))
     narrow, before, raised = NARROW * (max(points.values()) - min(points.values())), -np.inf, False
     for at, name in sorted((at, name) for name, at in points.items()):
         for axes in panels:

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 PER_FACE = "N/(mm um)"
 """Unit that people read a stiffness in, per face width."""
 
+PER_WHOLE = "N/um"
+"""The same of a whole face whose width is not known."""
+
 WIDEST = 34
 """Most characters of a line of a label."""
 
@@ -75,7 +78,7 @@ def read(results: xr.Dataset, name: str, *, per_face: bool = False) -> Reading:
     name : str
         Of the variable.
     per_face : bool
-        Whether a stiffness is divided by the face width: N/(mm um) instead of N/m.
+        Whether a stiffness is divided by the face width: N/(mm um) instead of N/m; N/um where the width is not known.
 
     Examples
     --------
@@ -87,8 +90,13 @@ def read(results: xr.Dataset, name: str, *, per_face: bool = False) -> Reading:
     (array([2., 3.]), 'transmission error [µm]')
     """
     about = results[name].attrs
-    width = float(results["pair_face_width"]) if per_face else None
-    return _reading(results[name].values, about["units"], read_in(results, name), about["long_name"], width)
+    reading = _reading(results[name].values, about["units"], read_in(results, name), about["long_name"])
+    if not per_face or about["units"] != "N/m":
+        return reading
+    shown, scale = PER_WHOLE, 1e6
+    if "pair_face_width" in results:
+        shown, scale = PER_FACE, factor(PER_FACE) * float(results["pair_face_width"])
+    return replace(reading, values=results[name].values / scale, unit=unit_text(shown))
 
 
 def read_figure(result: object, name: str, face_width: float | None = None) -> Reading:
@@ -105,13 +113,14 @@ def read_figure(result: object, name: str, face_width: float | None = None) -> R
     """
     figure = figures(type(result))[name]
     value = np.asarray(getattr(result, name))
-    return _reading(value, figure.unit, figure.read_in, sentence(figure.meaning), face_width)
+    reading = _reading(value, figure.unit, figure.read_in, sentence(figure.meaning))
+    if face_width is None:
+        return reading
+    return replace(reading, values=value / (factor(PER_FACE) * face_width), unit=unit_text(PER_FACE))
 
 
-def _reading(values: Array, unit: str, shown: str, meaning: str, face_width: float | None) -> Reading:
+def _reading(values: Array, unit: str, shown: str, meaning: str) -> Reading:
     scale = 1.0 if shown == unit else factor(shown)
-    if face_width is not None:
-        shown, scale = PER_FACE, factor(PER_FACE) * face_width
     return Reading(values if scale == 1.0 else values / scale, _short(meaning), unit_text(shown))
 
 
@@ -154,8 +163,8 @@ def text(results: xr.Dataset, name: str) -> str:
 
 
 def travel(results: xr.Dataset, name: str) -> Array:
-    """Travel from A [mm] of the curvature radii in a variable."""
-    start = float(results["path_point_rho1"][0])
+    """Travel from A [mm] of the curvature radii in a variable; the radii themselves where the path is not known."""
+    start = float(results["path_point_rho1"][0]) if "path_point_rho1" in results else 0.0
     return np.asarray(1e3 * (results[name].values - start))
 
 

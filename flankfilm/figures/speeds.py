@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flankfilm.figures.motion import scale
 from flankfilm.figures.reading import Reading, need, read
-from flankfilm.figures.style import Style, colours, from_zero, legend_over, sheet
+from flankfilm.figures.style import COLOURS, Style, colours, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
 RUN_UP = 'run a scene that wants "run-up"'
+
+WAYS: Mapping[str, Mapping[str, Any]] = {
+    "up": {"color": COLOURS[5], "linewidth": 2.2},
+    "down": {"color": COLOURS[0], "linewidth": 1.0},
+}
+"""Looks of both directions: the wide curve lies below, so that both show where they agree."""
 
 TRACKED = (0.5, 1.0, 2.0, 3.0)
 """Mesh orders that are drawn over the speed."""
@@ -33,22 +40,24 @@ def run_up(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, RUN_UP, "run_up_force_factor_up", "run_up_spread_up")
     force, length = scale(results, "force"), scale(results, "length")
-    shown = (
+    known = (
         ("force_factor", force, "maximum force" if force.unit == "N" else "maximum force\nover mean"),
+        ("force_peak", force, "maximum\nmesh force"),
         ("peak", length, "maximum\ndisplacement"),
         ("spread", length, "displacement,\nroot mean square"),
+        ("rms", length, "displacement,\nroot mean square"),
         ("separated", None, "time without\ncontact"),
     )
-    with sheet(style, 4, height=7.0, legend=2) as (drawn, panels):
+    ways = [way for way in WAYS if f"run_up_peak_{way}" in results] or list(WAYS)
+    shown = [figure for figure in known if f"run_up_{figure[0]}_{ways[0]}" in results]
+    need(results, RUN_UP, *(f"run_up_peak_{way}" for way in ways))
+    with sheet(style, len(shown), height=7.0, legend=2) as (drawn, panels):
         for axes, (name, unit, label) in zip(panels, shown, strict=True):
-            for way, colour, wide in zip(
-                ("up", "down"), (colours(6)[5], colours(1)[0]), (2.2, 1.0), strict=True
-            ):
+            for way in ways:
                 curve, at = read(results, f"run_up_{name}_{way}"), _place(results, way)
                 values = curve.values if unit is None else float(unit.values) * curve.values
-                axes.plot(at.values, values, color=colour, linewidth=wide, label=way)
+                axes.plot(at.values, values, label=way, **WAYS[way])
             axes.set(ylabel=(curve if unit is None else unit).named(label))
         from_zero(*panels)
         panels[-1].set(xlabel=at.label)
@@ -127,7 +136,7 @@ def dynamic_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         )
         above.set(ylabel=torque.label, xlim=(speed.values.min(), speed.values.max()))
         for k, (load, colour) in enumerate(zip(torque.values.tolist(), 5 * colours(7), strict=False)):
-            below.plot(speed.values, factor[k], color=colour, label=f"{load:g} N m")
+            below.plot(speed.values, factor[k], color=colour, linestyle="-", label=f"{load:g} N m")
             below.plot(speed.values, iso[k], color=colour, linestyle=":", linewidth=1.0)
         below.set(xlabel=speed.label, ylabel="dynamic factor K_v [-]\n(dotted: ISO 6336-1, B)")
         legend_over(below, 5)

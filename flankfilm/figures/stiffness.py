@@ -1,19 +1,22 @@
-"""Stiffness, load share, transmission error and Fourier fit over the mesh cycle; over torque; beside closed forms."""
+"""Stiffness, load share, transmission error and Fourier fit over the mesh cycle; over torque."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from base import Array
+from flankfilm.figures.face import DRY_FACE, factor, paint
 from flankfilm.figures.panels import curves, over_path, over_two_pitches
 from flankfilm.figures.reading import Reading, beside, labelled, need, read, text, travel
 from flankfilm.figures.style import MARK, Style, colours, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 STIFFNESS = 'run a scene that wants "stiffness"'
@@ -21,24 +24,12 @@ STIFFNESS = 'run a scene that wants "stiffness"'
 KINDS = {"secant": "secant_stiffness", "tangent": "tangent_stiffness"}
 """Names of the curves of a mesh cycle."""
 
+MOST = 12
+"""Harmonics that are drawn."""
 
-def single_pairs(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw the stiffness of one pair of teeth along the path of contact, one curve a model.
+POSITION = "position, base pitches from A [-]"
 
-    Parameters
-    ----------
-    results : xarray.Dataset
-        Of a run that wants ``closed-forms``.
-    style : mapping, optional
-        rcParams that overrule the house's.
-    """
-    need(results, 'run a scene that wants "closed-forms"', "single_pair_rho1", "pair_face_width")
-    models = labelled(results, "single_pair_stiffness_", per_face=True)
-    with sheet(style, legend=4) as (drawn, (axes,)):
-        curves(axes, travel(results, "single_pair_rho1"), models)
-        from_zero(axes)
-        over_path(results, axes)
-    return drawn
+OVER_MEAN = "amplitude over the mean [-]"
 
 
 def mesh_stiffness(results: xr.Dataset, kind: str = "secant", *, style: Style | None = None) -> Figure:
@@ -53,8 +44,9 @@ def mesh_stiffness(results: xr.Dataset, kind: str = "secant", *, style: Style | 
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    drawn = _over_the_cycle(results, KINDS[kind], 3.8, style, per_face=True)
-    from_zero(drawn.axes[0])
+    with sheet(style, height=3.8, legend=2) as (drawn, (axes,)):
+        _over_the_cycle(axes, results, KINDS[kind])
+        from_zero(axes)
     return drawn
 
 
@@ -68,31 +60,74 @@ def transmission_error(results: xr.Dataset, *, style: Style | None = None) -> Fi
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    return _over_the_cycle(results, "transmission_error", 3.2, style)
-
-
-def _over_the_cycle(
-    results: xr.Dataset, what: str, height: float, style: Style | None, *, per_face: bool = False
-) -> Figure:
-    """Draw a curve of the mesh cycle over two base pitches by every model, the one that counts first.
-
-    On the arcs between events, with its steps; the events of the one that counts are marked.
-    """
-    prefix = _final(results)
-    own = list(dict.fromkeys((prefix, "dry")))
-    need(results, STIFFNESS, *(f"{name}_dense_{what}" for name in own))
-    labels = {text(results, f"{name}_label"): name for name in own}
-    cycles = {
-        label: read(results, f"{name}_dense_{what}", per_face=per_face) for label, name in labels.items()
-    }
-    cycles |= beside(results, f"other_{what}", per_face=per_face)
-    places = {label: results[f"{name}_dense_position"].values for label, name in labels.items()}
-    with sheet(style, height=height, legend=2) as (drawn, (axes,)):
-        over_two_pitches(axes, read(results, f"{prefix}_position"), cycles, at=places)
-        events = results[f"{prefix}_event_position"].values
-        marked = np.concatenate([events, events + 1])
-        axes.vlines(marked, 0.0, 1.0, MARK, linewidth=0.8, transform=axes.get_xaxis_transform(), zorder=0)
+    with sheet(style, height=3.2, legend=2) as (drawn, (axes,)):
+        _over_the_cycle(axes, results, "transmission_error")
     return drawn
+
+
+def mesh_cycle(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw secant stiffness and transmission error, and above them what the face bears where it has cells.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``stiffness``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    over_face = f"{DRY_FACE}_line_load" in results
+    with sheet(style, 4 if over_face else 2, height=8.8 if over_face else 4.8, legend=0, sharex=False) as (
+        drawn,
+        (*face, upper, lower),
+    ):
+        if over_face:
+            paint(results, DRY_FACE, {"line_load": face[0]})
+            factor(face[1], results, DRY_FACE)
+        prefix = _final(results)
+        _drawn(upper, results, {kind: (prefix, what) for kind, what in KINDS.items()}, "stiffness")
+        _drawn(lower, results, {"": (prefix, "transmission_error")}, "transmission error")
+        legend_over(upper, 2)
+        from_zero(upper)
+        for axes in (*face[1:], upper):
+            axes.sharex(lower)
+            axes.tick_params(labelbottom=False)
+            axes.set_xlabel("")
+    return drawn
+
+
+def _over_the_cycle(axes: Axes, results: xr.Dataset, what: str) -> None:
+    """Draw a curve of the mesh cycle over two base pitches by every model, the one that counts first."""
+    prefix = _final(results)
+    own = [name for name in dict.fromkeys((prefix, "dry")) if f"{name}_position" in results]
+    curves_of = {_label(results, name): (name, what) for name in own}
+    _drawn(axes, results, curves_of, what.replace("_", " "), beside(results, f"other_{what}", per_face=True))
+    events = results[f"{prefix}_event_position"].values
+    marked = np.concatenate([events, events + 1])
+    axes.vlines(marked, 0.0, 1.0, MARK, linewidth=0.8, transform=axes.get_xaxis_transform(), zorder=0)
+
+
+def _drawn(
+    axes: Axes,
+    results: xr.Dataset,
+    own: Mapping[str, tuple[str, str]],
+    meaning: str,
+    others: Mapping[str, Reading] | None = None,
+) -> None:
+    """Draw curves of mesh cycles by label, prefix and name, on their arcs where these are known, and other models."""
+    ways = {
+        label: (f"{prefix}_dense" if results[f"{prefix}_dense_position"].size else prefix, what)
+        for label, (prefix, what) in own.items()
+    }
+    need(results, STIFFNESS, *(f"{way}_{what}" for way, what in ways.values()))
+    cycles = {label: read(results, f"{way}_{what}", per_face=True) for label, (way, what) in ways.items()}
+    places = {label: results[f"{way}_position"].values for label, (way, _) in ways.items()}
+    position = read(results, f"{next(iter(own.values()))[0]}_position")
+    over_two_pitches(axes, position, {**cycles, **(others or {})}, meaning, at=places)
+
+
+def _label(results: xr.Dataset, prefix: str) -> str:
+    """What a mesh cycle is of; a loaded contact alone is finite elements."""
+    return text(results, f"{prefix}_label") if f"{prefix}_label" in results else "finite elements"
 
 
 def load_share(results: xr.Dataset, *, style: Style | None = None) -> Figure:
@@ -125,22 +160,27 @@ def fourier(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    need(results, 'run a scene that wants "fourier" and computes its stiffness', "fourier_samples")
+    need(results, 'run a scene that wants "fourier"', "fourier_kind", "fourier_amplitude")
     kind = text(results, "fourier_kind")
     order = results["fourier_amplitude"].size
     series = {f"{kind}, order {order}": "fourier"}
     if "fourier_other_mean" in results:
         series[f"{'tangent' if kind == 'secant' else 'secant'}, order {order}"] = "fourier_other"
-    samples, position = read(results, "fourier_samples", per_face=True), read(results, "fourier_position")
-    fine, harmonics = np.linspace(0, 2, 401), read(results, "fourier_harmonics")
-    numbers = np.arange(1, harmonics.values[:12].size + 1)
+    mean, fine = read(results, "fourier_mean", per_face=True), np.linspace(0, 2, 401)
+    harmonics = (results["fourier_amplitude"].values / results["fourier_mean"].values)[:MOST]
+    if "fourier_harmonics" in results:
+        harmonics = results["fourier_harmonics"].values[:MOST]
+    numbers = np.arange(1, harmonics.size + 1)
     with sheet(style, 1, 2, width_ratios=(3, 1)) as (drawn, (left, right)):
-        dots: dict[str, Any] = {"color": "#777777", "linestyle": "none", "marker": ".", "markersize": 3}
-        over_two_pitches(left, position, {kind: samples}, **dots)
-        sums = {label: replace(samples, values=_sum(results, name, fine)) for label, name in series.items()}
+        if "fourier_samples" in results:
+            dots: dict[str, Any] = {"color": "#777777", "linestyle": "none", "marker": ".", "markersize": 3}
+            samples = read(results, "fourier_samples", per_face=True)
+            over_two_pitches(left, read(results, "fourier_position"), {kind: samples}, **dots)
+        sums = {label: replace(mean, values=_sum(results, name, fine)) for label, name in series.items()}
         curves(left, fine, sums, "stiffness")
-        right.bar(numbers, harmonics.values[:12], color=colours(1)[0])
-        right.set(xlabel="harmonic [-]", ylabel=harmonics.label, xticks=numbers[:: max(1, numbers.size // 5)])
+        left.set(xlabel=POSITION)
+        right.bar(numbers, harmonics, color=colours(1)[0])
+        right.set(xlabel="harmonic [-]", ylabel=OVER_MEAN, xticks=numbers[:: max(1, numbers.size // 5)])
     return drawn
 
 
@@ -156,7 +196,7 @@ def over_torque(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """
     names = {"secant": "torque_secant_stiffness", "tangent": "torque_tangent_stiffness"}
     wants, first = 'run a scene that wants "torques"', "torque_transmission_error_harmonic_1"
-    need(results, wants, *names.values(), first, "pair_face_width")
+    need(results, wants, *names.values(), first)
     torque, error = read(results, "torque"), read(results, "torque_transmission_error")
     means = {kind: read(results, name, per_face=True) for kind, name in names.items()}
     over_mean = read(results, "torque_harmonic_1")
@@ -198,56 +238,6 @@ def revolution(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     return drawn
 
 
-def verification(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw one pair along the path, the mesh cycle, and each model's difference from finite elements.
-
-    Black lines are finite elements: with all parts, and without what closed forms lack (hub wind-up and
-    coupling of neighbouring teeth). The grey band about zero is the numerical error of the latter.
-
-    Parameters
-    ----------
-    results : xarray.Dataset
-        What ``verify.nc`` holds.
-    style : mapping, optional
-        rcParams that overrule the house's.
-    """
-    singles, secants = (
-        {of: f"{of}_{what}" for of in ("reference", "model")}
-        for what in ("single_stiffness", "secant_stiffness")
-    )
-    need(results, "give the verify.nc of a verification", "model", "reference", *singles.values())
-    single, secant = (
-        {of: beside(results, name, per_face=True) for of, name in names.items()}
-        for names in (singles, secants)
-    )
-    at, position, like = (
-        travel(results, "path_rho1"),
-        read(results, "mesh_position"),
-        int(results["like_for_like"]),
-    )
-    whole, lacking = (list(single["reference"])[i] for i in (0, like))
-    base, error = single["reference"][lacking].values, 100 * float(results["reference_error"][like])
-    differences = {
-        name: Reading(100 * (curve.values / base - 1), "", "%") for name, curve in single["model"].items()
-    }
-    with sheet(style, 3, height=7.4, legend=2, sharex=False) as (drawn, (pair, mesh, off)):
-        for name, label, dash in ((whole, whole, "-"), (lacking, f"finite elements {lacking}", "--")):
-            curves(pair, at, {label: single["reference"][name]}, color="#000000", linestyle=dash)
-            over_two_pitches(
-                mesh, position, {label: secant["reference"][name]}, color="#000000", linestyle=dash
-            )
-        curves(pair, at, single["model"])
-        over_two_pitches(mesh, position, secant["model"])
-        curves(off, at, differences)
-        off.axhspan(-error, error, color="#bbbbbb", linewidth=0)
-        off.axhline(0.0, color="#000000", linewidth=0.8, linestyle="--")
-        off.set(ylabel="one pair, difference\nfrom dashed black line [%]")
-        from_zero(pair, mesh)
-        for axes in (pair, off):
-            over_path(results, axes)
-    return drawn
-
-
 def _sum(results: xr.Dataset, name: str, turns: Array) -> Array:
     """Fourier series at `turns` base pitches after A, per face width."""
     mean, amplitude = (
@@ -261,5 +251,5 @@ def _sum(results: xr.Dataset, name: str, turns: Array) -> Array:
 def _final(results: xr.Dataset) -> str:
     """Which mesh cycle counts: the one with film where there is one."""
     prefix = "lubricated" if "lubricated_position" in results else "dry"
-    need(results, STIFFNESS, f"{prefix}_position", f"{prefix}_label", "pair_face_width")
+    need(results, STIFFNESS, f"{prefix}_position")
     return prefix

@@ -171,7 +171,7 @@ def sheet(
         if not (legend and labels):
             return
         if on.axes:
-            panels[0].legend(handles, labels, handlelength=2.6)
+            legend_over(panels[0], legend)
         else:
             short = _narrow.get() and max(map(len, labels)) < SHORT
             columns = 2 if short else legend

@@ -3,78 +3,94 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from base import show_with
 from base.views import ANY
 
-PICTURES: Mapping[str, str] = {
-    "gears.pair.gear_pair:GearPair": "pair",
-    "gears.pair.path:PathOfContact": "curves",
-    "gears.closed_form.record:ClosedForm": "closed_form",
-    "fem.cycle.result:MeshCycle": "loaded_contact",
-    "fem.cycle.face_loads:FaceLoads": "face_loads",
-    "fem.stress.tooth_root:RootStress": "root_stress",
-    "fem.stress.gear_root:FaceRootStress": "face_root_stress",
-    "ehl.films.film:Film": "curves",
-    "ehl.films.mixed_film:MixedFilm": "mixed_film",
-    "ehl.films.mixed_thermal:MixedThermalFilm": "mixed_film",
-    "ehl.films.frequency:FilmResponse": "film_response",
-    "ehl.films.transient_film:TransientFilm": "curves",
-    "ehl.films.traction:TractionCurve": "curves",
-    "dynamics.flow.motions:Trajectory": "portrait",
-    "dynamics.orbits.shooting:Orbit": "orbit",
-    "dynamics.branches.branch:Branch": "branch",
-    "dynamics.attraction.diagrams:Diagram": "branches",
-    "dynamics.motion.sweeps:SweepResult": "sweep",
-    "dynamics.attraction.multi_sweeps:MultiSweep": "multi_sweep",
-    "dynamics.attraction.basins:BasinResult": "basins",
-    "dynamics.motion.exponents:LyapunovScan": "exponents",
-    "dynamics.branches.loci:Locus": "locus",
-    "dynamics.motion.spectra:Spectrum": "spectrum",
-    "dynamics.motion.run_ups:RunUp": "run_up",
-    "flankfilm.coupling.mesh.mesh_curves:MeshCycle": "curves",
-    "flankfilm.coupling.films.face_films:FaceFilms": "face_films",
-    "flankfilm.coupling.films.along_path:FilmAlongPath": "curves",
-    "flankfilm.coupling.losses.losses_along_path:LossesAlongPath": "losses_along_path",
-    "flankfilm.coupling.losses.losses_record:MeshLosses": "mesh_losses",
-    "flankfilm.coupling.mesh.torque_curves:TorqueCurves": "curves",
-    "flankfilm.coupling.mesh.face_models:FaceLoadModels": "face_models",
-    "flankfilm.coupling.mesh.face_tolerance:FaceTolerance": "curves",
-    "flankfilm.coupling.vibration.film_damping:FilmDamping": "curves",
-    "flankfilm.coupling.films.transient_film:PassageFilm": "curves",
-    "flankfilm.coupling.speeds.speed_sweep:SpeedSweep": "speed_sweep",
-    "flankfilm.coupling.speeds.jumps:SpeedDiagram": "speed_diagram",
-    "flankfilm.coupling.vibration.excitation:ErrorSeries": "error_series",
-    "flankfilm.coupling.speeds.sidebands:MotionSpectrum": "motion_spectrum",
-    "flankfilm.coupling.speeds.run_ups:SpeedRunUp": "speed_run_up",
-    "flankfilm.coupling.speeds.dynamic_map:DynamicMap": "dynamic_map",
-    "flankfilm.coupling.drive.pair_drive:PairDrive": "pair_drive",
-    "flankfilm.coupling.speeds.drive_sweep:DriveSweep": "drive_sweep",
-    "flankfilm.coupling.mesh.root_stress:RootStresses": "root_stresses",
-    "flankfilm.coupling.vibration.oscillator:PairOscillator": "series_of",
-    "flankfilm.coupling.vibration.series:MeshSeries": "series",
-    "flankfilm.coupling.mesh.verification:Verification": "verification",
+
+class Picture(NamedTuple):
+    """How a record is drawn: from its own dataset, by the function that draws it of a run.
+
+    Attributes
+    ----------
+    draw : str
+        Module and function of `flankfilm.figures`, of a dataset.
+    prefix : str
+        What the record's variables begin with: that of a run, where a run has such a record.
+    data : str
+        Function of `flankfilm.output.records` that gives the parts of the dataset.
+    """
+
+    draw: str
+    prefix: str
+    data: str = "alone"
+
+
+_DYNAMICS = {
+    "flow.motions:Trajectory": Picture("orbits.trajectory", "motion", "trajectory"),
+    "orbits.shooting:Orbit": Picture("orbits.trajectory", "motion", "orbit"),
+    "branches.branch:Branch": Picture("motion.diagram", "diagram", "branch"),
+    "attraction.diagrams:Diagram": Picture("motion.diagram", "diagram", "diagram"),
+    "motion.sweeps:SweepResult": Picture("motion.sweep", "sweep", "sweep"),
+    "attraction.multi_sweeps:MultiSweep": Picture("orbits.attractors", "met", "attractors"),
+    "attraction.basins:BasinResult": Picture("orbits.basins", "basins", "basins"),
+    "motion.exponents:LyapunovScan": Picture("orbits.exponents", "lyapunov"),
+    "branches.loci:Locus": Picture("orbits.locus", "locus", "locus"),
+    "motion.spectra:Spectrum": Picture("excitation.spectrum", "spectrum"),
+    "motion.run_ups:RunUp": Picture("speeds.run_up", "run_up", "run_up"),
 }
-"""Record to the function of `flankfilm.figures` that draws it."""
+
+_COUPLING = {
+    "mesh.mesh_curves:MeshCycle": Picture("stiffness.mesh_cycle", "dry", "cycle"),
+    "films.face_films:FaceFilms": Picture("face.film_map", "film_face", "with_points"),
+    "films.along_path:FilmAlongPath": Picture("film.film_along_path", "film"),
+    "losses.losses_along_path:LossesAlongPath": Picture("heat.heat_along_path", "losses_path"),
+    "losses.losses_record:MeshLosses": Picture("heat.heat_along_path", "losses", "losses"),
+    "mesh.torque_curves:TorqueCurves": Picture("stiffness.over_torque", "torque"),
+    "mesh.face_models:FaceLoadModels": Picture("face.line_load_models", "face_models"),
+    "mesh.face_tolerance:FaceTolerance": Picture("curves.curves", "face_tolerance"),
+    "vibration.film_damping:FilmDamping": Picture("curves.curves", "damping"),
+    "films.transient_film:PassageFilm": Picture("curves.curves", "passage"),
+    "speeds.speed_sweep:SpeedSweep": Picture("motion.resonance", "sweep"),
+    "speeds.jumps:SpeedDiagram": Picture("motion.diagram", "diagram", "speed_diagram"),
+    "vibration.excitation:ErrorSeries": Picture("excitation.excitation", "excitation"),
+    "speeds.sidebands:MotionSpectrum": Picture("excitation.spectrum", "spectrum", "carrying"),
+    "speeds.run_ups:SpeedRunUp": Picture("speeds.run_up", "run_up", "carrying"),
+    "speeds.dynamic_map:DynamicMap": Picture("speeds.dynamic_map", "dynamic_map", "carrying"),
+    "drive.pair_drive:PairDrive": Picture("drives.drive_modes", "drive"),
+    "speeds.drive_sweep:DriveSweep": Picture("drives.drive_sweep", "drive_sweep", "carrying"),
+    "mesh.root_stress:RootStresses": Picture("gear.root_stress", "root", "root_stresses"),
+    "vibration.oscillator:PairOscillator": Picture("stiffness.fourier", "fourier", "series_of"),
+    "vibration.series:MeshSeries": Picture("stiffness.fourier", "fourier", "series"),
+    "mesh.verification:Verification": Picture("closed_forms.verification", "verify", "comparison"),
+}
+
+PICTURES: Mapping[str, Picture] = {
+    "gears.pair.gear_pair:GearPair": Picture("gear.gears_in_mesh", "pair", "pair"),
+    "gears.pair.path:PathOfContact": Picture("gear.kinematics", "path"),
+    "gears.closed_form.record:ClosedForm": Picture("closed_forms.closed_form", "closed_form", "closed_form"),
+    "fem.cycle.result:MeshCycle": Picture("stiffness.mesh_cycle", "dry", "loaded"),
+    "fem.cycle.face_loads:FaceLoads": Picture("face.flank_map", "dry_face", "with_points"),
+    "fem.stress.tooth_root:RootStress": Picture("gear.root_stress", "root", "passages"),
+    "fem.stress.gear_root:FaceRootStress": Picture("face_roots.root_face_map", "root_face"),
+    "ehl.films.film:Film": Picture("curves.curves", "contact_film", "contact_film"),
+    "ehl.films.mixed_film:MixedFilm": Picture("curves.curves", "contact_film", "mixed"),
+    "ehl.films.mixed_thermal:MixedThermalFilm": Picture("curves.curves", "contact_film", "mixed"),
+    "ehl.films.frequency:FilmResponse": Picture("curves.film_response", "response", "response"),
+    "ehl.films.transient_film:TransientFilm": Picture("curves.curves", "transient"),
+    "ehl.films.traction:TractionCurve": Picture("curves.curves", "traction"),
+    **{f"dynamics.{place}": how for place, how in _DYNAMICS.items()},
+    **{f"flankfilm.coupling.{place}": how for place, how in _COUPLING.items()},
+}
+"""Record to its picture."""
 
 OUTCOMES: Mapping[str, str] = {
     "flankfilm.outcome.results:Results": "flankfilm.outcome.pictures:results",
     "flankfilm.studies.run:StudyResults": "flankfilm.studies.pictures:study",
     "flankfilm.optimisation.optimum:Optimum": "flankfilm.optimisation.pictures:optimum",
 }
-"""The same of runs, studies and optimisations, whose pictures stand beside them."""
-
-MODULES: Mapping[str, tuple[str, ...]] = {
-    "of_speeds": ("error_series", "spectrum", "motion_spectrum", "run_up", "speed_run_up", "dynamic_map"),
-    "of_motions": (
-        *("portrait", "orbit", "branch", "branches", "sweep", "multi_sweep", "basins", "exponents", "locus"),
-        *("speed_sweep", "speed_diagram"),
-    ),
-    "of_drives": ("pair_drive", "drive_sweep"),
-    "face": ("loaded_contact", "face_loads", "face_films", "face_models"),
-    "face_roots": ("face_root_stress",),
-}
-"""Module of `flankfilm.figures` to the functions in it; all others are in `of_records`."""
+"""Runs, studies and optimisations to the functions that draw them, which stand beside them."""
 
 VIEWS: Mapping[str, str] = {
     "flankfilm.outcome.results:Results": "flankfilm.notebook:results_html",
@@ -88,9 +104,4 @@ VIEWS: Mapping[str, str] = {
 
 def register() -> None:
     """Register views and pictures; the entry point ``base.views`` of the distribution."""
-    module = {name: module for module, names in MODULES.items() for name in names}
-    pictures = {
-        place: f"flankfilm.figures.{module.get(name, 'of_records')}:{name}"
-        for place, name in PICTURES.items()
-    }
-    show_with(VIEWS, {**pictures, **OUTCOMES})
+    show_with(VIEWS, {**dict.fromkeys(PICTURES, "flankfilm.figures.records:picture"), **OUTCOMES})

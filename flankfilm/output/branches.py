@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from base import Array
 from base.results import EXACT, ITSELF
 from dynamics.attraction.returns import returns
 from flankfilm.output.variables import figure_of, of_quantities
@@ -59,45 +61,81 @@ REASONS: Mapping[str, str] = {
 """Why columns have no separate error, where their table's reason is another one."""
 
 
-def branch_tables(diagram: SpeedDiagram) -> list[xr.Dataset]:
-    """Variables of a diagram, table by table, the pinion's speed beside every frequency where it has one."""
+@dataclass(frozen=True)
+class Columns:
+    """Makes tables of motions.
+
+    Attributes
+    ----------
+    speed_of_one : float or None
+        Pinion speed of frequency 1 [rad/s], which stands beside every frequency; none without it.
+    across : str
+        What the frequency is, of motions over another parameter.
+    """
+
+    speed_of_one: float | None = None
+    across: str = ""
 
     def table(
-        prefix: str, axis: str, names: str, rows: Iterable[tuple[Any, ...]], no_error: str = ROUNDING
+        self, prefix: str, axis: str, names: str, rows: Iterable[tuple[Any, ...]], no_error: str = ROUNDING
     ) -> xr.Dataset:
+        """Variables of a table with named columns, along an axis."""
         columns = {name: COLUMNS.get(f"{prefix}_{name}", COLUMNS[name]) for name in names.split()}
         held = np.array(list(rows), dtype=[(name, kind) for name, (kind, _) in columns.items()])
         figures = [
             figure_of(
                 name,
                 "" if kind.startswith("U") else "1",
-                meaning,
+                self.across if self.across and name == "frequency" else meaning,
                 axis,
                 held[name],
                 no_error=REASONS.get(f"{prefix}_{name}", REASONS.get(name, no_error)),
             )
             for name, (kind, meaning) in columns.items()
         ]
-        if diagram.speed_of_one is not None and "frequency" in columns:
-            speed = diagram.speed_of_one * held["frequency"]
+        if self.speed_of_one is not None and "frequency" in columns:
+            speed = self.speed_of_one * held["frequency"]
             speeds = figure_of("speed", "rad/s", "pinion speed", axis, speed, shown="rpm", no_error=no_error)
             figures.insert(0, speeds)
         return of_quantities(
             prefix, figures, dict.fromkeys(("frequency", "speed"), "error") if prefix == "jump" else None
         )
 
-    points, special = (
-        map(tuple, diagram.diagram.columns().tolist()),
-        (row[:5] for row in diagram.diagram.table()),
-    )
-    further = map(tuple, returns(diagram.diagram).tolist())
+
+def diagram_tables(
+    points: Array, further: Array, special: Iterable[tuple[Any, ...]], **columns: Any
+) -> list[xr.Dataset]:
+    """Variables of branches.
+
+    Parameters
+    ----------
+    points : (n, 5) array
+        As of `dynamics.Diagram.columns`.
+    further : (n, 6) array
+        As of `dynamics.attraction.returns.returns`.
+    special : iterable of tuple
+        Branch, kind, parameter, motion and displacement of special points.
+    columns
+        As of `Columns`.
+    """
+    table = Columns(**columns).table
+    names = "frequency displacement velocity stable"
+    return [
+        table("diagram", "point", f"branch {names}", map(tuple, points.tolist())),
+        table("return", "point", f"branch periods {names}", map(tuple, further.tolist())),
+        table("special", "point", "branch kind frequency motion displacement", special),
+    ]
+
+
+def branch_tables(diagram: SpeedDiagram) -> list[xr.Dataset]:
+    """Variables of a diagram, table by table, the pinion's speed beside every frequency where it has one."""
+    table = Columns(diagram.speed_of_one).table
+    whole, special = diagram.diagram, (row[:5] for row in diagram.diagram.table())
     stable = ((stretch.label, stretch.low, stretch.high) for stretch in diagram.stable)
     forces = zip(diagram.force_frequency, diagram.force_factor, diagram.force_factor_iso6336, strict=True)
     errors = " ".join(f"error_by_{source}" for source in SOURCES)
     return [
-        table("diagram", "point", "branch frequency displacement velocity stable", points),
-        table("return", "point", "branch periods frequency displacement velocity stable", further),
-        table("special", "point", "branch kind frequency motion displacement", special),
+        *diagram_tables(whole.columns(), returns(whole), special, speed_of_one=diagram.speed_of_one),
         table(
             "jump",
             "jump",

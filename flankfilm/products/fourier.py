@@ -9,9 +9,9 @@ import numpy as np
 
 from flankfilm.coupling.mesh.references import MEANINGS
 from flankfilm.figures.reading import read
+from flankfilm.output import records
 from flankfilm.output.model_errors import first_harmonic
 from flankfilm.output.uncertainty import Uncertainty
-from flankfilm.output.variables import of_record
 from flankfilm.products.product import Product, section_of, when
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.run_parts import Work
@@ -36,15 +36,6 @@ def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
     if "report" in wants and scene.stiffness.model != "given" and scene.pair is not None:
         yield DRY_CYCLE  # a film from the cache asks for none, and stands beside it in the report
     yield FOURIER
-
-
-def variables(series: MeshSeries) -> Iterator[xr.Dataset]:
-    """Series of the stiffness; a given one may be over its mean."""
-    data = of_record("fourier", series)
-    if series.kind == "given" and series.mean == 1.0:
-        for name in ("fourier_mean", "fourier_amplitude"):
-            data[name].attrs["units"] = "1"
-    yield data
 
 
 def section(stage: MeshSeries, results: xr.Dataset) -> Part:
@@ -102,7 +93,7 @@ def _of_series(series: MeshSeries, computed: Computed) -> Work:
 PRODUCT = Product(
     name="fourier",
     goals=goals,
-    variables=when(FOURIER, variables),
+    variables=when(FOURIER, lambda series: records.series("fourier", series)),
     solved={"fourier": FOURIER},
     headlines=when(FOURIER, headlines),
     sections=section_of(FOURIER, section),

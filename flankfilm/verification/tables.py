@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from base.results import EXACT
 from flankfilm.coupling.mesh.verification import Curves, Verification
-from flankfilm.output.drawing_data import outlines, points
 from flankfilm.output.files import provenance, write_csv
-from flankfilm.output.variables import identifier, merged, of_models, of_quantities, of_record
+from flankfilm.output.records import comparison
+from flankfilm.output.variables import identifier, merged
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -72,27 +71,9 @@ def dataset(verification: Verification, scene: Scene) -> xr.Dataset:
     scene : Scene
         That was verified.
     """
-    import xarray as xr
-
-    models = {model.label: model for model in verification.models if model.single_stiffness.size}
-    like = {"units": "1", "long_name": "reference without what closed forms lack", "error_note": EXACT}
-    parts = (
-        of_record("pair", verification.pair),
-        of_quantities("outline", outlines(verification.pair)),
-        of_quantities("path", points(verification.pair)),
-        of_record("path", verification, ("rho1",)),
-        of_record("mesh", verification, ("position",)),
-        of_models(
-            "reference",
-            {curves.label: curves for curves in verification.references},
-            "reference",
-            "reference",
-        ),
-        of_models("model", models, "model"),
-        *([] if verification.over_face is None else [of_record("face_models", verification.over_face)]),
-        xr.Dataset({"like_for_like": ((), verification.references.index(verification.like_for_like), like)}),
+    return merged(
+        comparison("verify", verification), {"title": scene.title, **provenance(scene.model_dump_json())}
     )
-    return merged(parts, {"title": scene.title, **provenance(scene.model_dump_json())})
 
 
 def _column(name: str, verification: Verification) -> list[Any]:

@@ -66,9 +66,10 @@ def test_the_map_of_a_record_holds_its_loads(cycle: MeshCycle):
 
 
 def test_the_map_of_a_cycle_stands_above_its_factor(cycle: MeshCycle):
-    _, factor, error, _ = cycle.plot().axes
-    assert np.allclose(factor.lines[0].get_ydata(), cycle.face_load_factor)
-    assert np.allclose(error.lines[0].get_ydata(), 1e6 * cycle.transmission_error)
+    _, factor, stiffness, error, _ = cycle.plot().axes
+    assert np.allclose(factor.lines[0].get_ydata(), np.tile(cycle.face_load_factor, 2))
+    assert np.allclose(stiffness.lines[0].get_ydata(), 1e-6 * np.tile(cycle.dense_secant_stiffness, 2))
+    assert np.allclose(error.lines[0].get_ydata(), 1e6 * np.tile(cycle.dense_transmission_error, 2))
 
 
 def test_the_map_of_a_dataset_is_that_of_the_record(cycle: MeshCycle):

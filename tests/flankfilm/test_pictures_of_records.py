@@ -15,8 +15,11 @@ import ehl
 import flankfilm as ff
 from base import InputError, has_picture, plot
 from base.views import GROUP
+from flankfilm import figures
 from flankfilm.figures.film import film_along_path
-from flankfilm.figures.views import MODULES, PICTURES, VIEWS, register
+from flankfilm.figures.records import function
+from flankfilm.figures.views import PICTURES, VIEWS, register
+from flankfilm.output import records as records_of_output
 from flankfilm.runs.report import _asked
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
@@ -65,12 +68,13 @@ def test_every_name_of_a_picture_is_there():
         module, _, name = place.partition(":")
         assert isinstance(getattr(importlib.import_module(module), name), type), place
     register()
-    for function in (
-        *VIEWS.values(),
-        *(f"flankfilm.figures.{module}:{name}" for module, names in MODULES.items() for name in names),
-    ):
-        module, _, name = function.partition(":")
+    for view in VIEWS.values():
+        module, _, name = view.partition(":")
         assert callable(getattr(importlib.import_module(module), name))
+    for how in PICTURES.values():
+        assert callable(function(how))
+        assert callable(getattr(records_of_output, how.data))
+        assert how.draw.partition(".")[2] in figures.__all__
 
 
 @pytest.mark.slow
@@ -89,8 +93,9 @@ def test_a_mesh_cycle_shows_values_errors_and_the_curves_of_the_record():
     cycle = ff.mesh_cycle(PAIR, torque=600.0, model="ishikawa")
     stiffness, error = cycle.plot().axes
     drawn = stiffness.lines[0].get_ydata()
-    assert np.allclose(drawn / drawn[0], cycle.secant_stiffness / cycle.secant_stiffness[0])
-    assert np.allclose(error.lines[0].get_ydata(), 1e6 * cycle.transmission_error)
+    assert np.allclose(drawn, 1e-6 * np.tile(cycle.dense_secant_stiffness, 2))
+    assert np.allclose(error.lines[0].get_ydata(), 1e6 * np.tile(cycle.dense_transmission_error, 2))
+    assert stiffness.get_ylabel().endswith("[N/µm]")
     assert error.get_ylabel().endswith("[µm]")
 
 
@@ -133,24 +138,6 @@ def test_the_ground_packages_load_what_draws_by_an_entry_point_alone(tmp_path):
         f"[{GROUP}]\na = flankfilm.figures.views:register\n", encoding="utf-8"
     )
     subprocess.run([sys.executable, "-c", ALONE.format(folder=str(tmp_path))], check=True)
-
-
-def test_a_picture_is_drawn_into_given_axes():
-    from matplotlib.figure import Figure
-
-    path = PAIR.path_of_contact(9)
-    mine = Figure()
-    axes = mine.subplots()
-    assert path.plot(ax=axes) is mine
-    assert len(axes.lines) == 3
-    assert axes.get_legend() is not None
-    cycle = ff.mesh_cycle(PAIR, torque=600.0, model="ishikawa")
-    two = Figure().subplots(2)
-    assert cycle.plot(two) is two[0].figure
-    assert all(len(panel.lines) for panel in two)
-    for wrong in (axes, [axes] * 3, "axes"):
-        with pytest.raises(InputError, match="2 axes, one for each panel"):
-            cycle.plot(ax=wrong)
 
 
 SAVED = """

@@ -43,6 +43,8 @@ from flankfilm.studies.run import StudyResults
 from flankfilm.studies.study_file import StudyFile
 from flankfilm.verification.page import write_verification_page
 from flankfilm.verification.tables import dataset as verify_dataset
+from tests.flankfilm import test_pictures
+from tests.flankfilm.pictured import faults_of
 
 SCENE = """
 title = "Every picture <b>&amp; one warning"
@@ -88,15 +90,6 @@ OF_A_RUN = (
     figures.single_pairs, figures.sweep, figures.tooth_stress, figures.transmission_error,
 )  # fmt: skip
 OF_OTHERS = {"optimum", "optimum_map", "study", "verification"}
-ELSEWHERE = {
-    "Frame", "animate_cycle", "film_families", "losses_along_path", "teeth_scene", "temperature_field",
-    "temperatures_along_path", "tooth_picture", "view_cycle", "excitation", "spectrum", "run_up", "waterfall",
-    "dynamic_map", "flank_map", "face_load_factor", "line_load_models",
-    "film_map", "root_face_map", "drive_modes", "drive_sweep", "drive_run_up", "drive_map",
-}  # fmt: skip
-
-PURE = {"motion n-p-q", "evaluation"}
-"""Titles of axes that have no unit to show."""
 
 
 @dataclass(frozen=True)
@@ -181,8 +174,8 @@ def test_a_study_names_the_reference_of_its_deflections(tmp_path, section, shown
     assert reference_facts(replace(plan, keys=("stiffness.reference",))) == []
 
 
-def test_every_function_is_tried_here_or_elsewhere():
-    tried = {draw.__name__ for draw in OF_A_RUN} | OF_OTHERS | ELSEWHERE
+def test_every_function_is_tried_here_or_among_the_records():
+    tried = {draw.__name__ for draw in OF_A_RUN} | OF_OTHERS | {"film_families"} | test_pictures.DRAWN
     assert tried == set(figures.__all__)
 
 
@@ -209,29 +202,11 @@ def drawn(made: Made):
 
 
 def test_axes_tell_units_legends_cover_no_data_and_nothing_is_cut_off(made):
+    faults = {}
     for name, figure in drawn(made):
         assert figure.get_figwidth() == PHONE or "phone" not in name, name
-        renderer = FigureCanvasAgg(figure).get_renderer()
-        figure.draw(renderer)
-        panels = [axes for axes in figure.axes if axes.axison and axes.get_visible()]
-        legends = [*figure.legends, *(axes.get_legend() for axes in panels if axes.get_legend())]
-        for legend, axes in itertools.product(legends, panels):
-            over = legend.get_window_extent(renderer)
-            inside = axes.get_window_extent(renderer)
-            assert not over.shrunk(0.98, 0.98).overlaps(inside), f"{name}: the legend covers data"
-        for axes in panels:
-            for title in (axes.get_xlabel(), axes.get_ylabel()):
-                text = not title or title in PURE or re.search(r"\[.+\]|\.\w+_(mm|Nm|rpm)$", title, re.DOTALL)
-                assert text, f"{name}: {title!r} has no unit"
-            assert axes.get_ylabel() or axes.get_xlabel() or axes.get_shared_x_axes().get_siblings(axes)
-        beside = [axes.yaxis.label.get_window_extent(renderer) for axes in panels if axes.get_ylabel()]
-        for one, other in itertools.combinations(beside, 2):
-            assert not one.overlaps(other), f"{name}: labels of two panels overprint"
-        whole = figure.get_tightbbox(renderer).padded(-0.02)
-        assert whole.x0 >= -0.01, name
-        assert whole.y0 >= -0.01, name
-        assert whole.x1 <= figure.get_figwidth() + 0.01, name
-        assert whole.y1 <= figure.get_figheight() + 0.01, name
+        faults[name] = faults_of(figure)
+    assert {name: found for name, found in faults.items() if found} == {}
 
 
 def test_curves_are_those_of_the_file(made):

@@ -1,0 +1,144 @@
+"""Every picture: drawn from a dataset, once, with units, and with nothing covered or cut off.
+
+Those of the report's run are tried in `test_report`, which refuses a function that neither file draws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+
+from base import InputError
+from flankfilm import figures
+from flankfilm.figures.records import dataset, function, picture_of
+from flankfilm.figures.views import PICTURES, register
+from tests.flankfilm import pictured
+from tests.flankfilm.pictured import RECORDS, faults_of
+
+register()
+
+OF_RUNS: dict[str, tuple[Any, ...]] = {
+    "face": (
+        figures.flank_map, figures.film_map, figures.face_load_factor, figures.line_load_models,
+        figures.root_face_map, figures.mesh_cycle,
+    ),
+    "losses": (
+        figures.losses_along_path, figures.temperatures_along_path, figures.temperature_field,
+        figures.heat_along_path,
+    ),
+    "train": (
+        figures.drive_modes, figures.drive_sweep, figures.drive_run_up, figures.drive_map, figures.spectrum,
+        figures.run_up, figures.waterfall, figures.dynamic_map,
+    ),
+    "error_curve": (figures.excitation,),
+}  # fmt: skip
+"""Run, or record, to the functions that are drawn from it."""
+
+OF_RECORDS = {how.draw.partition(".")[2] for how in PICTURES.values()}
+
+RENDERED = {"Frame", "animate_cycle", "teeth_scene", "tooth_picture", "view_cycle"}
+"""What VTK draws; see test_report_animation and test_face_pictures."""
+
+DRAWN = {draw.__name__ for drawn in OF_RUNS.values() for draw in drawn} | OF_RECORDS | RENDERED
+
+
+def test_every_record_that_draws_itself_is_tried():
+    assert set(RECORDS) == set(PICTURES)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("place", RECORDS)
+def test_a_record_draws_itself_by_the_function_of_its_dataset(place: str):
+    record = RECORDS[place]()
+    assert f"{type(record).__module__}:{type(record).__qualname__}" == place
+    picture = record.plot()
+    assert faults_of(picture) == []
+    assert any(axes.lines or axes.collections or axes.patches for axes in picture.axes)
+    assert not blank(picture)
+    again = function(picture_of(record))(dataset(record))
+    assert lines_of(again) == lines_of(picture)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", OF_RUNS)
+def test_pictures_of_runs_keep_to_the_same(name: str):
+    made = getattr(pictured, name)()
+    data: xr.Dataset = getattr(made, "dataset", None)
+    for draw in OF_RUNS[name]:
+        assert faults_of(draw(data if data is not None else dataset(made))) == [], draw.__name__
+
+
+def lines_of(figure: Figure) -> list[tuple[int, ...]]:
+    """Points of every curve."""
+    return [tuple(line.get_xydata().shape) for axes in figure.axes for line in axes.lines]
+
+
+def blank(figure: Figure) -> bool:
+    """Whether a panel shows nothing."""
+    return not all(
+        any(line.get_xydata().size for line in axes.lines) or axes.collections or axes.patches or axes.images
+        for axes in figure.axes
+        if axes.axison
+    )
+
+
+SINGLE = ("gears.pair.path:PathOfContact", "gears.closed_form.record:ClosedForm")
+
+
+def axes_of(count: int) -> Any:
+    return Figure(figsize=(6.0, 2.5 * count), layout="constrained").subplots(count)
+
+
+@pytest.mark.parametrize("place", SINGLE)
+def test_a_picture_of_one_panel_is_drawn_into_given_axes(place: str):
+    axes = axes_of(1)
+    figure = RECORDS[place]().plot(ax=axes)
+    assert figure is axes.figure
+    assert axes.lines
+    assert axes.get_legend() is not None
+    assert faults_of(figure) == []
+
+
+def test_one_of_several_panels_takes_as_many_axes_and_says_so():
+    cycle = pictured.cycle()
+    panels = axes_of(2)
+    assert cycle.plot(panels) is panels[0].figure
+    assert all(len(axes.lines) for axes in panels)
+    for wrong in (axes_of(1), list(axes_of(3)), "axes"):
+        with pytest.raises(InputError, match=r"must be 2 axes, one for each panel.*figure\.subplots\(2\)"):
+            cycle.plot(ax=wrong)
+
+
+def test_a_stiffness_per_face_needs_the_width_and_is_that_of_the_whole_face_without_it():
+    cycle = pictured.cycle()
+    whole = figures.mesh_cycle(dataset(cycle)).axes[0]
+    per_face = figures.mesh_cycle(dataset(cycle).assign(pair_face_width=0.04)).axes[0]
+    assert whole.get_ylabel() == "stiffness [N/µm]"
+    assert per_face.get_ylabel() == "stiffness [N/(mm µm)]"
+    ratio = whole.lines[0].get_ydata() / per_face.lines[0].get_ydata()
+    assert ratio == pytest.approx(40.0)
+
+
+def broken(draw: Callable[[Any], None]) -> list[str]:
+    """Faults of a picture after something was done to its panel."""
+    figure = RECORDS[SINGLE[0]]().plot()
+    draw(figure.axes[0])
+    return faults_of(figure)
+
+
+@pytest.mark.parametrize(
+    ("fault", "draw"),
+    [
+        ("'radius' has no unit", lambda axes: axes.set_ylabel("radius")),
+        ("a legend covers data", lambda axes: axes.legend(loc="center")),
+        ("numbers of", lambda axes: axes.set_xticks([8.0, 8.01], ["8.00", "8.01"])),
+        ("something is cut off", lambda axes: axes.set_ylabel(f"{60 * 'wide'} [-]")),
+        ("titles of two panels", lambda axes: [way.set_label_coords(0.5, 0.5) for way in (axes.xaxis, axes.yaxis)]),
+    ],
+)  # fmt: skip
+def test_faults_are_seen(fault: str, draw: Callable[[Any], None]):
+    assert any(fault in found for found in broken(draw)), broken(draw)
