@@ -197,10 +197,11 @@ def drive_modes(results: xr.Dataset, *, style: Style | None = None) -> Figure:
             )
         axes.set_xticks(range(len(names)), names, rotation=30, ha="right")
         rows = [
-            f"{frequency:.0f} Hz, {100 * share:.0f} % in the mesh"
+            f"{frequency:.0f}, {100 * share:.0f} % in the mesh"
             for frequency, share in zip(frequencies, shares, strict=True)
         ]
         axes.set_yticks(range(len(rows)), rows)
+        axes.set(xlabel="point of the train", ylabel="natural frequency [Hz]")
         axes.grid(visible=False)
         drawn.colorbar(shade, ax=axes, label="displacement, largest 1 [-]", pad=0.01)
     return drawn

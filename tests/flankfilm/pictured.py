@@ -298,7 +298,7 @@ RECORDS: Mapping[str, Callable[[], Any]] = {
 """Class of a record to one of them."""
 
 
-PURE = {"motion n-p-q", "evaluation"}
+PURE = {"motion n-p-q", "evaluation", "point of the train"}
 """Titles of axes that have no unit to show."""
 
 UNIT = re.compile(r"\[.+\]|\.\w+_(mm|Nm|rpm)$", re.DOTALL)
