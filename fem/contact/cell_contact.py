@@ -18,6 +18,7 @@ from fem.elasticity.flamant import hertz_half_width
 from fem.pair.face_shafts import HeldShafts, ShaftsUnderFace, shafts_under_face
 from fem.pair.wide_contact import shared_by_width
 from gears.sharing.active_set import share_forces
+from gears.sharing.central_path import share_forces_by_path
 from gears.sharing.staying_contacts import DeflectionLaw, JointLaw, StayingContacts
 
 if TYPE_CHECKING:
@@ -144,7 +145,7 @@ class CellContact:
             # the turn is counted from the first touch, so that small ones keep their digits beside gaps
             least = first[..., sign > 0.0].min(axis=-1)
             contacts = StayingContacts(stiff, own, film, first - sign * least[..., None], levers, sign)
-            load_share = _settled(contacts, self.whole[torques], start[torques])
+            load_share = _settled(contacts, stiff, self.whole[torques], start[torques])
             load_share = replace(load_share, transmission_error=load_share.transmission_error + least)
             return _unique(load_share, alone, own, film)
 
@@ -254,11 +255,15 @@ class CellContact:
         return replace(self, whole=single, sides=self.sides.at(pitch, position))
 
 
-def _settled(contacts: StayingContacts, whole: Array, start: Array) -> LoadShare:
-    """Share of cells, from forces to begin with."""
+def _settled(contacts: StayingContacts, coupling: CellCoupling, whole: Array, start: Array) -> LoadShare:
+    """Share of cells, from forces to begin with; along the central path where cells come and go in circles."""
     from gears.tooth.errors import LoadSharingError
 
-    share = share_forces(contacts, whole + np.zeros(start.shape[:-1]), start, None)
+    whole = whole + np.zeros(start.shape[:-1])
+    share = share_forces(contacts, whole, start, None)
+    if share is None and (share := share_forces_by_path(contacts, whole, start)) is not None:
+        slope, everywhere = contacts.laws(share.forces)[1], np.ones(whole.shape, dtype=bool)
+        share = share if coupling.definite(slope, share.forces > 0.0, everywhere) else None
     if share is None:
         allowed = "must have deflections that grow with the force"
         raise LoadSharingError.at("cells", "no solution", allowed, "give fewer cells, or more torque")

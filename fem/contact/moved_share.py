@@ -13,6 +13,7 @@ from fem.contact.shared_contacts import SharedContacts, of_pairs, settled_gaps
 from fem.pair.face_shafts import HeldShafts, joined, shafts_under_face
 from fem.pair.wide_contact import shares_together
 from gears.sharing.active_set import ContactForces, LoadShare, share_forces
+from gears.sharing.central_path import share_forces_by_path
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
@@ -165,10 +166,14 @@ def open_gaps(contacts: Rolling, share: LoadShare) -> Array:
 
 
 def _solved(contacts: Rolling, whole: Array, near: Array, approach: Array | None) -> LoadShare | None:
-    """Forces on cells, from those of contacts that stay (torques, ..., pairs, cells), or from as much spread evenly."""
+    """Forces on cells, from those of contacts that stay (torques, ..., pairs, cells), or from as much spread evenly.
+
+    Along the central path where cells come and go in circles from both.
+    """
     even = np.repeat(near.mean(axis=-1, keepdims=True), near.shape[-1], axis=-1)
     for start in (near,) if np.array_equal(near, even) else (near, even):
-        share = share_forces(contacts, whole, start.reshape(*near.shape[:-2], -1), approach)
+        loads = start.reshape(*near.shape[:-2], -1)
+        share = share_forces(contacts, whole, loads, approach)
         if share is not None:
             return share
-    return None
+    return share_forces_by_path(contacts, whole, loads)

@@ -7,25 +7,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import Array, Booleans, Faults, record
+from base import Array, Faults
 from gears.sharing.active_set import LoadShare, share_forces
+from gears.sharing.central_path import central_path
 from gears.sharing.load_coupling import DenseCoupling
 from gears.sharing.staying_contacts import DeflectionLaw, StayingContacts
 from gears.tooth.errors import LoadSharingError
 
 __all__ = ["share_between"]
-
-_PATH = 80
-"""Most steps along the central path."""
-
-_CENTRED = 1e-12
-"""Mean product of force and gap, over force times deflection, at which the flanks that bear are known."""
-
-_OPEN = 1e-9
-"""Part of the gaps' size by which they may differ from their place on the path at its end."""
-
-_SHORTEN = 0.9
-"""Part of the way to the nearest bound that a step takes."""
 
 
 def share_between(
@@ -97,11 +86,11 @@ def share_between(
     _check(whole, stiff, clear, side)
     clear = clear + np.zeros_like(whole[..., None] + arms)
     contacts = StayingContacts(DenseCoupling(stiff), local, film, clear, arms, side)
-    path = _CentralPath.of(contacts, whole, stiff)
-    if np.any((whole == 0.0) & (path.play >= 0.0)):
+    play, size, length = _sizes(contacts, whole, stiff)
+    if np.any((whole == 0.0) & (play >= 0.0)):
         allowed = "must not be 0 where the gaps leave backlash: no flank bears there"
         raise LoadSharingError.at("force", "0", allowed, "give a force, or gaps that overlap")
-    loads, approach, steps = path.followed()
+    loads, approach, steps = central_path(contacts, whole, size, length)
     share = share_forces(contacts, whole + np.zeros_like(approach), loads, approach)
     if share is None:
         allowed = (
@@ -111,76 +100,21 @@ def share_between(
     return replace(share, iterations=share.iterations + steps)
 
 
-@record
-class _CentralPath:
-    """The central path of all positions.
+def _sizes(contacts: StayingContacts, whole: Array, bulk: Array) -> tuple[Array, Array, Array]:
+    """Turn between the first touches of both sides [m], and sizes of forces [N] and gaps [m] at each position (...).
 
-    Attributes
-    ----------
-    contacts : StayingContacts
-    whole : (...) array
-        Torque over the base radius [N].
-    play : (...) array
-        Turn between the first touches of both sides [m].
-    force, length : (...) arrays
-        Size of forces and gaps: what is asked for, and what closes the gaps' overlap [N], [m].
+    Of what is asked for, and of what closes the gaps' overlap.
     """
-
-    contacts: StayingContacts
-    whole: Array
-    play: Array
-    force: Array
-    length: Array
-
-    @classmethod
-    def of(cls, contacts: StayingContacts, whole: Array, bulk: Array) -> _CentralPath:
-        """Path of contacts with a linear compliance under a torque."""
-        touchable, gaps, side = contacts.touchable, contacts.at_zero, contacts.side
-        diagonal = np.diagonal(bulk, axis1=-2, axis2=-1)
-        bent = np.where(touchable, diagonal + np.zeros_like(gaps), np.nan)
-        first = (np.min(np.where(touchable & (side == sign), gaps, np.inf), axis=-1) for sign in (1.0, -1.0))
-        play = np.asarray(sum(first))
-        force = np.abs(whole) + np.maximum(-play, 0.0) / np.nanmin(bent, axis=-1)
-        force = np.where(force > 0.0, force, 1.0)
-        slope = contacts.laws(np.broadcast_to(force[..., None], gaps.shape))[1]
-        length = force * np.nanmin(np.where(touchable, bent + slope, np.nan), axis=-1)
-        return cls(contacts, whole, play, force, length)
-
-    def followed(self) -> tuple[Array, Array, int]:
-        """Forces near the solution on the flanks that bear, zero on the others, D, and the steps."""
-        contacts, touchable, wanted = self.contacts, self.contacts.touchable, np.ones(self.play.shape, bool)
-        loads = np.where(touchable, self.force[..., None], 0.0)
-        approach, count, size = np.zeros_like(self.length), touchable.sum(axis=-1), self.force * self.length
-        at = contacts.linearised(loads, approach, contacts.bent(loads, wanted, None))
-        slack = np.where(touchable, np.maximum(at.residual, self.length[..., None]), 1.0)
-        steps = 0
-        while steps < _PATH:
-            centre = (np.where(touchable, loads * slack, 0.0).sum(axis=-1) / count)[..., None]
-            wanting = np.where(touchable, at.residual - slack, 0.0)
-            off = np.abs(wanting).max(axis=-1) / self.length
-            if np.all(centre[..., 0] <= _CENTRED * size) and np.all(off <= _OPEN):
-                break
-            share = np.where(touchable, loads, 1.0)
-            aim = slack + wanting - 0.1 * centre / share
-            unit, response = at.jacobian.solved(at.own + slack / share, at.reach, aim, touchable, wanted)
-            total = np.sum(at.further_lever_ratios * unit, axis=-1)
-            lift = (self.whole - at.carried + np.sum(at.further_lever_ratios * response, axis=-1)) / total
-            change = unit * lift[..., None] - response
-            opening = np.where(touchable, (0.1 * centre - slack * change) / share - slack, 0.0)
-            bounds = _room(loads, change, touchable), _room(slack, opening, touchable)
-            part = np.minimum(1.0, _SHORTEN * np.minimum(*bounds))
-            loads = loads + part[..., None] * change
-            slack = slack + part[..., None] * opening
-            approach, steps = approach + part * lift, steps + 1
-            at = contacts.linearised(loads, approach, contacts.bent(loads, wanted, None))
-        bears = touchable & (loads / self.force[..., None] > slack / self.length[..., None])
-        return np.where(bears, loads, 0.0), approach, steps
-
-
-def _room(values: Array, change: Array, touchable: Booleans) -> Array:
-    """How much of a change takes the first of positive values to zero (...)."""
-    falls = touchable & (change < 0.0)
-    return np.asarray(np.where(falls, -values / np.where(falls, change, 1.0), np.inf).min(axis=-1))
+    touchable, gaps, side = contacts.touchable, contacts.at_zero, contacts.side
+    diagonal = np.diagonal(bulk, axis1=-2, axis2=-1)
+    bent = np.where(touchable, diagonal + np.zeros_like(gaps), np.nan)
+    first = (np.min(np.where(touchable & (side == sign), gaps, np.inf), axis=-1) for sign in (1.0, -1.0))
+    play = np.asarray(sum(first))
+    force = np.abs(whole) + np.maximum(-play, 0.0) / np.nanmin(bent, axis=-1)
+    force = np.where(force > 0.0, force, 1.0)
+    slope = contacts.laws(np.broadcast_to(force[..., None], gaps.shape))[1]
+    length = force * np.nanmin(np.where(touchable, bent + slope, np.nan), axis=-1)
+    return play, force, length
 
 
 def _check(force: Array, bulk: Array, gaps: Array, sides: Array) -> None:

@@ -26,6 +26,11 @@ SHAFTS = (
     Shaft((ShaftSegment(0.2, 0.035),), ENDS, 0.06, 0.0),
     Shaft((ShaftSegment(0.2, 0.04),), ENDS, 0.15, 0.2),
 )
+OVERHUNG = (
+    Shaft((ShaftSegment(0.287, 0.049),), (Bearing(0.098, 7.8e7), Bearing(0.118, 3.7e8)), 0.2246, 0.287),
+    Shaft((ShaftSegment(0.175, 0.023),), (Bearing(0.166, 7.5e8), Bearing(0.173, 1.3e9)), 0.0853, 0.0),
+)
+"""Cells over these come and go in circles if each is taken in or released by its own gap and force."""
 
 
 @pytest.fixture(scope="module")
@@ -122,6 +127,22 @@ def test_forces_balance_the_torque_and_nothing_overlaps(tight, torque, moving):
     np.testing.assert_allclose(matrix, np.swapaxes(matrix, 1, 2), rtol=1e-6 if moving else 1e-9)
     assert np.linalg.eigvalsh(matrix).min() > 0.0
     assert np.all(over.face.gap[over.face.line_load > 0.0] == 0.0)
+
+
+@pytest.mark.filterwarnings("ignore::base.RangeWarning")
+@pytest.mark.parametrize("moving", [False, True])
+@pytest.mark.parametrize("torque", [0.0, 30.0])
+def test_teeth_pressed_together_over_overhung_shafts_bear_where_nothing_else_overlaps(tight, torque, moving):
+    options = {"alignment": Alignment(-15e-6, 5e-6), "moving_contact": moving}
+    over = cycle(tight, torque, OVERHUNG, **options)
+    assert over.converged, over.message
+    carried = over._moments()[0][0] * tight.pair.base_radii[0]
+    np.testing.assert_allclose(carried, torque, atol=1e-9 * over.forces.max() * 0.04)
+    assert np.all(over.face.gap[over.face.line_load > 0.0] == 0.0)
+    assert np.all(over.face.gap >= 0.0)
+    matrix = over.face.mesh_matrix
+    np.testing.assert_allclose(matrix, np.swapaxes(matrix, 1, 2), rtol=1e-6, atol=1e-6 * matrix.max())
+    assert np.all(over.stiffness > 0.0)
 
 
 def test_gears_with_their_torque_reversed_are_their_mirror(tight):
