@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import Self
 
@@ -11,14 +11,43 @@ import numpy as np
 from base import Array, Booleans, Integers, record
 from gears.sharing.load_coupling import Coupling
 
-__all__ = ["CellCoupling", "ChangedCells", "solve_symmetric"]
+__all__ = ["CellCoupling", "CellJacobian", "ChangedCells", "solve_symmetric"]
 
 
 START = 0.1
 """Part of an even share of the force with which a cell is taken in."""
 
 
-class CellCoupling(Coupling):
+class CellJacobian(ABC):
+    """What couples cells of the face (``gears.sharing.load_coupling.Jacobian``), solved position by position."""
+
+    @abstractmethod
+    def block(self, at: int) -> tuple[Integers, Array]:
+        """Cells that may touch and what couples them, of one of all positions (...) in their order."""
+
+    def solved(
+        self, slope: Array, reach: Array, residual: Array, active: Booleans, wanted: Booleans
+    ) -> tuple[Array, Array]:
+        """As of ``Jacobian``, of positions that are wanted."""
+        unit, response = np.zeros((2, *residual.shape))
+        size = residual.shape[-1]
+        flat_unit, flat_response, stiff, closes, rest, bearing = (
+            whole.reshape(-1, size) for whole in (unit, response, slope, reach, residual, active)
+        )
+        for at in np.flatnonzero(wanted).tolist():
+            cells, block = self.block(at)
+            bears = bearing[at].take(cells).nonzero()[0]
+            chosen = cells[bears]
+            # rows and then columns are copied much faster than both at once
+            jacobian = block.take(bears, axis=0).take(bears, axis=1)
+            jacobian.ravel()[:: len(bears) + 1] += stiff[at].take(chosen)
+            sides = np.empty((2, len(bears)))
+            sides[0], sides[1] = closes[at].take(chosen), rest[at].take(chosen)
+            flat_unit[at, chosen], flat_response[at, chosen] = solve_symmetric(jacobian, sides)
+        return unit, response
+
+
+class CellCoupling(CellJacobian, Coupling):
     """Compliance between the cells of all pairs that may touch at each position.
 
     Attributes
@@ -56,14 +85,8 @@ class CellCoupling(Coupling):
             flat[at, cells] = block @ pressed[at].take(cells)
         return deflections
 
-    def solved(
-        self, slope: Array, reach: Array, residual: Array, active: Booleans, wanted: Booleans
-    ) -> tuple[Array, Array]:
-        """As of ``gears.sharing.load_coupling.Jacobian``."""
-        return solved_one_by_one(self.block, slope, reach, residual, active, wanted)
-
     def block(self, at: int) -> tuple[Integers, Array]:
-        """Cells that may touch and their compliance, of one of all positions (...) in their order."""
+        """As of ``CellJacobian``."""
         position = at % len(self.blocks)
         return self.cells[position], self.blocks[position]
 
@@ -122,7 +145,7 @@ class CellCoupling(Coupling):
 
 
 @record
-class ChangedCells:
+class ChangedCells(CellJacobian):
     """Compliance between cells that has changed by a turn; attributes as of ``Coupling.changed``."""
 
     coupling: CellCoupling
@@ -131,7 +154,7 @@ class ChangedCells:
     blocks: Array
 
     def block(self, at: int) -> tuple[Integers, Array]:
-        """As of ``CellCoupling``."""
+        """As of ``CellJacobian``."""
         cells, block = self.coupling.block(at)
         jacobian = block + self.turn.flat[at] * self.change.block(at)[1]
         n = self.blocks.shape[-1]
@@ -140,39 +163,6 @@ class ChangedCells:
         by_pair = jacobian.reshape(len(k), n, len(k), n)
         by_pair[k, :, k, :] += self.blocks.reshape(-1, *self.blocks.shape[-3:])[at][pairs]
         return cells, jacobian
-
-    def solved(
-        self, slope: Array, reach: Array, residual: Array, active: Booleans, wanted: Booleans
-    ) -> tuple[Array, Array]:
-        """As of ``gears.sharing.load_coupling.Jacobian``."""
-        return solved_one_by_one(self.block, slope, reach, residual, active, wanted)
-
-
-def solved_one_by_one(
-    block_at: Callable[[int], tuple[Integers, Array]],
-    slope: Array,
-    reach: Array,
-    residual: Array,
-    active: Booleans,
-    wanted: Booleans,
-) -> tuple[Array, Array]:
-    """Solve position by position, with blocks between cells that may touch."""
-    unit, response = np.zeros((2, *residual.shape))
-    size = residual.shape[-1]
-    flat_unit, flat_response, stiff, closes, rest, bearing = (
-        whole.reshape(-1, size) for whole in (unit, response, slope, reach, residual, active)
-    )
-    for at in np.flatnonzero(wanted).tolist():
-        cells, block = block_at(at)
-        bears = bearing[at].take(cells).nonzero()[0]
-        chosen = cells[bears]
-        # rows and then columns are copied much faster than both at once
-        jacobian = block.take(bears, axis=0).take(bears, axis=1)
-        jacobian.ravel()[:: len(bears) + 1] += stiff[at].take(chosen)
-        sides = np.empty((2, len(bears)))
-        sides[0], sides[1] = closes[at].take(chosen), rest[at].take(chosen)
-        flat_unit[at, chosen], flat_response[at, chosen] = solve_symmetric(jacobian, sides)
-    return unit, response
 
 
 def solve_symmetric(matrix: Array, sides: Array) -> Array:

@@ -11,19 +11,11 @@ __all__ = ["CellLaws", "between_middles"]
 
 
 @record
-class CellLaws:
+class CellLaws(JointLaw):
     """Laws of pairs, asked for the cells of their faces: (..., positions, pairs cells)."""
 
     whole: JointLaw
     cells: int
-
-    def approach(self, force: Array) -> Array:
-        """Deflection [m]."""
-        return self.value_and_slope(force)[0]
-
-    def slope(self, force: Array) -> Array:
-        """Its derivative [m/N]."""
-        return self.value_and_slope(force)[1]
 
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Both together."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -20,7 +20,17 @@ if TYPE_CHECKING:
     from fem.laws.contact_candidates import ContactCandidates
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["cell_coupling", "cell_matrix", "coupled_by", "cross_coupling", "cross_matrix", "in_blocks"]
+__all__ = [
+    "cell_coupling",
+    "cell_matrix",
+    "coupled_by",
+    "cross_coupling",
+    "cross_matrix",
+    "in_blocks",
+    "kept_unless_large",
+]
+
+T = TypeVar("T")
 
 MOST_KEPT = 8_000_000
 """Numbers of a compliance up to which it is kept."""
@@ -45,10 +55,8 @@ def cell_coupling(
 
         return in_blocks(matrices, candidates.touchable, face.cells)
 
-    if size > MOST_KEPT:
-        return cut()
     key = coupled_by(bodies, face, candidates.rho, candidates.touchable, lever_ratios, matrix)
-    return GearStore().over_face("cells", key, cut)
+    return kept_unless_large("cells", key, size, cut)
 
 
 def cross_coupling(
@@ -86,14 +94,18 @@ def cross_coupling(
         return tuple(block.T for block in blocks) if back else tuple(blocks)
 
     touching = [side.candidates.touchable.sum(axis=-1) * cells for side in (front, rear)]
-    if np.sum(touching[0] * touching[1]) > MOST_KEPT:
-        return cut()
     arrays = (
         array
         for side in (front, rear)
         for array in (side.candidates.rho, side.candidates.touchable, side.lever_ratios)
     )
-    return GearStore().over_face("cells across", (back, *coupled_by(bodies, face, plane, *arrays)), cut)
+    key = back, *coupled_by(bodies, face, plane, *arrays)
+    return kept_unless_large("cells across", key, int(np.sum(touching[0] * touching[1])), cut)
+
+
+def kept_unless_large(name: str, key: tuple[Any, ...], numbers: int, cut: Callable[[], T]) -> T:
+    """What is put together for a key, kept for loads and alignments that follow unless it has too many numbers."""
+    return cut() if numbers > MOST_KEPT else GearStore().over_face(name, key, cut)
 
 
 def coupled_by(bodies: PairCompliance, face: FaceSetting, *arrays: Array | Booleans) -> tuple[Any, ...]:

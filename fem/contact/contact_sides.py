@@ -19,6 +19,7 @@ from fem.laws.mesh_setup import MeshSetup
 from gears.sharing.active_set import LoadShare
 from gears.sharing.both_flanks import share_between
 from gears.sharing.load_sharing import share_load
+from gears.sharing.staying_contacts import JointLaw
 
 if TYPE_CHECKING:
     from base import Integers
@@ -28,20 +29,12 @@ __all__ = ["ContactSides", "across", "between", "both_sides", "one_side"]
 
 
 @record
-class JoinedLaws:
+class JoinedLaws(JointLaw):
     """Laws of the pairs on either side, one after the other."""
 
     first: PairLaws | FilmLaw
     second: PairLaws | FilmLaw
     count: int
-
-    def approach(self, force: Array) -> Array:
-        """Deflection or separation (..., pairs) [m]."""
-        return self.value_and_slope(force)[0]
-
-    def slope(self, force: Array) -> Array:
-        """Its derivative [m/N]."""
-        return self.value_and_slope(force)[1]
 
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Both together."""

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from base import Array, Booleans, Integers, record
-from fem.contact.cell_coupling import ChangedCells, solved_one_by_one
+from fem.contact.cell_coupling import CellJacobian, ChangedCells
 from gears.sharing.load_coupling import DenseCoupling, Jacobian
 
 __all__ = ["CellCross", "CrossCoupling", "DenseCross"]
@@ -102,7 +102,7 @@ class CellCross:
 
 
 @record
-class _BothSides:
+class _BothSides(CellJacobian):
     """Cells on both sides; attributes as of ``CrossCoupling.beside``."""
 
     cross: CellCross
@@ -112,15 +112,9 @@ class _BothSides:
     behind: Array
 
     def block(self, at: int) -> tuple[Integers, Array]:
-        """Cells that may touch and their Jacobian, of one of all positions in their order."""
+        """As of ``CellJacobian``."""
         (rows, first), (columns, second) = self.here.block(at), self.there.block(at)
         still, by_turn, by_behind = (blocks[at % len(blocks)] for blocks in self.cross.blocks)
         between = still + self.turn.flat[at] * by_turn + self.behind.flat[at] * by_behind
         cells = np.concatenate([rows, columns + self.here.coupling.unknowns])
         return cells, np.block([[first, between], [between.T, second]])
-
-    def solved(
-        self, slope: Array, reach: Array, residual: Array, active: Booleans, wanted: Booleans
-    ) -> tuple[Array, Array]:
-        """As of ``gears.sharing.load_coupling.Jacobian``."""
-        return solved_one_by_one(self.block, slope, reach, residual, active, wanted)

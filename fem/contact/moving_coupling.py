@@ -9,7 +9,7 @@ import numpy as np
 
 from base import Array, Booleans
 from fem.contact.cell_coupling import CellCoupling
-from fem.contact.cell_matrix import MOST_KEPT, cell_matrix, coupled_by, in_blocks
+from fem.contact.cell_matrix import cell_matrix, coupled_by, in_blocks, kept_unless_large
 from fem.influence.gear_store import GearStore
 from fem.pair.face_compliance import waves_of
 from fem.pair.face_setting import SLICES
@@ -50,10 +50,9 @@ def cell_roll(
     def cut() -> CellCoupling:
         return in_blocks(differ, candidates.touchable, face.cells)
 
-    if np.sum((candidates.touchable.sum(axis=-1) * face.cells) ** 2) > MOST_KEPT:
-        return cut()
+    numbers = int(np.sum((candidates.touchable.sum(axis=-1) * face.cells) ** 2))
     key = coupled_by(bodies, held, candidates.rho, candidates.touchable, moves.roll)
-    return GearStore().over_face("roll", key, cut)
+    return kept_unless_large("roll", key, numbers, cut)
 
 
 def other_pairs(

@@ -18,6 +18,7 @@ import numpy as np
 
 from base import Array, record
 from fem.contact.cell_laws import CellLaws, between_middles
+from gears.sharing.staying_contacts import JointLaw
 
 if TYPE_CHECKING:
     from fem.contact.cell_coupling import CellCoupling
@@ -38,7 +39,7 @@ LEAST = 1e-30
 
 
 @record
-class PartialCells:
+class PartialCells(JointLaw):
     """Laws of cells from where they first touch.
 
     Attributes
@@ -54,14 +55,6 @@ class PartialCells:
     laws: CellLaws
     rise: Array
     whole: Array
-
-    def approach(self, force: Array) -> Array:
-        """Deflection from the first touch [m]."""
-        return self.value_and_slope(force)[0]
-
-    def slope(self, force: Array) -> Array:
-        """Its derivative [m/N]."""
-        return self.value_and_slope(force)[1]
 
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Both together."""

@@ -10,6 +10,7 @@ import numpy as np
 from base import Array, Booleans, Integers, record
 from fem.laws.corner_law import CornerLaw
 from fem.pair.hertz_approach import LEAST_FORCE, HertzApproach
+from gears.sharing.staying_contacts import JointLaw
 
 __all__ = ["Film", "FilmLaw", "PairLaws", "Table", "film_yielding"]
 
@@ -90,7 +91,7 @@ def _by_row(at: Callable[[Integers, Array], tuple[Array, Array]], force: Array) 
 
 
 @record
-class PairLaws:
+class PairLaws(JointLaw):
     """Hertz's law of each contact, and what tip corners add to it.
 
     Attributes
@@ -110,14 +111,6 @@ class PairLaws:
         per_log = np.broadcast_to(self.hertz.per_log, self.hertz.constant.shape)[row]
         corners = tuple(corner.of(position) for corner in self.corners)
         return PairLaws(HertzApproach(self.hertz.constant[row], per_log), corners)
-
-    def approach(self, force: Array) -> Array:
-        """Local deflection (positions, pairs) [m]."""
-        return self.value_and_slope(force)[0]
-
-    def slope(self, force: Array) -> Array:
-        """Its derivative [m/N]."""
-        return self.value_and_slope(force)[1]
 
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Both together."""
@@ -167,7 +160,7 @@ def film_yielding(film: Film, rho1: Array, forces: Array, shares: Array) -> Arra
 
 
 @record
-class FilmLaw:
+class FilmLaw(JointLaw):
     """A ``Film`` at fixed places, in the form that load sharing asks for; dry at tip edges."""
 
     film: Film
@@ -176,14 +169,6 @@ class FilmLaw:
     def at(self, position: int) -> FilmLaw:
         """Law of a single position."""
         return FilmLaw(self.film, self.rho1[position : position + 1])
-
-    def approach(self, force: Array) -> Array:
-        """Separation (..., positions, pairs) [m]."""
-        return self.value_and_slope(force)[0]
-
-    def slope(self, force: Array) -> Array:
-        """Its derivative [m/N]."""
-        return self.value_and_slope(force)[1]
 
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Both together; the film is asked with all leading dimensions as positions."""

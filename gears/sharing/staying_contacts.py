@@ -26,7 +26,15 @@ class DeflectionLaw(Protocol):
 
 @runtime_checkable
 class JointLaw(DeflectionLaw, Protocol):
-    """A law whose deflection and slope cost less together."""
+    """A law whose deflection and slope cost less together; what derives from it says these alone."""
+
+    def approach(self, force: Array) -> Array:
+        """As of ``DeflectionLaw``."""
+        return self.value_and_slope(force)[0]
+
+    def slope(self, force: Array) -> Array:
+        """As of ``DeflectionLaw``."""
+        return self.value_and_slope(force)[1]
 
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Deflection [m] and its derivative [m/N], (..., pairs)."""
