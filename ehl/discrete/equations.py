@@ -15,7 +15,7 @@ import numpy as np
 
 from base import Array
 from ehl.discrete.contact import LineContact
-from ehl.discrete.grid import face_weights, hat_weights
+from ehl.discrete.grid import face_weights, hat_weights, middle_weights
 from ehl.oil.lubricant import Lubricant
 
 LOAD = 0.5 * math.pi  # integral of P dX
@@ -46,19 +46,19 @@ def make_grid(half_widths: Array, ratio: float, upstream: Array, *, open_inlet: 
     from ehl.kernels.film_kernels import log_potential
 
     nodes = half_widths / ratio
-    points = np.append(nodes, 0.0)
-    potential = log_potential(nodes, points)
-    tail = _tail_potential(-float(nodes[0]), points) if open_inlet else np.zeros(points.size)
+    potential = log_potential(nodes, nodes)
+    tail = _tail_potential(-float(nodes[0]), nodes) if open_inlet else np.zeros(nodes.size)
+    middle = middle_weights(nodes)
     return Grid(
         nodes=nodes,
         ratio=ratio,
-        potential=potential[:-1],
-        centre=potential[-1],
+        potential=potential,
+        centre=middle @ potential,
         weights=hat_weights(nodes),
         quick=face_weights(nodes),
         upstream=upstream,
-        tail=tail[:-1],
-        tail_centre=float(tail[-1]),
+        tail=tail,
+        tail_centre=float(middle @ tail),
         open=open_inlet,
     )
 

@@ -152,3 +152,18 @@ def hat_weights(nodes: Array) -> Array:
     weights[:-1] += 0.5 * h
     weights[1:] += 0.5 * h
     return weights
+
+
+def middle_weights(nodes: Array) -> Array:
+    """Weights of the nodes whose sum of values is the one at X = 0, by the cubic through the four nearest.
+
+    Gaps are those of the film at the nodes alone: between them straight pressures leave a bump of the third power of
+    the cell, as large as thin films in the wide cells of the middle.
+    """
+    first = int(np.clip(np.searchsorted(nodes, 0.0) - 2, 0, nodes.size - 4))
+    near = nodes[first : first + 4]
+    weights = np.zeros(nodes.size)
+    for i, own in enumerate(near):
+        others = np.delete(near, i)
+        weights[first + i] = np.prod(others / (others - own))
+    return weights

@@ -25,7 +25,8 @@ def film_error(coarse: Level, fine: Level) -> float:
     """Estimated relative error of central and minimum film on the finer of two grids.
 
     The changes of central film, of minimum film and of the film between them (root mean square over the dry
-    contact's width) are added: any one may be small by accident, and three of first order are not.
+    contact's width) are added: any one may be small by accident, and three of first order are not. The largest is all
+    that is left where films converge with the first order, and films do with no less.
     """
     before, after = figures(coarse), figures(fine)
     at = coarse.grid.nodes
@@ -34,7 +35,7 @@ def film_error(coarse: Level, fine: Level) -> float:
     profile = math.sqrt(float(weights @ change**2 / weights.sum()))
     central = abs(before.central_thickness / after.central_thickness - 1.0)
     lowest = abs(before.minimum_thickness / after.minimum_thickness - 1.0)
-    return METHOD.grid_factor * (profile + central + lowest)
+    return min(METHOD.grid_factor * (profile + central + lowest), max(profile, central, lowest))
 
 
 def pressure_error(coarse: Level, fine: Level) -> float:

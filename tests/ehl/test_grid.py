@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ehl.discrete.equations import make_grid
-from ehl.discrete.grid import default_domain, face_weights, graded_nodes, hat_weights
+from ehl.discrete.grid import default_domain, face_weights, graded_nodes, hat_weights, middle_weights
 
 
 @given(st.floats(1e-7, 1e12), st.integers(16, 140))
@@ -37,6 +37,15 @@ def test_face_weights_are_exact_for_parabolas_and_lie_upstream():
 def test_hat_weights_integrate_lines():
     X = graded_nodes(0.1, 33, (-5.0, 2.0))
     assert hat_weights(X) @ (3 * X + 1) == pytest.approx(1.5 * (4 - 25) + 7, rel=1e-13)
+
+
+@pytest.mark.parametrize("first", [-0.3, 0.0])
+def test_middle_weights_take_cubics_to_the_middle(first):
+    X = np.concatenate([[first - 0.9, first - 0.5], first + np.array([0.0, 0.35, 0.6, 1.4])])
+    weights = middle_weights(X)
+    for power in range(4):
+        assert weights @ X**power == pytest.approx(0.0**power, abs=1e-14)
+    assert np.count_nonzero(weights) <= 4
 
 
 def test_oil_ahead_of_the_grid_acts_as_its_integral():

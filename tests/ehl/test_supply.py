@@ -46,6 +46,15 @@ def test_the_film_carries_what_the_layer_brings(share):
     assert held.central_thickness == pytest.approx(film.central_thickness, rel=loose)
 
 
+@pytest.mark.parametrize("nodes", [65, 129, 257])
+def test_thin_films_of_the_middle_are_those_of_the_nodes(nodes):
+    """Between the nodes straight pressures leave bumps that a film of 3e-4 of the flattening would drown in."""
+    film = quiet(PITCH, supply=OilLayer(0.01 * FLOODED.flow), nodes=nodes)
+    fine = quiet(PITCH, supply=OilLayer(0.01 * FLOODED.flow), nodes=513)
+    assert film.central_thickness == pytest.approx(fine.central_thickness, rel=1e-4)
+    assert film.central_thickness > (1.0 - 1e-5) * film.minimum_thickness
+
+
 def test_film_and_meniscus_rise_with_the_supply():
     films = [sound(quiet(PITCH, supply=Meniscus(X * B))) for X in (-1.01, -1.03, -1.1, -1.3, -2.0, -4.0)]
     assert (np.diff([f.central_thickness for f in films]) > 0).all()
