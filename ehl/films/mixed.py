@@ -20,11 +20,11 @@ from ehl.discrete.regressions import moes_central
 from ehl.discrete.supply import OilLayer, Supply
 from ehl.films.film import Film
 from ehl.films.mixed_film import MixedFilm
-from ehl.films.result import GridSolution
+from ehl.films.result import GridSolution, central_error
 from ehl.films.rough_slopes import rough_slopes
 from ehl.films.solver import solve_checked
 from ehl.solving.levels import State, figures
-from ehl.solving.load_share import KnownGap, eased, foreseen, odds_of, share_of, usual_growth
+from ehl.solving.load_share import KnownGap, eased, foreseen, odds_of, share_error, share_of, usual_growth
 from ehl.solving.options import Options, warn_of_range
 from ehl.solving.response import by_share
 from ehl.solving.share_search import NoFilmError, ShareSearch
@@ -101,7 +101,9 @@ def solve_mixed(
     warn_of_range(film.contact)
     by = by_share(films.last.fine, films.last.run.supply) if math.isfinite(odds) else None
     answers = rough_slopes(contact, roughness, film, odds, by)
-    return MixedFilm(contact, roughness, film, films.cost, True, "converged", share_of(odds), *answers)
+    grows = 0.0 if by is None else by.central / film.central_thickness
+    off = share_error(contact, roughness, KnownGap(film.central_thickness, odds, grows), central_error(film))
+    return MixedFilm(contact, roughness, film, films.cost, True, "converged", share_of(odds), *answers, off)
 
 
 class _Films:

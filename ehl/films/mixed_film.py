@@ -22,13 +22,19 @@ class RoughFilm:
     cost: Cost
     converged: bool
     message: str
-    asperity_share: float = unsolved("1", "share of the load that the asperities carry", shown="%")
+    asperity_share: float = unsolved(
+        "1", "share of the load that the asperities carry", shown="%", error="asperity_share_error"
+    )
     asperity_stiffness: float = unsolved("N/m2", "stiffness of the asperities at the contact's width")
     separation_slope: float = unsolved(
         "m2/N", "derivative of the separation by the load at fixed speed, asperities included"
     )
     central_slope: float = unsolved(
         "m2/N", "derivative of the central thickness by the load at fixed speed, asperities included"
+    )
+
+    asperity_share_error: float = unsolved(
+        "1", "error of the asperities' share, relative: as it answers to that of the central film"
     )
 
     @described("1")
@@ -66,7 +72,7 @@ class RoughFilm:
         """Derivative of the mean gap by the distance of the mean planes at x = 0 [-]."""
         return 1.0 / self.roughness.planes(self.film.central_thickness)[1]
 
-    @described("N/m")
+    @described("N/m", error="asperity_share_error")
     def asperity_load(self) -> float:
         """Load on the asperities per length of face."""
         return self.asperity_share * self.contact.load

@@ -19,9 +19,10 @@ from ehl.discrete.solids import STEEL, Solid
 from ehl.discrete.supply import Supply
 from ehl.films.mixed import solve_mixed
 from ehl.films.mixed_film import MixedFilm, RoughFilm
+from ehl.films.result import central_error
 from ehl.films.thermal import ThermalFilm, solve_thermal
 from ehl.films.thermal_search import at_bulk
-from ehl.solving.load_share import eased, excess, odds_of, share_of, usual_growth
+from ehl.solving.load_share import KnownGap, eased, excess, odds_of, share_error, share_of, usual_growth
 from ehl.solving.share_search import NoFilmError, ShareSearch
 
 _FALLS = (
@@ -138,10 +139,13 @@ def solve_mixed_thermal(
     warm = solved_at(contact, start=near)
     cold = solve_mixed(at_bulk(contact, np.array(bulk)), roughness, tolerance, supply, near_cold, nodes)
     films = _Films(contact, solved_at, cold.asperity_share, supply, warm)
-    share, reason = math.nan, cold.message
+    share, off, reason = math.nan, math.nan, cold.message
     if cold.converged:
         try:
-            share = share_of(ShareSearch(contact, roughness, films, tolerance).odds())
+            odds = ShareSearch(contact, roughness, films, tolerance).odds()
+            known = KnownGap(films.film.central_thickness, odds, films.growth())
+            off = share_error(contact, roughness, known, central_error(films.film), tolerance)
+            share = share_of(odds)
             reason = "converged"
         except NoFilmError as failure:
             reason = str(failure)
@@ -159,6 +163,7 @@ def solve_mixed_thermal(
         solved,
         reason,
         share,
+        asperity_share_error=off,
         isothermal=cold,
         boundary_friction=boundary_friction,
     )

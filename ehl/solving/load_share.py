@@ -123,6 +123,46 @@ def excess(contact: LineContact, roughness: Roughness, gap: float, odds: float) 
     )
 
 
+class Balance(NamedTuple):
+    """Film and asperities at odds, the film growing as a power of what is left to it."""
+
+    excess: float  # of what asperities carry over what is asked of them
+    by_film: float  # its derivatives, by ln of the film at a given share
+    by_odds: float  # with the film that follows
+
+    @classmethod
+    def at(cls, contact: LineContact, roughness: Roughness, known: KnownGap, odds: float) -> Balance:
+        """Follow a known film to odds."""
+        gap = known.at(odds)
+        at = excess(contact, roughness, gap, odds)
+        by_film = at.by_gap * gap
+        return cls(at.value, by_film, at.by_odds - by_film * known.grows * share_of(odds))
+
+
+def share_error(
+    contact: LineContact, roughness: Roughness, known: KnownGap, film: float, left: float = 0.0
+) -> float:
+    """Relative error of the share at balance, which asperities answer to an error of the film by.
+
+    Parameters
+    ----------
+    contact : LineContact
+        The whole load, and the bodies' modulus.
+    roughness : Roughness
+        Of both surfaces together.
+    known : KnownGap
+        Film and odds at balance; at odds of minus infinity the film carries all.
+    film : float
+        Relative error of the film.
+    left : float
+        Step of the odds that is left to do.
+    """
+    if math.isinf(known.odds):
+        return 0.0
+    balance = Balance.at(contact, roughness, known, known.odds)
+    return share_of(-known.odds) * (abs(balance.by_film / balance.by_odds) * film + left)
+
+
 def foreseen(contact: LineContact, roughness: Roughness, known: KnownGap) -> float:
     """Odds at which a known film balances if it grows as a power of what is left to it; from nothing to all.
 
@@ -130,11 +170,9 @@ def foreseen(contact: LineContact, roughness: Roughness, known: KnownGap) -> flo
     """
     low, high, odds = NOTHING, ALL, min(max(known.odds, NOTHING), ALL)
     for _ in range(_ROUNDS):
-        gap = known.at(odds)
-        at = excess(contact, roughness, gap, odds)
-        low, high = (odds, high) if at.value > 0.0 else (low, odds)
-        slope = at.by_odds - at.by_gap * gap * known.grows * share_of(odds)
-        target = odds - at.value / slope if slope < 0.0 else math.inf
+        at = Balance.at(contact, roughness, known, odds)
+        low, high = (odds, high) if at.excess > 0.0 else (low, odds)
+        target = odds - at.excess / at.by_odds if at.by_odds < 0.0 else math.inf
         before, odds = odds, target if low < target < high else 0.5 * (low + high)
         if abs(odds - before) < _FORESEEN:
             break

@@ -393,3 +393,19 @@ def test_rough_films_are_solved_on_the_nodes_asked_for(supply):
     assert films[193].error < films[97].error
     with pytest.raises(InputError, match="nodes"):
         solve_mixed(PITCH, ground, nodes=3)
+
+
+@pytest.mark.parametrize("law", ["greenwood-tripp", "zhou-hoeprich"])
+@pytest.mark.parametrize("supply", [None, OilLayer(1e-7), Meniscus(-1.2 * PITCH.half_width)])
+def test_the_share_errs_by_what_it_makes_of_the_error_of_its_film(supply, law):
+    ground = Roughness.of_deviation(0.25e-6, law=law)
+    coarse, middle, fine = (solve_mixed(PITCH, ground, supply=supply, nodes=n) for n in (65, 129, 257))
+    for film in (coarse, middle):
+        true = abs(film.asperity_share / fine.asperity_share - 1.0)
+        assert 0.5 * true < film.asperity_share_error < 5.0 * true
+    assert middle.asperity_share_error < 0.5 * coarse.asperity_share_error
+
+
+def test_no_asperities_no_error_of_their_share():
+    smooth = solve_mixed(PITCH, Roughness.of_deviation(1e-9))
+    assert (smooth.asperity_share, smooth.asperity_share_error) == (0.0, 0.0)

@@ -47,6 +47,8 @@ def test_asperities_carry_what_their_share_asks_and_more_than_without_heat(devia
     asked = central_asperity_pressure(SLIDING, roughness, found.asperity_share)
     # a hundredth of the odds: their pressure and what is asked change by about as much
     assert math.log(carried / asked) == pytest.approx(0.0, abs=0.02)
+    # the step of the odds that is left, and what the film's error makes of the share
+    assert found.asperity_share_error > (1.0 - found.asperity_share) * 0.003
     assert found.asperity_share > found.isothermal.asperity_share
     assert found.film_ratio < found.isothermal.film_ratio
 

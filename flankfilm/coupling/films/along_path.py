@@ -49,7 +49,12 @@ class FilmAlongPath:
     )
     starvation: Array | None = quantity("1", "central film over that of the smooth flooded contact", "point")
     film_ratio: Array | None = quantity("1", "film ratio Lambda, minimum mean gap over sigma", "point")
-    asperity_share: Array | None = quantity("1", "asperities' share of the load", "point")
+    asperity_share: Array | None = quantity(
+        "1", "asperities' share of the load", "point", error="asperity_share_error"
+    )
+    asperity_share_error: Array | None = quantity(
+        "1", "estimated relative error of the asperities' share", "point"
+    )
     at_pitch: tuple[ehl.StiffnessRow, ...] = part(
         "film stiffness by every definition at the contact nearest to C, in series with the stiffness of its teeth"
     )
@@ -132,6 +137,7 @@ def gathered(
         starvation=central / _each(path.flooded, "central_thickness") if path.flooded else None,
         film_ratio=_each(films, "film_ratio") if rough else None,
         asperity_share=_each(films, "asperity_share") if rough else None,
+        asperity_share_error=_each(films, "asperity_share_error") if rough else None,
         at_pitch=film_points.stiffness_rows(pair, dry, path) if solved else (),
         profiles=film_points.profiles(pair, path, positions, model.grid) if solved and positions else {},
         error=max(film.error for film in films) if solved else None,

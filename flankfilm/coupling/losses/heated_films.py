@@ -102,6 +102,13 @@ class HeatedFilms:
         return np.array([film.asperity_share for film in self.mixed])
 
     @property
+    def asperity_share_error(self) -> Array:
+        """Relative error of that share (n,)."""
+        if not self.mixed:
+            return np.zeros(len(self.films))
+        return np.array([film.asperity_share_error for film in self.mixed])
+
+    @property
     def friction(self) -> Array:
         """Coefficient of friction, of film and asperities by their shares (n,)."""
         film = np.abs([film.traction_coefficient for film in self.films])
@@ -110,13 +117,10 @@ class HeatedFilms:
 
     @property
     def friction_error(self) -> Array:
-        """Relative error of the coefficient of friction: of the film's, and of the share on which it was found (n,).
-
-        That share is left where its odds still step by less than the tolerance.
-        """
+        """Relative error of the coefficient of friction: of the film's, and of the asperities' share (n,)."""
         film = np.abs([film.traction_coefficient for film in self.films])
         share, errors = self.asperity_share, np.array([film.traction_error for film in self.films])
-        apart = np.abs(self.oil.boundary_friction - film) * share * (1.0 - share) * self.oil.tolerance
+        apart = np.abs(self.oil.boundary_friction - film) * share * self.asperity_share_error
         whole = self.friction
         known = whole > 0.0
         moved = np.divide(apart, whole, out=np.zeros_like(whole), where=known)

@@ -72,7 +72,10 @@ class LossesAlongPath:
         "1", "film ratio Lambda, minimum film over sigma; None of smooth flanks", "point", error="film_error"
     )
     asperity_share: Array | None = quantity(
-        "1", "asperities' share of the load; None of smooth flanks", "point"
+        "1", "asperities' share of the load; None of smooth flanks", "point", error="asperity_share_error"
+    )
+    asperity_share_error: Array | None = quantity(
+        "1", "estimated relative error of the asperities' share; None of smooth flanks", "point"
     )
     closure: Array = quantity("1", "heat that arrives over heat that is made, less 1", "point")
     friction_error: Array = quantity("1", "estimated relative error of friction, by the grid", "point")
@@ -181,6 +184,7 @@ def losses_along(pair: gears.GearPair, heated: HeatedFilms, bulk: tuple[float, f
         minimum_thickness=heated.minimum_thickness,
         film_ratio=heated.film_ratio,
         asperity_share=heated.asperity_share if heated.rough else None,
+        asperity_share_error=heated.asperity_share_error if heated.rough else None,
         closure=np.array([film.losses.closure for film in films if film.losses is not None]),
         friction_error=heated.friction_error,
         temperature_error=_each(films, "temperature_error"),
