@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from base.results import WORST
@@ -12,7 +11,7 @@ from ehl.films.result import GridSolution, above, film_error, remedy, spike_erro
 from ehl.solving.grid_search import GridSearch
 from ehl.solving.levels import Level
 from ehl.solving.options import Options
-from ehl.solving.refinement import doubled, refine
+from ehl.solving.refinement import doubled, doublings, refine
 
 _SHARP_NODES = 257
 _SETTLING = 0.7  # the spike's error has to fall by this factor from grid to grid
@@ -21,42 +20,44 @@ _SETTLING = 0.7  # the spike's error has to fall by this factor from grid to gri
 def refined(run: GridSearch, coarse: Level, fine: Level, options: Options) -> GridSolution:
     """Double the grid until the estimates meet what is asked, then report."""
     inlet = run.plan.inlet_error
-    judge = _Judge(options, inlet)
+    films = _Films(run, options, inlet)
     if options.sharp and coarse.solution.converged and fine.solution.converged:
-        if options.nodes is None and options.spike is None and judge.compared(coarse, fine).enough:
+        if options.nodes is None and options.spike is None and films.compared(coarse, fine).enough:
             return GridSolution(run, coarse, fine, film_error(coarse, fine) + inlet, inlet)
         n = _SHARP_NODES if options.nodes is None else fine.grid.nodes.size
         coarse = run.sharpened(fine, (n + 1) // 2)
         fine = run.sharpened(coarse, n)
     if not coarse.solution.converged:
         return GridSolution(run, coarse, fine, math.nan, inlet, coarse.solution.message)
-    nearest = refine(doubled(_levels(run, coarse, fine, options), judge.compared))
+    films.first = coarse, fine
+    half, n = coarse.grid.nodes.size, fine.grid.nodes.size
+    finer = doublings(n, METHOD.most_nodes) if options.nodes is None else ()
+    nearest = refine(doubled(films, (half, n, *finer)))
     if run.failed is not None or nearest is None:
         failed = run.failed or fine
         return GridSolution(run, coarse, failed, math.nan, inlet, failed.solution.message)
     return nearest.reported(run, inlet, options)
 
 
-def _levels(run: GridSearch, coarse: Level, fine: Level, options: Options) -> Iterator[Level | None]:
-    """Give two grids and ever finer ones, each from the last that gave in; None for one that is passed over."""
-    yield coarse
-    while True:
-        n, gave_in = 2 * fine.grid.nodes.size - 1, fine.solution.converged
-        yield fine if gave_in else None
-        if options.nodes is None and gave_in and n <= METHOD.most_nodes:
-            coarse, fine = fine, run.sharpened(fine, n) if options.sharp else run.warm(fine, None, n)
-        elif options.nodes is None and not gave_in and n <= run.most_cold and not run.exhausted:
-            fine = run.warm(coarse, None, n)
-        else:
-            run.failed = None if gave_in else fine
-            return
+class _Films:
+    """Films of one call; grids that are prescribed have no tolerance to meet."""
 
+    def __init__(self, run: GridSearch, options: Options, inlet: float) -> None:
+        self.run, self.options, self.inlet, self.off = run, options, inlet, math.inf
+        self.first: tuple[Level, ...] = ()  # levels that are solved already
 
-class _Judge:
-    """Compares grids with what is asked; those that are prescribed have no tolerance to meet."""
-
-    def __init__(self, options: Options, inlet: float) -> None:
-        self.options, self.inlet, self.off = options, inlet, math.inf
+    def on(self, nodes: int, near: Level | None) -> Level | None:
+        """Give the first two grids, and ever finer ones from the last that gave in."""
+        run = self.run
+        level = next((known for known in self.first if known.grid.nodes.size == nodes), None)
+        if level is None:
+            assert near is not None  # the first grid is solved already
+            if run.failed is not None and (nodes > run.most_cold or run.exhausted):
+                return None
+            sharp = self.options.sharp and run.failed is None
+            level = run.sharpened(near, nodes) if sharp else run.warm(near, None, nodes)
+        run.failed = None if level.solution.converged else level
+        return level if run.failed is None else None
 
     def compared(self, coarse: Level, fine: Level) -> _Pair:
         """Compare two; a spike whose error does not fall from grid to grid ends the search."""

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
-from functools import partial
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -62,6 +60,27 @@ def _carried(coarse: WarmLevel, fine: WarmLevel, solved: WarmLevel, level: Level
     return replace(level, solution=replace(level.solution, P=np.maximum(P, 0.0), H0=H0))
 
 
+@dataclass(frozen=True)
+class _Films:
+    """Films of one call of a search, by the tolerance or up to so many nodes."""
+
+    search: Search
+    base: Level
+    old: Pair | None
+    nodes: int | None
+
+    def on(self, nodes: int, near: WarmLevel | None) -> WarmLevel | None:
+        """Solve from the last grid that gave in."""
+        return self.search.on(near or self.base, nodes, self.old, near)
+
+    def compared(self, coarse: WarmLevel, fine: WarmLevel) -> Compared:
+        """Say what two grids differ by."""
+        search = self.search
+        compared = Compared(coarse, fine, search.tolerance, search.flooded, self.nodes)
+        search.reason = f"error {compared.error:.2g} left on {fine.grid.nodes.size} nodes"
+        return compared
+
+
 class Search:
     """Solves levels with heat; counts what it does."""
 
@@ -117,34 +136,22 @@ class Search:
 
         Where no grid meets it the two that differ by the smallest amount are given back, with what they differ by.
         """
-        compared = refine(doubled(self._levels(base, old, nodes), partial(self._compared, nodes)))
-        return compared if compared is not None and compared.error < WORST else None
-
-    def _compared(self, nodes: int | None, coarse: WarmLevel, fine: WarmLevel) -> Compared:
-        n = fine.grid.nodes.size
-        compared = Compared(coarse, fine, self.tolerance, self.flooded, nodes)
-        self.reason = f"error {compared.error:.2g} left on {n} nodes"
-        return compared
-
-    def _levels(self, base: Level, old: Pair | None, nodes: int | None) -> Iterator[WarmLevel | None]:
-        """Solve on grids of 65, 129, 257 and 513 nodes, or up to those asked for; None where one fails.
-
-        A neighbour gives starts on its own two grids.
-        """
         sizes = [METHOD.most_nodes_with_heat if nodes is None else nodes]
         while sizes[0] >= 4 * METHOD.first_nodes - 3:
             # a grid that is asked for starts from coarser ones as any does
             sizes.insert(0, (sizes[0] + 1) // 2)
-        known = base.oil
-        before = self._fed(self._on(self._level(base, (sizes[0] + 1) // 2), known))
-        yield before
-        for n in sizes:
-            level, oil = (base, known) if before is None else (before, before.oil)
-            solved = self._fed(self._on(self._level(level, n), oil, old, before))
-            yield solved
-            if solved is None:
-                self.reason = "Newton's method did not converge"
-            before, old = solved or before, None
+        # a neighbour gives starts on its own two grids
+        served = old is not None and old[1].grid.nodes.size == sizes[0]
+        films = _Films(self, base, old if served else None, nodes)
+        compared = refine(doubled(films, ((sizes[0] + 1) // 2, *sizes)))
+        return compared if compared is not None and compared.error < WORST else None
+
+    def on(self, base: Level, n: int, old: Pair | None, near: WarmLevel | None) -> WarmLevel | None:
+        """Solve on n nodes from a level and its oil, or as an old pair and the coarser grid make likely."""
+        solved = self._fed(self._on(self._level(base, n), base.oil, old, near))
+        if solved is None:
+            self.reason = "Newton's method did not converge"
+        return solved
 
     def _fed(self, level: WarmLevel | None) -> WarmLevel | None:
         """Move the meniscus of a layer until the film carries away what the layer brings."""

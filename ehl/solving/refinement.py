@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from typing import Protocol, TypeVar
 
 
@@ -20,15 +20,33 @@ class Agreement(Protocol):
 
 L = TypeVar("L")
 A = TypeVar("A", bound=Agreement)
+A_co = TypeVar("A_co", bound=Agreement, covariant=True)
 
 
-def doubled(levels: Iterable[L | None], compared: Callable[[L, L], A]) -> Iterator[A]:
-    """Compare every grid with the last one before it that gave in; one that fails (None) is passed over."""
+class Problem(Protocol[L, A_co]):
+    """A film that is solved on one grid after another."""
+
+    def on(self, nodes: int, near: L | None) -> L | None:
+        """Solve on a grid, from the last one that gave in; None where it fails."""
+
+    def compared(self, coarse: L, fine: L) -> A_co:
+        """Say what two grids differ by."""
+
+
+def doubled(problem: Problem[L, A], nodes: Iterable[int]) -> Iterator[A]:
+    """Compare every grid with the last one before it that gave in; one that fails is passed over."""
     coarse: L | None = None
-    for fine in levels:
+    for n in nodes:
+        fine = problem.on(n, coarse)
         if fine is not None and coarse is not None:
-            yield compared(coarse, fine)
+            yield problem.compared(coarse, fine)
         coarse = coarse if fine is None else fine
+
+
+def doublings(nodes: int, most: int) -> Iterator[int]:
+    """Nodes of twice as many cells, and twice as many again."""
+    while (nodes := 2 * nodes - 1) <= most:
+        yield nodes
 
 
 def refine(pairs: Iterable[A]) -> A | None:
