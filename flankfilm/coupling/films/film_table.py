@@ -3,8 +3,9 @@ r"""Films over place and line load: solved at some places of the path under some
 Under a given oil a film is a function of its place on the path, which has radius and speeds, and of its line load.
 Cells of a face bear any of these loads at any place, thousands of them, and what they ask for is smooth in both: films
 are solved on a grid of places and of logarithms of loads, and the logarithms of their separation and thicknesses are
-interpolated by bicubic splines. The error is read from the films that every second place, and every second load, leave
-out.
+interpolated by bicubic splines, that of the separation over the loads by the films' own slopes: separations scatter
+within their error, which splines through them alone make several per cent of their slopes. The error is read from the
+films that every second place, and every second load, leave out.
 
 The film of a cell is that of a line contact. Oil that flows along the face is left out: between cells, where the
 pressure changes over the length that the load changes over, many half-widths; and at the ends of the face, where oil
@@ -30,9 +31,11 @@ from flankfilm.coupling.films.films import (
     Solved,
     film_inside,
     films_under,
+    power_of,
     separations_of,
 )
 from flankfilm.coupling.films.line_contacts import line_contacts
+from flankfilm.coupling.films.sloped_figure import SlopedFigure
 from flankfilm.coupling.mesh.cells import line_loads
 from gears.pair.hertz import half_width
 
@@ -57,12 +60,8 @@ LEFT_OUT = {"separation": 0.25, "minimum_thickness": 0.25, "central_thickness": 
 Central films have a knee where the spike passes, which grids halve by halves.
 """
 
-OF_SLOPES = 1.0
-"""The same of slopes by the load, which stiffness follows: all of it.
-
-They converge by an eighth where both grids resolve them. Where pairs let go they do not yet: with thick oil the
-smallest stiffness moves by 2.4 times as much on a grid twice as fine.
-"""
+OF_SLOPES = 0.5
+"""The same of slopes by the load, which stiffness follows: they converge by an eighth where both grids resolve them."""
 
 FIGURES = ("separation", "minimum_thickness", "central_thickness")
 
@@ -82,8 +81,10 @@ class FilmTable(FilmField):
         Of the films [m].
     film_error : float or None
         Largest relative error of the films' thicknesses; None by formula.
-    separation_shift : ndarray or None, shape (places, loads)
-        Relative errors of the separations, with the sign of the last refinement; None by formula.
+    power : ndarray, shape (places, loads)
+        Power of the load with which the separation grows, by the films' own slopes.
+    separation_shift, slope_shift : ndarray or None, shape (places, loads)
+        Relative errors of the separations and of their slopes, with the sign of the last refinement; None by formula.
     """
 
     figures = FIGURES
@@ -94,7 +95,9 @@ class FilmTable(FilmField):
     minimum_thickness: Array
     central_thickness: Array
     film_error: float | None
+    power: Array
     separation_shift: Array | None = None
+    slope_shift: Array | None = None
 
     def at(self, figure: str, rho1: Array, load: Array, slope: int = 0) -> Array:
         """Separation or thickness [m], of a name in `FIGURES`, or its slope by the load [m2/N].
@@ -147,13 +150,16 @@ class FilmTable(FilmField):
     def varied(self) -> tuple[tuple[FilmTable, float], ...]:
         """Tables that are off, and how much of what each changes of a figure is error.
 
-        One has the separations off by their films' errors, node by node as the last refinement moved them, and slopes
-        with them; two have every second place and every second load. Films by formula have no error estimate.
+        One has the separations off by their films' errors, node by node as the last refinement moved them, and all
+        slopes off by theirs to one side; two have every second place and every second load. Films by formula have no
+        error estimate.
         """
         grids = tuple((self._every_second(along), OF_SLOPES) for along in (0, 1))
-        if self.separation_shift is None:
+        if self.separation_shift is None or self.slope_shift is None:
             return grids
-        return (replace(self, separation=self.separation * (1.0 + self.separation_shift)), 1.0), *grids
+        grown, steeper = 1.0 + self.separation_shift, 1.0 + np.abs(self.slope_shift)
+        off = replace(self, separation=self.separation * grown, power=self.power * steeper / grown)
+        return (off, 1.0), *grids
 
     @property
     def error(self) -> float | None:
@@ -181,10 +187,20 @@ class FilmTable(FilmField):
     def _every_second(self, along: int) -> FilmTable:
         """Table by every second place (0), or load (1)."""
         kept = (slice(None, None, 2), slice(None)) if along == 0 else (slice(None), slice(None, None, 2))
-        grid = {name: getattr(self, name)[kept] for name in FIGURES}
-        if self.separation_shift is not None:
-            grid["separation_shift"] = self.separation_shift[kept]
+        grids = {name: getattr(self, name) for name in (*FIGURES, "power", "separation_shift", "slope_shift")}
+        grid = {name: None if values is None else values[kept] for name, values in grids.items()}
         return replace(self, rho1=self.rho1[kept[0]], load=self.load[kept[1]], **grid)
+
+    @cached_property
+    def _sloped(self) -> SlopedFigure:
+        return SlopedFigure(self.rho1, np.log(self.load), self.grid("separation"), self.power)
+
+    def within(self, figure: str, rho1: Array, load: Array, slope: int = 0) -> Array:
+        """Figure as it is interpolated, the separation with its own slopes."""
+        if figure != "separation":
+            return super().within(figure, rho1, load, slope)
+        place = np.clip(np.nan_to_num(rho1), self.rho1[0], self.rho1[-1])
+        return self._sloped.at(place, np.log(np.clip(load, self.load[0], self.load[-1])), slope)
 
     def grid(self, figure: str) -> Array:
         """Logarithm of a figure of all films (places, loads)."""
@@ -252,9 +268,8 @@ def table_on(
     def each(figure: str) -> Array:
         return np.array([[getattr(film, figure) for film in row[::-1]] for row in rows])
 
-    shifts = None
-    if model.name == "ehl":
-        shifts = np.array([[_shift(film) for film in row[::-1]] for row in rows])
+    solved = model.name == "ehl"
+    errors = [[film_inside(film).errors for film in row[::-1]] for row in rows] if solved else []
     return FilmTable(
         rho1,
         load,
@@ -267,15 +282,11 @@ def table_on(
         ),
         each("minimum_thickness"),
         each("central_thickness"),
-        None if shifts is None else float(each("error").max()),
-        shifts,
+        float(each("error").max()) if solved else None,
+        np.array([[power_of(film) for film in row[::-1]] for row in rows]),
+        np.array([[error.separation_shift for error in row] for row in errors]) if solved else None,
+        np.array([[error.slope_shift for error in row] for row in errors]) if solved else None,
     )
-
-
-def _shift(film: Solved) -> float:
-    """Relative error of a solved film's separation, with its sign."""
-    inside = film_inside(film)
-    return float(inside.errors.separation_shift)
 
 
 def _check(model: FilmModel) -> None:

@@ -341,6 +341,14 @@ def _exponent(film: Solved, definition: str) -> float:
     return max(-slope * film.contact.load / _separation(film), 0.0)
 
 
+def power_of(film: Solved) -> float:
+    """Power of the load with which a film's separation grows, below 0 as a rule; none where planes overlap."""
+    slope = getattr(film, "separation_slope", None)
+    if slope is None:
+        slope = -1.0 / film.stiffness()
+    return slope * film.contact.load / film.separation if film.separation >= _separation(film) else 0.0
+
+
 def separations_of(rho1: Array, films: tuple[Solved, ...]) -> Array:
     """Separations of films at places [m] that laws of the load continue (n,) [m].
 
