@@ -201,3 +201,33 @@ def test_the_error_of_the_greatest_pressure_covers_a_spike_narrower_than_its_cel
     spikeless = LineContact.from_moes(2.0, 1.0)
     still = solve_transient(spikeless, lambda _: spikeless.load, times, nodes=129)
     assert still.pressure_error < 0.01
+
+
+def test_the_work_on_the_surfaces_is_what_the_oil_dissipates():
+    """Over a period of an oscillation: u int h p' dx of rolling and -w ds of squeezing are int h^3 p'^2/(12 eta) dx."""
+    oil = Lubricant(viscosity=0.3, pressure_viscosity=12e-9, density=910.0)
+    contact = LineContact(load=3e3, entrainment=1.0, radius=0.015, reduced_modulus=2.2e11, lubricant=oil)
+    u, b = contact.entrainment, contact.half_width
+    period = 2.0 * math.pi * b / u
+    times = np.linspace(0.0, 3.0 * period, 145)
+    film = solve_transient(
+        contact,
+        lambda t: 3e3 * (1.0 + 0.6 * math.sin(2.0 * math.pi * t / period)),
+        times,
+        tolerance=0.003,
+        nodes=65,
+        supply=Meniscus(-6.0 * b),
+    )
+    assert film.converged
+    powers = []
+    for x, p, h in zip(film.x[96:], film.pressure[96:], film.thickness[96:], strict=True):
+        slope, middle = np.diff(p) / np.diff(x), 0.5 * (h[1:] + h[:-1])
+        cubed = (h[1:] ** 3 + 4.0 * middle**3 + h[:-1] ** 3) / 6.0
+        viscosity = oil.viscosity * np.exp(oil.log_viscosity(0.5 * (p[1:] + p[:-1]))[0])
+        dissipated = cubed * slope**2 / (12.0 * viscosity)
+        powers.append([np.diff(x) @ (u * middle * slope), np.diff(x) @ dissipated])
+    rolling, dissipation = np.trapezoid(np.array(powers).T, times[96:])
+    load = film.load[96:]
+    squeezing = -0.5 * (load[1:] + load[:-1]) @ np.diff(film.separation[96:])
+    assert squeezing > 0.08 * dissipation
+    assert rolling + squeezing == pytest.approx(dissipation, rel=5e-3)
