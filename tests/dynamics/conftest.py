@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -10,25 +13,34 @@ from dynamics import GearOscillator
 from tests.validation.article_motion import lubricated
 
 
+def cosines(series, by_square: bool = False) -> Callable[[float], float]:
+    """Sum of a series of amplitudes and phases at an angle [rad], in plain numbers; terms times n^2 if asked for."""
+    terms = [(n, n**2 * a if by_square else a, p) for n, (a, p) in enumerate(series, start=1)]
+    return lambda angle: sum(a * math.cos(n * angle + p) for n, a, p in terms)
+
+
 def step_by_step(osc: GearOscillator, state, duration: float):
     """Integrate in the stretches between crossings, which scipy's event location finds.
 
     Every stretch is integrated with the branch of f that holds in it, so that no step straddles a corner of
     f.
     """
-    d = osc.half_backlash
+    d, w = osc.half_backlash, osc.frequency
+    wave = cosines(zip(osc.stiffness.amplitudes, osc.stiffness.phases, strict=True))
+    push = cosines(osc.error_series.T.tolist(), by_square=True)  # of the error's acceleration
     x, v = float(state[0]), float(state[1])
     region = 1 if x > d else -1 if x < -d and not osc.one_sided else 0
     now, y = 0.0, np.array([x, v, 1.0, 0.0, 0.0, 1.0])
     counts = [0, 0]
     for _ in range(10_000):
         spring = 0.0 if region == 0 and (d > 0.0 or osc.one_sided) else 1.0
+        c = 2.0 * osc.damping_ratios[0 if spring else 1]
 
-        def rhs(t, y, spring=spring, region=region):
-            k = spring * osc.stiffness(osc.frequency * t)
-            c = 2.0 * osc.damping_ratios[0 if spring else 1]
-            acceleration = osc.force(t) - c * y[1] - k * (y[0] - region * d)
-            return [y[1], acceleration, y[4], y[5], -k * y[2] - c * y[4], -k * y[3] - c * y[5]]
+        def rhs(t, y, spring=spring, region=region, c=c):
+            x, v, a, b, da, db = y.tolist()
+            k = spring * (osc.stiffness.mean + wave(w * t))
+            acceleration = osc.mean_force + w**2 * push(w * t) - c * v - k * (x - region * d)
+            return [v, acceleration, da, db, -k * a - c * da, -k * b - c * db]
 
         def upper(t, y):
             return y[0] - d
