@@ -32,6 +32,8 @@ PACKAGES = ("flankfilm", "base", "gears", "meshes", "fem", "ehl", "dynamics")
 
 SMALL = ishikawa("X", "closed-forms", "stiffness", "fourier")
 SMALL = SMALL.replace('"X"', "'../../x<script>alert(1)</script>\"; import os'")
+NEXT = ishikawa("Y", "geometry")
+"""What is run after it in its folder."""
 
 MOTION = """
 wants = ["sweep"]
@@ -275,13 +277,12 @@ class TestManifest:
     """Files of an earlier run go, those of somebody stay."""
 
     @pytest.fixture
-    def folder(self, tmp_path):
-        run_scene(parse_scene(SMALL), tmp_path / "out")
-        return tmp_path / "out"
+    def folder(self, small_run, tmp_path):
+        return Path(shutil.copytree(small_run, tmp_path / "out"))
 
     def test_what_the_next_run_does_not_write_goes(self, folder):
         before = {str(path.relative_to(folder)) for path in folder.rglob("*.csv")}
-        found = run_scene(parse_scene(ishikawa("Y", "geometry")), folder)
+        found = run_scene(parse_scene(NEXT), folder)
         after = {str(path.relative_to(folder)) for path in folder.rglob("*.csv")}
         assert after == {str(path.relative_to(folder)) for path in found.files if path.suffix == ".csv"}
         assert before - after
@@ -294,7 +295,7 @@ class TestManifest:
         changed = sorted((folder / "csv").iterdir())[0]
         changed.write_text(changed.read_text() + "# mine\n")
         (folder / "notes.txt").write_text("mine")
-        found = run_scene(parse_scene(ishikawa("Y", "geometry")), folder)
+        found = run_scene(parse_scene(NEXT), folder)
         expected = {"notes.txt"} if changed in found.files else {"notes.txt", f"csv/{changed.name}"}
         assert set(found.others) == expected
         assert "notes.txt" in summary(found)[-1]
@@ -309,13 +310,13 @@ class TestManifest:
         (folder / "link").symlink_to(other)
         digest = hashlib.sha256(b"mine").hexdigest()
         (folder / "files.json").write_text(json.dumps({"sha256": {name: digest}}))
-        run_scene(parse_scene(SMALL), folder)
+        run_scene(parse_scene(NEXT), folder)
         assert mine.read_text() == (other / "mine").read_text() == "mine"
 
     @pytest.mark.parametrize("text", ["", "[]", "{", '{"sha256": 3}', "[" * 100_000, '{"sha256": {"x": 1}}'])
     def test_a_damaged_list_is_none(self, folder, text):
         (folder / "files.json").write_text(text)
-        assert run_scene(parse_scene(SMALL), folder).files
+        assert run_scene(parse_scene(NEXT), folder).files
 
 
 @pytest.mark.parametrize(
