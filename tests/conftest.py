@@ -4,6 +4,7 @@ import pytest
 
 from flankfilm.files.cache import keep_compiled_code
 from gears import GearPair
+from tests.compiled import pytest_xdist_setupnodes
 from tests.processes import pytest_configure, pytest_sessionfinish
 from tests.seeds import seed_header
 from tests.time_limit import (
@@ -24,6 +25,7 @@ __all__ = [
     "pytest_sessionfinish",
     "pytest_sessionstart",
     "pytest_terminal_summary",
+    "pytest_xdist_setupnodes",
 ]
 
 # Before a test imports numba. Kernels are kept where the program keeps them, and those of `warm-up` are found: without

@@ -9,9 +9,12 @@ import json
 import os
 import subprocess
 import sys
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
+
+from tests import compiled
 
 MOTION = """
 import dataclasses, json
@@ -89,3 +92,20 @@ def test_compiled_code_computes_what_is_written(code: str, near: float):
         assert interpreted[name] == pytest.approx(
             values, rel=near, abs=near * max(map(abs, values), default=0.0)
         ), name
+
+
+@pytest.mark.parametrize(
+    ("workers", "source", "times"), [(2, "TESTPATHS", 1), (1, "TESTPATHS", 0), (2, "ARGS", 0)]
+)
+def test_only_the_whole_suite_on_several_workers_compiles_beforehand(monkeypatch, workers, source, times):
+    commands = []
+    done = SimpleNamespace(stdout="films: was ready, 0.2 s")
+    monkeypatch.setattr(compiled.subprocess, "run", lambda command, **_: commands.append(command) or done)
+    said = []
+    config = SimpleNamespace(
+        args_source=pytest.Config.ArgsSource[source],
+        get_terminal_writer=lambda: SimpleNamespace(line=said.append),
+    )
+    compiled.pytest_xdist_setupnodes(config, [object()] * workers)
+    assert [command[1:] for command in commands] == [["-m", "flankfilm", "warm-up"]] * times
+    assert said == [done.stdout] * times
