@@ -13,6 +13,7 @@ from fem.contact.face_errors import FEW_CELLS
 from fem.contact.opposite_flanks import OppositeFlanks
 from fem.cycle.events import ContactProblem
 from fem.cycle.face_loads import face_loads
+from fem.cycle.fit_errors import fit_error
 from fem.cycle.model_error import LoadedContacts
 from fem.cycle.result import MeshCycle
 from fem.elasticity.flamant import hertz_half_width
@@ -62,6 +63,12 @@ def cycle_of(
     approach = contact.share.transmission_error[number]
     bearing = opposite if opposite is not None and np.any(opposite.share.forces[number] > 0.0) else None
     behind = None if bearing is None else (bearing.candidates, bearing.share.forces[number])
+    on_faces = _on_faces(contact, number)
+    by_fits = (
+        0.0
+        if refusal
+        else fit_error(bodies, contact, number, on_faces, setup.moving_contact, behind is not None)
+    )
     return MeshCycle(
         torque=torque,
         force=force,
@@ -82,7 +89,7 @@ def cycle_of(
         pair_stiffness=(contact.share.pair_stiffness[number] / contact.lever_ratios).reshape(-1, pairs) + bad,
         plane=bodies.plane,
         beyond_path=setup.beyond_path,
-        error=bodies.error + by_cells,
+        error=bodies.error + by_cells + by_fits,
         moving_contact=setup.moving_contact,
         strips_at_corners=setup.strips_at_corners,
         lever_loss=lost[0],
@@ -99,7 +106,7 @@ def cycle_of(
         face=None if refusal else face_loads(setup, contact, number, bodies.plane),
         loaded=None
         if refusal
-        else LoadedContacts(setup, bodies, candidates, _on_faces(contact, number), approach, force, behind),
+        else LoadedContacts(setup, bodies, candidates, on_faces, approach, force, behind),
         problem=None
         if refusal
         else ContactProblem(

@@ -12,6 +12,7 @@ from fem.contact.contact_state import ContactState
 from fem.contact.face_errors import half_as_many
 from fem.contact.shared_contacts import yielding_over_face
 from fem.contact.solver import solve_contact
+from fem.cycle.fit_errors import doubts
 from fem.laws.corner_laws import CornerLaws
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
@@ -87,13 +88,15 @@ class ContactProblem:
         fine = self.divided()
         coarse = self._alike(self.bodies.coarser, fine)
         others = [(replace(self, film=film), share) for film, share in self.varied]
-        varied = tuple((other._alike(self.bodies, fine), share) for other, share in others)
+        varied = [(other._alike(self.bodies, fine), share) for other, share in others]
+        for doubt in doubts(self.setup.moving_contact, self.setup.two_sided):
+            varied.append((self._alike(self.bodies.doubtful(doubt), fine), 1.0))
         fewer = None
         if self.scatter:
             few, share = half_as_many(self.setup.face)
             problem = replace(self, setup=replace(self.setup, face=few))
             fewer = FewerCells(problem._alike(self.bodies, fine), share, self.scatter)
-        return MeshArcs(fine, coarse, self.bodies.gain, self.ends_error, varied, fewer)
+        return MeshArcs(fine, coarse, self.bodies.gain, self.ends_error, tuple(varied), fewer)
 
     def divided(self) -> Division:
         """Arcs and events on the mesh in use alone."""

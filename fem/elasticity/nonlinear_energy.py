@@ -38,7 +38,7 @@ __all__ = ["densities", "half_plane", "hertz_rotation", "large_strain", "third_o
 Strain = tuple[Array, Array, Array]
 
 NOMINAL = 0.15
-"""Half-width of the pressure in modules with which the gear's energy is integrated."""
+"""Half-width of the pressure in modules with which a gear's energy is integrated."""
 
 NEIGHBOURS = 1
 """Sectors on either side of the loaded one whose energy counts."""
@@ -116,20 +116,22 @@ def _strained(slopes: Array) -> tuple[Strain, Array]:
     return (xx, yy, 0.5 * (xy + yx)), 0.5 * (yx - xy)
 
 
-def third_order(loads: LineLoads) -> Array:
+def third_order(loads: LineLoads, half_width: float = NOMINAL) -> Array:
     """Third-order integrals (3, loads) per unit load cubed and face width, less those of the half-plane.
 
     Parameters
     ----------
     loads : LineLoads
         Normal to the flank of tooth 0, each by itself.
+    half_width : float
+        Of the pressure [modules].
 
     Returns
     -------
     (3, loads) array
         Of ``densities``: an energy [m^3/N^2], two of the strain [m^5/N^3].
     """
-    ring, half_width = loads.ring, NOMINAL * loads.ring.mesh.module
+    ring, half_width = loads.ring, half_width * loads.ring.mesh.module
     mesh, law, count = ring.mesh, ring.law, len(loads.at.rho)
     xi, eta, weight = _quadrature(0)
     gradient, area = physical_gradients(mesh.points, mesh.triangles, xi, eta)

@@ -10,6 +10,7 @@ moves the left one of tooth -k by the same. Samples that are not symmetric show 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,8 +18,8 @@ import numpy as np
 from base import Array, Integers, record
 from fem.elasticity.line_load import FlankPoints, LineLoads, flank_points, line_loads
 from fem.influence.flank_variable import FlankVariable
-from fem.influence.gear_compliance import CROSS_DEGREE
-from fem.influence.series import CrossSeries, FlankFit, of_teeth
+from fem.influence.gear_compliance import cross_degree
+from fem.influence.series import CrossSeries, FlankFit, left_out, of_teeth
 
 if TYPE_CHECKING:
     from fem.elasticity.plane_elasticity import PlaneElasticity
@@ -50,6 +51,12 @@ class BackCompliance:
         modulus = law.plane_modulus
         series = {tooth: each.scaled(module, modulus) for tooth, each in self.series.items()}
         return BackCompliance(series, self.error / modulus)
+
+    def off(self) -> BackCompliance:
+        """Series that are off by their remainder."""
+        change = left_out(self.series, self.error)
+        series = {tooth: of_tooth.plus(change[tooth].coefficients) for tooth, of_tooth in self.series.items()}
+        return replace(self, series=series)
 
     def across(self, tooth: Integers, load: Array, point: Array) -> Array:
         """Displacement into the right flank of a tooth by a load on the left flank of tooth 0 [m per N/m].
@@ -104,10 +111,10 @@ def _seen(loads: LineLoads, tooth: int, points: FlankPoints) -> Array:
 def _fitted(rho: Array, seen: Mapping[int, Array]) -> BackCompliance:
     """Fit what loads do at the same places of the other flanks (points, loads), tooth by tooth."""
     place = FlankVariable((float(rho[0]), float(rho[-1])))
-    fit = FlankFit(place, place.unit(rho, hold=False), min(CROSS_DEGREE, len(rho) - 1))
+    fit = FlankFit(place, place.unit(rho, hold=False), cross_degree(len(rho)))
     series, error = {}, 0.0
     for tooth, moved in seen.items():
         even = 0.5 * (moved + moved.T)
         series[tooth] = fit.cross(even)
-        error = max(error, float(np.max(np.abs(moved - even))), series[tooth].remainder(fit.unit, even))
+        error = max(error, float(np.max(np.abs(moved - even))), float(fit.error(series[tooth], even)))
     return BackCompliance(series, error)

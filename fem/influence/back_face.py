@@ -25,7 +25,6 @@ from fem.elasticity.line_load import flank_points
 from fem.elasticity.prism import Face, prism
 from fem.influence.back_compliance import teeth_around
 from fem.influence.flank_variable import FlankVariable
-from fem.influence.gear_compliance import CROSS_DEGREE
 from fem.influence.gear_face import END_PLACES, ENDS_SIZES, PLACES, between_waves, section_of, solved_waves
 from fem.influence.gear_shape import MeshedShape
 from fem.influence.series import CrossSeries, FlankFit, of_teeth
@@ -120,7 +119,7 @@ def back_harmonics(meshed: MeshedShape) -> BackHarmonics:
     moved = np.stack(by_wave, axis=-1)  # (teeth, loads, points, waves)
     beyond = moved - moved[..., -1:]
     even = 0.5 * (beyond + np.swapaxes(beyond, 1, 2))
-    place, fit = _fit(rho, CROSS_DEGREE)
+    place, fit = _fit(rho, 3 * PLACES // 4)
     coefficients = _coefficients(fit, even)
     error = max(float(np.max(np.abs(beyond - even))), _remainder(fit, coefficients, even))
     return BackHarmonics(

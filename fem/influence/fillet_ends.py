@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 __all__ = ["FilletEnds", "fillet_ends"]
 
-PLACES, DEGREE, SAMPLES = 8, 5, 21
-"""Places of loads on the flank, degree of the series through them, samples of a fillet."""
+PLACES, SAMPLES = 8, 21
+"""Places of loads on the flank, and samples of a fillet."""
 
 TEETH = (-1, 0, 1)
 """Teeth that are looked at, counted anticlockwise from the loaded one; farther ones hardly feel where a face ends."""
@@ -80,7 +80,8 @@ class FilletEnds:
         samples : int
             Of a fillet.
         """
-        by_place = self.place.basis(self.place.held(rho), DEGREE, hold=False)
+        degree = self.even[0].shape[1] - 1
+        by_place = self.place.basis(self.place.held(rho), degree, hold=False)
         finer = local_cubic(np.linspace(0.0, 1.0, SAMPLES), np.linspace(0.0, 1.0, samples), 4)
         # the face that was solved ends where cells and places do, to the last bit
         most = float(self.half.ends[-1])
@@ -122,7 +123,7 @@ def fillet_ends(shape: GearShape, face_width: float, rho_low: float) -> FilletEn
     at = flank_points(mesh, place.rho(unit))
     line = fillet_line(profile, SAMPLES)
     over, half = section(mesh, solid_of(shape.poisson)), half_face(0.5 * face_width, 1.0, LAST, GROWTH)
-    weights = FlankFit(place, unit, DEGREE).weights
+    weights = FlankFit(place, unit, 2 * PLACES // 3).weights
     series = []
     for even in (True, False):
         free, walls = (_strains(over, profile, half, even, ends, at, line) for ends in (True, False))

@@ -34,8 +34,8 @@ __all__ = ["ACROSS", "ALONG", "SHEAR", "FilletWaves", "even_waves", "fillet_wave
 ALONG, ACROSS, SHEAR = 0, 1, 2
 """E* eps_t, E* eps_z and tau."""
 
-PLACES, DEGREE = 14, 9
-"""Places of loads on the flank, and degree of the series in the curvature radius through them."""
+PLACES = 14
+"""Places of loads on the flank."""
 
 
 @record
@@ -84,7 +84,7 @@ def fillet_waves(mesh: SectorMesh, influence: FilletInfluence) -> FilletWaves:
     decay = np.divide(sizes, sizes[-1], out=np.zeros_like(sizes), where=sizes[-1] > 0.0)
     beyond = stresses - still
     beyond[:, :, :, ALONG] += (np.minimum(decay, 1.0) - 1.0)[..., None, None] * lack
-    weights = FlankFit(place, unit, DEGREE).weights
+    weights = FlankFit(place, unit, 2 * PLACES // 3).weights
     series = {
         tooth: FlankSeries(place, np.einsum("dl,wlcsn->dwcsn", weights, beyond[:, i], optimize=True))
         for i, tooth in enumerate(teeth)

@@ -19,23 +19,29 @@ The sum does not change when a gear is turned as a whole: then tau = 0, and alph
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import Array, record
 from fem.elasticity.line_load import flank_points, line_loads
-from fem.elasticity.nonlinear_energy import third_order
+from fem.elasticity.nonlinear_energy import NOMINAL, third_order
 from fem.influence.flank_variable import FlankVariable
-from fem.influence.series import FlankFit, FlankSeries
+from fem.influence.series import FlankFit, FlankSeries, left_out
 
 if TYPE_CHECKING:
     from fem.elasticity.plane_elasticity import PlaneElasticity
     from fem.elasticity.ring import Ring
 
-__all__ = ["FlankMotion", "flank_motion"]
+__all__ = ["FIT", "WIDTH", "FlankMotion", "flank_motion"]
 
-PLACES, DEGREE = 9, 6
+FIT, WIDTH = "fit", "width"
+"""What the motion may be off by."""
+
+PLACES = 9
+"""Loads along the flank; two thirds as many terms follow them."""
 CLEARANCE = 0.15
 """Nearest place to the tip corner, as an arc in modules; nearer contacts take its values."""
 FOOT = 0.5
@@ -52,10 +58,14 @@ class FlankMotion:
         t [m per N/m].
     energy_series : FlankSeries of (3,)
         The gear's third-order integrals per load cubed and face width (``fem.elasticity.nonlinear_energy``).
+    doubts : mapping of str to FlankMotion
+        What both may be off by: ``FIT`` is what the series leave out, ``WIDTH`` what half the half-width of the
+        pressure changes.
     """
 
     tangential_series: FlankSeries
     energy_series: FlankSeries
+    doubts: Mapping[str, FlankMotion]
 
     @property
     def rho_range(self) -> tuple[float, float]:
@@ -70,12 +80,23 @@ class FlankMotion:
         """Third-order integrals (3, ...) at rho [m], less those of the half-plane; alpha is the first [m^3/N^2]."""
         return np.moveaxis(self.energy_series.at(rho), -1, 0)
 
+    def off_by(self, doubt: str) -> FlankMotion:
+        """Motion that is off by a doubt of it."""
+        change = self.doubts[doubt]
+        return replace(
+            self,
+            tangential_series=self.tangential_series.plus(change.tangential_series.coefficients),
+            energy_series=self.energy_series.plus(change.energy_series.coefficients),
+        )
+
     def scaled(self, module: float, law: PlaneElasticity) -> FlankMotion:
         """Give a gear in modules and E* its size [m] and modulus."""
         modulus = law.plane_modulus
         units = module * np.array([modulus**2, modulus**3, modulus**3])
         return FlankMotion(
-            self.tangential_series.scaled(module, modulus), self.energy_series.scaled(module, units)
+            self.tangential_series.scaled(module, modulus),
+            self.energy_series.scaled(module, units),
+            {name: change.scaled(module, law) for name, change in self.doubts.items()},
         )
 
 
@@ -88,8 +109,22 @@ def flank_motion(ring: Ring, flank: str = "left") -> FlankMotion:
     high = float(np.sqrt(2 * mesh.base_radius * arc))
     unit = -np.cos(np.pi * (np.arange(PLACES) + 0.5) / PLACES)
     place = FlankVariable((low, high))
-    at, fit = flank_points(mesh, place.rho(unit), flank), FlankFit(place, unit, DEGREE)
+    at, fit = flank_points(mesh, place.rho(unit), flank), FlankFit(place, unit, 2 * PLACES // 3)
     loads = line_loads(ring, at)
     tangential = np.diagonal(loads.on_tooth(0, at.towards_tip()))
-    energy = (third_order(loads) @ fit.weights.T).T
-    return FlankMotion(fit.series(tangential), FlankSeries(place, energy))
+    integrals, narrow = (third_order(loads, times * NOMINAL) for times in (1.0, 0.5))
+    along = fit.series(tangential)
+    energy, narrowed = (
+        FlankSeries(place, (samples @ fit.weights.T).T) for samples in (integrals, narrow - integrals)
+    )
+    by_fit = [
+        _left_out(fit, series, samples) for series, samples in ((along, tangential), (energy, integrals.T))
+    ]
+    still = replace(along, coefficients=np.zeros_like(along.coefficients))
+    doubts = {FIT: FlankMotion(by_fit[0], by_fit[1], {}), WIDTH: FlankMotion(still, narrowed, {})}
+    return FlankMotion(along, energy, doubts)
+
+
+def _left_out(fit: FlankFit, series: FlankSeries, samples: Array) -> FlankSeries:
+    """What a fit leaves out, at least the size of its last term: few samples lie close to it."""
+    return left_out({0: series}, np.maximum(fit.error(series, samples), np.abs(series.coefficients[-1])))[0]

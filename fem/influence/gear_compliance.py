@@ -22,15 +22,15 @@ from fem.elasticity.flank_samples import FlankSamples
 from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.ring import Ring
 from fem.influence.flank_variable import FlankVariable, RootVariable
-from fem.influence.series import CrossSeries, FlankFit, FlankSeries
+from fem.influence.series import CrossSeries, FlankFit, FlankSeries, left_out
 
 if TYPE_CHECKING:
     from gears import ToothProfile
 
-__all__ = ["GearCompliance", "gear_compliance", "hub_windup"]
+__all__ = ["GearCompliance", "cross_degree", "gear_compliance", "hub_windup"]
 
-CROSS_DEGREE, CROSS_SHARE = 12, 5
-"""Smallest degree of cross terms in either place, and eighths of the number of loads, with which it grows."""
+CROSS_SHARE = 5
+"""Degree of cross terms in either place, in eighths of the number of loads."""
 
 
 @record
@@ -100,26 +100,19 @@ class GearCompliance:
     def off_by(self, other: GearCompliance, times: float) -> GearCompliance:
         """Series that are off by some times what those of another mesh, fitted alike, leave out.
 
-        A fit's remainder waves about zero faster than any of its terms, and is largest where these are: its shape is
-        that of the upper half of the degrees, its size what the series leave out.
-
         Parameters
         ----------
         other : GearCompliance
             The same gear on another mesh.
         times : float
         """
-        own = other.own_series.upper_half()
-        own_change = own.coefficients * _ratio(other.own_error, own.size())
-        cross = {tooth: series.upper_half() for tooth, series in other.cross_series.items()}
-        largest = max((series.size() for series in cross.values()), default=0.0)
-        part = times * _ratio(other.cross_error, largest)
+        own = left_out({0: other.own_series}, times * other.own_error)[0]
+        cross = left_out(other.cross_series, times * other.cross_error)
         return replace(
             self,
-            own_series=self.own_series.plus(times * own_change),
+            own_series=self.own_series.plus(own.coefficients),
             cross_series={
-                tooth: self.cross_series[tooth].plus(part * series.coefficients)
-                for tooth, series in cross.items()
+                tooth: self.cross_series[tooth].plus(series.coefficients) for tooth, series in cross.items()
             },
         )
 
@@ -215,10 +208,9 @@ def gear_compliance(
     away = (rho_end**2 - rho**2) / (2 * profile.base_radius)
     smooth = samples.own - logarithm * np.log(away / profile.module)
     root, place = RootVariable(span, rho_end), FlankVariable(span)
-    own = FlankFit(root, root.unit(rho, hold=False), len(rho) - 1).series(smooth)
-    degree = max(CROSS_DEGREE, CROSS_SHARE * len(rho) // 8)
-    fit = FlankFit(place, place.unit(rho, hold=False), min(degree, len(rho) - 1))
-    cross = [fit.cross(displacement) for displacement in samples.cross]
+    own_fit = FlankFit(root, root.unit(rho, hold=False), len(rho) - 1)
+    fit = FlankFit(place, place.unit(rho, hold=False), cross_degree(len(rho)))
+    own, cross = own_fit.series(smooth), [fit.cross(displacement) for displacement in samples.cross]
     return GearCompliance(
         rho_end,
         profile.base_radius,
@@ -229,11 +221,11 @@ def gear_compliance(
         {tooth + 1: series for tooth, series in enumerate(cross)},
         {tooth + 1: fit.series(displacement) for tooth, displacement in enumerate(samples.corner)},
         hub_windup(profile, ring.law),
-        own.tail(),
-        max(series.remainder(fit.unit, there) for series, there in zip(cross, samples.cross, strict=True)),
+        float(own_fit.error(own, smooth)),
+        max(float(fit.error(series, there)) for series, there in zip(cross, samples.cross, strict=True)),
     )
 
 
-def _ratio(size: float, largest: float) -> float:
-    """Size over the largest value; 0 where that is 0."""
-    return size / largest if largest > 0.0 else 0.0
+def cross_degree(loads: int) -> int:
+    """Degree of cross terms in either place, from loads at a number of places."""
+    return min(CROSS_SHARE * loads // 8, loads - 1)

@@ -134,14 +134,12 @@ class GearStore:
 
     def backs(self, meshed: MeshedShape) -> BackCompliance:
         """What loads on the front flanks do to the back flanks."""
-        places, reach = sample_places(meshed.shape.profile, BACK_SAMPLES), meshed.shape.reach
-        return self._solved(
-            "back flanks",
-            "back flanks",
-            meshed,
-            FINE,
-            lambda ring: back_compliance(ring, places, reach),
-        )
+        shape = meshed.shape
+
+        def solve(ring: Ring) -> BackCompliance:
+            return back_compliance(ring, sample_places(shape.profile, BACK_SAMPLES), shape.reach)
+
+        return self._solved("back flanks", "back flanks", meshed, FINE, solve)
 
     def rings(self, meshed: MeshedShape) -> Mapping[MeshLevel, Ring]:
         """Factorised gears on both meshes."""

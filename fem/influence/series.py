@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
-from typing import Self
+from typing import ClassVar, Self, TypeVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -27,10 +27,12 @@ from numpy.polynomial import chebyshev
 from base import Array, Integers, record
 from fem.influence.flank_variable import FlankVariable
 
-__all__ = ["CrossSeries", "FlankFit", "FlankSeries", "of_teeth"]
+__all__ = ["CrossSeries", "FlankFit", "FlankSeries", "left_out", "of_teeth"]
 
 SIZE_PLACES = 65
 """Places along the flank at which the size of a series is evaluated."""
+
+S = TypeVar("S", bound="_Series")
 
 
 @record
@@ -74,10 +76,19 @@ class FlankFit:
         """Series of a scalar from its samples (samples, samples), rows and columns at the same places."""
         return CrossSeries(self.variable, np.asarray(self.weights @ samples @ self.weights.T))
 
+    def error(self, series: FlankSeries | CrossSeries, samples: Array) -> Array:
+        """What a series of this fit leaves out of its samples, largest (*value).
+
+        By least squares its distance from them; what passes through all of them shows it by its decay.
+        """
+        return series.tail() if self.interpolates else series.remainder(self.unit, samples)
+
 
 @record
 class _Series:
     """What series of one and of two places have in common: coefficients by rising degree."""
+
+    places: ClassVar[int]
 
     variable: FlankVariable
     coefficients: Array
@@ -91,10 +102,27 @@ class _Series:
         return replace(self, coefficients=self.coefficients + change)
 
     def upper_half(self) -> Self:
-        """Terms of a scalar that have more than half the degree, in either place, alone."""
-        degree = np.max(np.indices(self.coefficients.shape), axis=0)
+        """Terms that have more than half the degree, in either place, alone."""
+        degree = np.max(np.indices(self.coefficients.shape[: self.places]), axis=0)
         upper = 2 * degree > len(self.coefficients)
+        upper = upper.reshape(upper.shape + (1,) * (self.coefficients.ndim - self.places))
         return replace(self, coefficients=np.where(upper, self.coefficients, 0.0))
+
+    def size(self) -> Array:
+        """Largest absolute values (*value) on the span."""
+        places = np.linspace(-1.0, 1.0, SIZE_PLACES)
+        values = self.coefficients
+        for _ in range(self.places):  # its axis goes, that of the places is the last
+            values = np.asarray(chebyshev.chebval(places, values), dtype=float)
+        return np.asarray(np.max(np.abs(values), axis=tuple(range(-self.places, 0))), dtype=float)
+
+    def tail(self) -> Array:
+        """Size (*value) of the terms beyond the last ones, were they to go on as they decay; twice, for aliasing."""
+        degree = np.max(np.indices(self.coefficients.shape[: self.places]), axis=0)
+        size = np.array([np.max(np.abs(self.coefficients[degree == k]), axis=0) for k in range(len(degree))])
+        last, before = np.max(size[-3:], axis=0), np.max(size[-9 : max(len(size) - 6, 1)], axis=0)
+        ratio = np.minimum((last / np.maximum(before, 1e-300)) ** (1 / 6), 0.9)
+        return np.asarray(2 * last * ratio / (1 - ratio))
 
 
 @record
@@ -107,6 +135,8 @@ class FlankSeries(_Series):
     coefficients : (n, ...) array
         Of the Chebyshev polynomials by rising degree; further axes are those of the value.
     """
+
+    places = 1
 
     @cached_property
     def _derivatives(self) -> tuple[Array, Array]:
@@ -143,21 +173,9 @@ class FlankSeries(_Series):
         bend = _sum(self._derivatives[1], unit)
         return np.asarray(bend * by_rho**2 + slope * by_rho / length)
 
-    def remainder(self, unit: Array, samples: Array) -> float:
-        """Largest distance of samples (samples, *value) at arguments x from the series."""
-        return float(np.max(np.abs(_recurrence(self.coefficients, unit) - samples)))
-
-    def size(self) -> float:
-        """Largest absolute value on the span."""
-        places = np.linspace(-1.0, 1.0, SIZE_PLACES)
-        return float(np.max(np.abs(chebyshev.chebval(places, self.coefficients))))
-
-    def tail(self) -> float:
-        """Size of the terms beyond the last ones, were they to go on as they decay; twice, for aliasing."""
-        size = np.abs(self.coefficients)
-        last, before = float(np.max(size[-3:])), float(np.max(size[-9:-6]))
-        ratio = float(min((last / max(before, 1e-300)) ** (1 / 6), 0.9))
-        return 2 * last * ratio / (1 - ratio)
+    def remainder(self, unit: Array, samples: Array) -> Array:
+        """Largest distances (*value) of samples (samples, *value) at arguments x from the series."""
+        return np.asarray(np.max(np.abs(_recurrence(self.coefficients, unit) - samples), axis=0))
 
 
 @record
@@ -171,6 +189,8 @@ class CrossSeries(_Series):
     coefficients : (n, n, ...) array
         Of the products of Chebyshev polynomials, the load's first; further axes are those of the value.
     """
+
+    places = 2
 
     @cached_property
     def _slopes(self) -> tuple[Array, Array]:
@@ -205,15 +225,35 @@ class CrossSeries(_Series):
         slope = slope + np.sum((loads @ by_point) * points[..., :-1], axis=-1)
         return np.asarray(slope * 2 / (high - low))
 
-    def remainder(self, unit: Array, samples: Array) -> float:
+    def remainder(self, unit: Array, samples: Array) -> Array:
         """Largest distance of samples (samples, samples) of a scalar at arguments x from the series."""
         basis = np.asarray(chebyshev.chebvander(unit, len(self.coefficients) - 1), dtype=float)
-        return float(np.max(np.abs(basis @ self.coefficients @ basis.T - samples)))
+        return np.asarray(np.max(np.abs(basis @ self.coefficients @ basis.T - samples)))
 
-    def size(self) -> float:
-        """Largest absolute value on the span."""
-        places = np.linspace(-1.0, 1.0, SIZE_PLACES)
-        return float(np.max(np.abs(chebyshev.chebgrid2d(places, places, self.coefficients))))
+
+def left_out(series: Mapping[int, S], size: float | Array) -> dict[int, S]:
+    """What fits leave out of series of teeth, by its size (*value).
+
+    A fit's remainder waves about zero faster than any of its terms, and is largest where these are: its shape is that
+    of the upper half of the degrees.
+
+    Parameters
+    ----------
+    series : mapping of int to FlankSeries or CrossSeries
+    size : float or (*value) array
+        Largest absolute value.
+
+    Returns
+    -------
+    dict of int to FlankSeries or CrossSeries
+    """
+    upper = {tooth: of_tooth.upper_half() for tooth, of_tooth in series.items()}
+    largest = np.max([of_tooth.size() for of_tooth in upper.values()], axis=0)
+    part = np.divide(size, largest, out=np.zeros_like(largest), where=largest > 0.0)
+    return {
+        tooth: replace(of_tooth, coefficients=part * of_tooth.coefficients)
+        for tooth, of_tooth in upper.items()
+    }
 
 
 def of_teeth(series: Mapping[int, CrossSeries], tooth: Integers, load: Array, point: Array) -> Array:

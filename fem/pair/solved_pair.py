@@ -6,12 +6,14 @@ from dataclasses import fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
 
+import numpy as np
+
 from base import Cost, part, quantity, record
 from base.results import ITSELF
 from fem.elasticity.ring import Ring
 from fem.elasticity.support import FIXED, Support, held_profiles
 from fem.influence.back_compliance import BackCompliance
-from fem.influence.flank_motion import FlankMotion
+from fem.influence.flank_motion import FIT, FlankMotion
 from fem.influence.gear_compliance import GearCompliance
 from fem.influence.gear_shape import COARSE, FINE, MeshedShape, MeshLevel, shapes
 from fem.influence.gear_store import GearStore
@@ -25,6 +27,9 @@ if TYPE_CHECKING:
     from meshes import Sizes
 
 __all__ = ["SolvedPair"]
+
+PLACES = 60
+"""Places of a flank at which its smallest compliance is looked for."""
 
 S = TypeVar("S", covariant=True)
 
@@ -77,6 +82,11 @@ class SolvedPair:
     gain: float = quantity(
         "1", "by how much the last refinement reduced the mesh's error", no_error=ITSELF, default=1.0
     )
+    doubt: str = part(
+        'what the flanks\' motion and the back flanks are off by: "fit", what their series leave out, or "width", what '
+        "the pressure's decides of the motion; empty where they are as solved",
+        default="",
+    )
     level: MeshLevel = part('mesh that flanks and tip edges are of: "fine" or "coarse"', default=FINE)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -119,7 +129,8 @@ class SolvedPair:
     @cached_property
     def motions(self) -> tuple[FlankMotion, FlankMotion]:
         """How the flanks of both gears move beyond yielding along their normals; solved where it was not."""
-        return self.flank_motions or self.motions_of(GearStore())
+        first, second = self.flank_motions or self.motions_of(GearStore())
+        return (first.off_by(self.doubt), second.off_by(self.doubt)) if self.doubt else (first, second)
 
     def motions_of(self, gears: GearStore) -> tuple[FlankMotion, FlankMotion]:
         """How the flanks of both gears move, from where solved gears are."""
@@ -128,7 +139,19 @@ class SolvedPair:
     @cached_property
     def back_flanks(self) -> tuple[BackCompliance, BackCompliance]:
         """What loads on the front flanks of both gears do to their back flanks; solved when it is first asked for."""
-        return self._sized(GearStore().backs)
+        if self.level == COARSE:
+            return self.coarse_backs
+        first, second = self._sized(GearStore().backs)
+        return (first.off(), second.off()) if self.doubt == FIT else (first, second)
+
+    @property
+    def back_error(self) -> float:
+        """What their fits leave out, relative to the smallest deflection of a pair without the local indentation."""
+        least = sum(
+            float(np.min(gear.own(np.linspace(*gear.rho_range, PLACES))))
+            for gear in (self.pinion, self.wheel)
+        )
+        return sum(backs.error for backs in self.back_flanks) / least
 
     def rings(self) -> tuple[Ring, Ring]:
         """Meshed and factorised gears: those that this process still has, or computed anew from the same sizes."""
@@ -147,12 +170,16 @@ class SolvedPair:
         )
         return first, second
 
+    def doubtful(self, doubt: str) -> Self:
+        """The same gears, motion or back flanks off by a doubt of them: what answers are compared with."""
+        return replace(self, doubt=doubt)
+
     @cached_property
     def coarser(self) -> Self:
         """The same gears, off by their errors times the gain of the last refinement: what answers are compared with.
 
-        By the mesh they differ as the one before that refinement does, by the fits as these leave out. Motion and back
-        flanks do not change.
+        By the mesh they differ as the one before that refinement does, by the fits as these leave out. Motion does not
+        change: it is known on that mesh alone.
         """
         pinion, wheel = (
             coarse.off_by(fine, self.gain)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fem.influence.flank_variable import FlankVariable, RootVariable, stretched_points
-from fem.influence.series import CrossSeries, FlankFit, FlankSeries
+from fem.influence.series import CrossSeries, FlankFit, FlankSeries, left_out
 
 SPAN, END = (2.0, 4.7), 4.71
 PLACE, ROOT = FlankVariable(SPAN), RootVariable(SPAN, END)
@@ -155,3 +155,26 @@ def test_tail_and_size_of_known_series():
     np.testing.assert_array_equal(both.upper_half().coefficients, np.maximum(*np.indices((4, 4))) > 2)
     assert both.size() == pytest.approx(16.0)
     assert both.plus(np.full((4, 4), 2.0)).size() == pytest.approx(48.0)
+
+
+@pytest.mark.parametrize(("samples", "most"), [(12, 40.0), (18, 3.0)])
+def test_a_fit_tells_what_it_leaves_out_of_every_value(samples, most):
+    """By the decay of its terms where it passes through all samples, else by their distance."""
+    unit, rho = stretched_points(samples), np.linspace(*SPAN, 300)
+    fit, place = FlankFit(PLACE, unit, 11), PLACE.unit(rho)
+    samples_of = np.stack([1.0 / (unit + 2.5), 3.0 / (unit + 1.7)], axis=1)
+    series = FlankSeries(PLACE, fit.weights @ samples_of)
+    off = np.abs(series.at(rho) - np.stack([1.0 / (place + 2.5), 3.0 / (place + 1.7)], axis=1)).max(axis=0)
+    error = fit.error(series, samples_of)
+    assert error.shape == (2,)
+    assert np.all(error > 0.7 * off)
+    assert np.all(error < most * off)
+
+
+def test_what_fits_leave_out_has_the_largest_size_of_all_teeth_and_the_shape_of_the_upper_half():
+    falling = FlankSeries(PLACE, np.stack([0.5 ** np.arange(15), 0.3 ** np.arange(15)], axis=1))
+    out = left_out({0: falling, 1: falling.scaled(1.0, 4.0)}, np.array([1.0, 2.0]))
+    np.testing.assert_allclose(out[0].size(), [1.0, 2.0])
+    np.testing.assert_allclose(out[1].size(), [0.25, 0.5])
+    assert not out[0].coefficients[:8].any()
+    assert not left_out({0: FlankSeries(PLACE, np.ones(1))}, 1.0)[0].coefficients.any()
