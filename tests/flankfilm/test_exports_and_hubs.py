@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import meshio
 import numpy as np
 import pytest
@@ -11,13 +13,13 @@ from flankfilm.files.cache import Cache
 from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import COMPLIANCE
-from tests.flankfilm.program import EXAMPLES, flankfilm
+from tests.flankfilm.program import EXAMPLES, command
 
 EXAMPLE = EXAMPLES / "article.toml"
 
 
 def export(*arguments, status=0):
-    return flankfilm("export", EXAMPLE, *arguments, status=status)
+    return command("export", EXAMPLE, *arguments, cwd=Path.cwd(), status=status)
 
 
 @pytest.mark.slow

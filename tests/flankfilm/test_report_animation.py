@@ -25,7 +25,7 @@ from flankfilm.scene import parse_scene
 from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FIELDS, MESH, PAIR
-from tests.flankfilm.program import flankfilm
+from tests.flankfilm.program import command
 
 SCENE = """
 wants = ["stiffness", "vtk"]
@@ -182,7 +182,7 @@ def test_a_machine_without_opengl_is_told_what_to_install(run, tmp_path, monkeyp
 
 
 def test_the_command_tells_faults_without_a_traceback(tmp_path):
-    done = flankfilm("animate", tmp_path, status=2)
+    done = command("animate", tmp_path, cwd=tmp_path, status=2)
     assert "mesh_cycle.pvd" in done.stderr
 
 

@@ -13,14 +13,14 @@ from flankfilm.studies.execution import Execution
 from flankfilm.studies.parts import Part, merge
 from flankfilm.studies.plan import read_plan
 from flankfilm.studies.run import run_study
-from tests.flankfilm.program import flankfilm
+from tests.flankfilm.program import command
 from tests.flankfilm.test_study import SHIFTS, study_file
 
 ALONE = Execution(workers=1)
 
 
-def run(*arguments, **more):
-    return flankfilm("study", *arguments, **more)
+def run(study, *arguments, **more):
+    return command("study", study, *arguments, cwd=study.parent, **more)
 
 
 def table(folder):

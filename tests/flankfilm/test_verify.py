@@ -14,7 +14,7 @@ from flankfilm.verification.tables import face_table
 from gears import BasicRack, Gear, GearPair, closed_form
 from gears.sharing.events import Sampled, arcs_between_events
 from gears.sharing.mesh_figures import CURVES, MeshArcs
-from tests.flankfilm.program import EXAMPLES, flankfilm
+from tests.flankfilm.program import EXAMPLES, command, flankfilm
 from tests.flankfilm.test_face_scene import SCENE
 
 
@@ -183,6 +183,6 @@ def test_finite_elements_add_up_like_springs(tmp_path):
 def test_all_missing_sections_are_named(tmp_path):
     scene = tmp_path / "motion.toml"
     scene.write_text((EXAMPLES / "oscillator.toml").read_text(encoding="utf-8"), encoding="utf-8")
-    done = flankfilm("verify", scene, cwd=tmp_path, status=2)
+    done = command("verify", scene, cwd=tmp_path, status=2)
     for section in ("[pair]", "[material]", "[operating]"):
         assert section in done.stderr
