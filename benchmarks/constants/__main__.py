@@ -6,14 +6,17 @@ import argparse
 from collections import Counter
 from collections.abc import Sequence
 
+from benchmarks.constants.laws import LAWS, SHAPES
 from benchmarks.constants.moving import moved, readers
-from benchmarks.constants.scanned import PACKAGES, Constant, constants, scaled, usable
+from benchmarks.constants.scanned import PACKAGES, Constant, compiled, constants, scaled, usable
 
 
 def verdict(constant: Constant) -> tuple[str, str]:
     """What a constant does to the answers that read it, and the largest move."""
-    if not usable(constant.value):
+    if not usable(constant.value) or str(constant) in SHAPES:
         return "no size", ""
+    if compiled(constant):
+        return "known to kernels", ""
     names = readers(constant)
     if not names:
         return "read by no answer", ""
@@ -22,7 +25,9 @@ def verdict(constant: Constant) -> tuple[str, str]:
     if not moves:
         return "no size", ""
     largest = max(moves, key=lambda move: move.worst)
-    return ("decides" if largest.worst > 1.0 else "within the errors"), str(largest)
+    if largest.worst <= 1.0:
+        return "within the errors", str(largest)
+    return ("law with a test" if str(constant) in LAWS else "decides"), str(largest)
 
 
 def main(command_line: Sequence[str] | None = None) -> int:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 import ehl
 import fem
 from base.results import figures
-from benchmarks.constants import answers_of_gears
+from benchmarks.constants import answers_of_dynamics, answers_of_gears
 from gears import Alignment, Bearing, Gear, GearPair, Lead, Material, Shaft, ShaftSegment, TipRelief
 
 Array = npt.NDArray[Any]
@@ -58,7 +58,8 @@ MEANS = ("mean_stiffness", "mean_secant_stiffness", "greatest_stiffness", "trans
 def _compliance() -> Figures:
     bodies = fem.compliance(PAIR, 0.01)
     value = bodies.own(np.linspace(PAIR.points.A, PAIR.points.E, 9))
-    return {"own": (value, bodies.error * float(value.max()))} | of(
+    error = bodies.error * float(value.max())
+    return {"own": (value[1:-1], error), "own at A and E": (value[[0, -1]], error)} | of(
         bodies, "turning", "hub_windup", "step_windup"
     )
 
@@ -212,8 +213,11 @@ EHL: dict[str, Callable[[], Figures]] = {
 def answers() -> dict[str, Callable[[], Figures]]:
     """All of them, by package and name."""
     packages = {
-        "gears": answers_of_gears.GEARS, "fem": FEM, "ehl": EHL
-    }  # fmt: skip
+        "gears": answers_of_gears.GEARS,
+        "fem": FEM,
+        "ehl": EHL,
+        "dynamics": answers_of_dynamics.DYNAMICS,
+    }
     return {
         f"{package}: {name}": answer for package, those in packages.items() for name, answer in those.items()
     }

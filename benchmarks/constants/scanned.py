@@ -23,7 +23,11 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("gears", "meshes", "fem", "ehl", "dynamics")
-RECORDS = {("fem.pair.options", "USUAL_OPTIONS"): "Options", ("ehl.discrete.method", "METHOD"): "Method"}
+RECORDS = {
+    ("fem.pair.options", "USUAL_OPTIONS"): "Options",
+    ("ehl.discrete.method", "METHOD"): "Method",
+    ("dynamics.model.options", "OPTIONS"): "Options",
+}
 """Settings that users may know: instances, and classes whose defaults they are."""
 
 _PURE = {

@@ -8,6 +8,7 @@ import pytest
 
 import fem.elasticity.plane_elasticity
 from base import InputError
+from fem.fields import grids
 from fem.fields.export import FORMATS as ALL
 from fem.fields.export import write_mesh
 from fem.fields.loaded_gears import LoadedGear, placed_gears
@@ -126,3 +127,13 @@ def test_what_is_refused(gear, tmp_path):
     with pytest.raises(InputError, match="one gear"):
         write_mesh((gear, gear), tmp_path / "gear.msh")
     assert set(FORMATS) < set(ALL)
+
+
+def test_mantissas_in_pictures_are_rounded_to_eleven_bits():
+    """Of 23: off by at most half of the last bit that is left, and packed with the zeros behind it."""
+    values = np.random.default_rng(2).uniform(1.0, 2.0, 4000).astype(np.float32)
+    kept = grids.rounded(values.copy())
+    off = np.abs(kept.astype(float) / values.astype(float) - 1.0).max()
+    assert 2.0**-14 < off <= 2.0**-12
+    assert not np.any(kept.view(np.uint32) & 0xFFF)
+    assert np.any(kept.view(np.uint32) & 0x1000)

@@ -227,6 +227,23 @@ def test_ranges_warn(article_pair):
         closed_form.iso6336(odd)
 
 
+def test_stress_of_spur_gears_falls_with_the_contact_ratio(article_pair):
+    """Z_eps^2 = (4 - eps_alpha)/3 (ISO 6336-2, clause 6)."""
+    z = closed_form.iso6336_2(article_pair, 10e3).Z_eps
+    assert 3.0 * z**2 + article_pair.contact_ratio == pytest.approx(4.0, rel=1e-12)
+
+
+def test_shear_of_a_rectangle_is_a_fifth_more_than_that_of_its_mean():
+    """Of a parabola over the depth, Int (3/2)^2 (1 - s^2)^2 ds/2 = 6/5; axial and shear share the rest."""
+    ratio = quad(lambda s: 2.25 * (1.0 - s**2) ** 2 / 2.0, -1.0, 1.0)[0]
+    pair = GearPair(Gear(30), Gear(30), 2e-3, 0.04)
+    path = pair.path_at(np.array([pair.points.C]))  # where both gears are alike
+    (angle,) = loaded_teeth(pair, path)[0].load_angle
+    parts = closed_form.potential_energy(pair, path).parts
+    wanted = ratio * 2.0 * (1.0 + pair.materials[0].poisson_ratio) / math.tan(angle) ** 2
+    np.testing.assert_allclose(parts["shear"] / parts["axial"], wanted, rtol=1e-10)
+
+
 def test_iso_light_load_and_modulus(article_pair):
     full = closed_form.iso6336(article_pair)
     limit = 100e3 * 40e-3 / math.cos(math.radians(20))

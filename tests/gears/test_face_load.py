@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gears import Gear, GearPair, GeometryError
-from gears.closed_form import iso6336_face_load
+from gears.closed_form import iso6336, iso6336_face_load
 
 PAIR = GearPair(Gear(teeth=36), Gear(teeth=40), module=2e-3, face_width=40e-3)
 
@@ -24,6 +24,12 @@ def test_factor_is_that_of_linear_slices(torque):
         low, high = (pressed, high) if load.mean() < mean else (low, pressed)
     assert load.max() / load.mean() == pytest.approx(found.K_Hbeta, rel=1e-4)
     assert min(found.b_cal, 1.0) == pytest.approx(np.mean(load > 0), abs=1e-4)
+
+
+def test_stiffness_over_the_face_is_that_of_the_mesh_less_fifteen_per_cent():
+    """c_gamma_beta = 0.85 c_gamma_alpha (ISO 6336-1, clause 7)."""
+    found = iso6336_face_load(PAIR, 600.0, 20e-6)
+    assert found.c_gamma_beta == pytest.approx(0.85 * iso6336(PAIR).c_gamma, rel=1e-12)
 
 
 def test_both_branches_meet_and_no_misalignment_is_one():
