@@ -231,7 +231,7 @@ def branch(prefix: str, curve: dynamics.Branch) -> Parts:
     from dynamics import Diagram
 
     if curve.oscillator is not None:
-        held = {field.name: getattr(curve, field.name, ()) for field in fields(Diagram)}
+        held: dict[str, Any] = {field.name: getattr(curve, field.name, ()) for field in fields(Diagram)}
         return diagram(prefix, Diagram(**{**held, "branches": (curve,)}))
     points = np.column_stack([np.zeros(len(curve.values)), curve.values, curve.states[:, :2], curve.stable])
     rows = ((0, p.kind, p.parameter, p.label, float(p.state[0])) for p in curve.points)

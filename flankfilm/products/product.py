@@ -82,7 +82,8 @@ def when(
     """What a stage's result gives; nothing where there is none."""
 
     def of(computed: Computed) -> Iterator[Any]:
-        if (value := computed.get(stage)) is not None:
+        value: T | None = computed.values.get(stage.name)
+        if value is not None:
             yield from variables(value)
 
     return of
@@ -94,7 +95,8 @@ def section_of(
     """Section of the report about a stage's result; none where there is no result."""
 
     def of(computed: Computed, results: xr.Dataset) -> Iterator[Part]:
-        if (value := computed.get(stage)) is not None:
+        value: T | None = computed.values.get(stage.name)
+        if value is not None:
             yield part(value, results)
 
     return of

@@ -31,7 +31,7 @@ class Computed:
     values: Mapping[str, Any]
     failures: tuple[Failure, ...] = ()
 
-    def get(self, stage: Stage[T] | Stage[T | None]) -> T | None:
+    def get(self, stage: Stage[T]) -> T | None:
         """Result of a stage; None where the scene did not need it, or where it failed."""
         return self.values.get(stage.name)
 

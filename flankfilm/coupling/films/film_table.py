@@ -17,7 +17,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -188,7 +188,9 @@ class FilmTable(FilmField):
         """Table by every second place (0), or load (1)."""
         kept = (slice(None, None, 2), slice(None)) if along == 0 else (slice(None), slice(None, None, 2))
         grids = {name: getattr(self, name) for name in (*FIGURES, "power", "separation_shift", "slope_shift")}
-        grid = {name: None if values is None else values[kept] for name, values in grids.items()}
+        grid: dict[str, Any] = {
+            name: None if values is None else values[kept] for name, values in grids.items()
+        }
         return replace(self, rho1=self.rho1[kept[0]], load=self.load[kept[1]], **grid)
 
     @cached_property
