@@ -187,10 +187,8 @@ class FilmTable(FilmField):
     def _every_second(self, along: int) -> FilmTable:
         """Table by every second place (0), or load (1)."""
         kept = (slice(None, None, 2), slice(None)) if along == 0 else (slice(None), slice(None, None, 2))
-        grids = {name: getattr(self, name) for name in (*FIGURES, "power", "separation_shift", "slope_shift")}
-        grid: dict[str, Any] = {
-            name: None if values is None else values[kept] for name, values in grids.items()
-        }
+        shifts = () if self.separation_shift is None else ("separation_shift", "slope_shift")
+        grid: dict[str, Any] = {name: getattr(self, name)[kept] for name in (*FIGURES, "power", *shifts)}
         return replace(self, rho1=self.rho1[kept[0]], load=self.load[kept[1]], **grid)
 
     @cached_property
