@@ -1,4 +1,7 @@
-"""A headless Chromium that opens pages, spoken to over its debugging pipe: no driver, no further package."""
+"""A headless Chromium that opens pages, spoken to over its debugging pipe: no driver, no further package.
+
+And rows of studies without processes of their own.
+"""
 
 from __future__ import annotations
 
@@ -12,11 +15,15 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from flankfilm.studies import workers
+from flankfilm.studies.executors import Pool
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 PATIENCE = 60.0
@@ -150,3 +157,21 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
     opened = Browser(executable, tmp_path_factory.mktemp("chromium"))
     yield opened
     opened.close()
+
+
+class Here(Executor):
+    """Computes a row where it is asked for, before the next one."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Call; what it raises is the test's."""
+        future: Future[Any] = Future()
+        future.set_result(fn(*args, **kwargs))
+        return future
+
+
+@pytest.fixture
+def rows_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows in the test's process, for tests that ask what is made of them: each process takes two seconds to start."""
+    monkeypatch.setattr(
+        workers, "executor", lambda kind, count: contextlib.nullcontext(Pool(Here(), lambda: 1))
+    )

@@ -29,6 +29,8 @@ from tests.flankfilm.program import flankfilm
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
+pytestmark = pytest.mark.usefixtures("rows_here")
+
 SHIFT = """
 [vary]
 "pair.pinion.profile_shift" = { from = -0.3, to = 0.6 }

@@ -16,6 +16,8 @@ from flankfilm.studies.run import run_study
 from tests.flankfilm.program import command
 from tests.flankfilm.test_study import SHIFTS, study_file
 
+pytestmark = pytest.mark.usefixtures("rows_here")
+
 ALONE = Execution(workers=1)
 
 
