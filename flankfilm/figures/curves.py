@@ -24,7 +24,7 @@ CURVES: Mapping[str, tuple[str, Mapping[str, tuple[str, ...]]]] = {
         {
             "load": ("load",),
             "film thickness": ("central", "least"),
-            "greatest pressure": ("greatest_pressure",),
+            "maximum pressure": ("greatest_pressure",),
         },
     ),
     "traction": (
@@ -45,7 +45,7 @@ CURVES: Mapping[str, tuple[str, Mapping[str, tuple[str, ...]]]] = {
     "face_tolerance": ("in_plane", {"face-load factor": ("face_load_factor",)}),
     "damping": ("position", {"damping": ("damping_curve",)}),
 }
-"""Prefix of a record's variables to the one along the axis, and those of each panel by what they have in common."""
+"""Prefix of a record's variables to the one along the axis, and those of each panel under its title."""
 
 WORDS = {
     "central": "central film",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -231,8 +230,20 @@ def branch(prefix: str, curve: dynamics.Branch) -> Parts:
     from dynamics import Diagram
 
     if curve.oscillator is not None:
-        held: dict[str, Any] = {field.name: getattr(curve, field.name, ()) for field in fields(Diagram)}
-        return diagram(prefix, Diagram(**{**held, "branches": (curve,)}))
+        whole = Diagram(
+            oscillator=curve.oscillator,
+            parameter=curve.parameter,
+            bounds=(float(curve.values.min()), float(curve.values.max())),
+            branches=(curve,),
+            origins=(),
+            left_out=(),
+            unsure=(),
+            error=curve.error,
+            cost=curve.cost,
+            converged=curve.converged,
+            message=curve.message,
+        )
+        return diagram(prefix, whole)
     points = np.column_stack([np.zeros(len(curve.values)), curve.values, curve.states[:, :2], curve.stable])
     rows = ((0, p.kind, p.parameter, p.label, float(p.state[0])) for p in curve.points)
     return diagram_tables(points, np.empty((0, 6)), rows, across=curve.parameter.replace("_", " "))
