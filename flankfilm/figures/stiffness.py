@@ -89,7 +89,7 @@ def mesh_cycle(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         legend_over(upper, 2)
         from_zero(upper)
         for axes in (*face[1:], upper):
-            axes.sharex(lower)
+            axes.set_xlim(lower.get_xlim())
             axes.tick_params(labelbottom=False)
             axes.set_xlabel("")
     return drawn

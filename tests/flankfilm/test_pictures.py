@@ -108,6 +108,8 @@ def test_one_of_several_panels_takes_as_many_axes_and_says_so():
     panels = axes_of(2)
     assert cycle.plot(panels) is panels[0].figure
     assert all(len(axes.lines) for axes in panels)
+    shared = Figure().subplots(2, sharex=True)
+    assert cycle.plot(shared) is shared[0].figure
     for wrong in (axes_of(1), list(axes_of(3)), "axes"):
         with pytest.raises(InputError, match=r"must be 2 axes, one for each panel.*figure\.subplots\(2\)"):
             cycle.plot(ax=wrong)
