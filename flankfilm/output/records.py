@@ -175,7 +175,7 @@ def sweep(prefix: str, swept: dynamics.SweepResult) -> Parts:
         prefix,
         (
             figure_of("frequency", "1", across, "frequency", swept.values),
-            figure_of(way, "1", "states at tau = 0", "frequency kept state", swept.states),
+            figure_of(way, "1", "states at tau = 0", "frequency kept coordinate", swept.states),
             figure_of(f"{way}_label", "", "motion n-p-q", "frequency", swept.labels),
         ),
     )

@@ -13,7 +13,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from base import InputError
-from flankfilm import figures
+from flankfilm import coupling, figures
 from flankfilm.figures.records import dataset, function, picture_of
 from flankfilm.figures.views import PICTURES, register
 from tests.flankfilm import pictured
@@ -144,3 +144,12 @@ def broken(draw: Callable[[Any], None]) -> list[str]:
 )  # fmt: skip
 def test_faults_are_seen(fault: str, draw: Callable[[Any], None]):
     assert any(fault in found for found in broken(draw)), broken(draw)
+
+
+def test_a_given_series_has_no_samples_and_may_be_over_its_mean():
+    picture = coupling.given_series(1.0, (0.2,), (0.0,)).plot()
+    assert faults_of(picture) == []
+    left, right = picture.axes
+    assert left.get_ylabel() == "stiffness [-]"
+    assert left.lines[0].get_ydata().max() == pytest.approx(1.2)
+    assert [bar.get_height() for bar in right.patches] == pytest.approx([0.2])
