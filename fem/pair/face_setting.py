@@ -57,7 +57,10 @@ class FaceSetting:
 
     @property
     def even_load(self) -> bool:
-        """Whether loads are even along the face: a single cell, which is the plane."""
+        """Whether loads are even along the face: a single cell, which is the plane.
+
+        Cells start from the plane's solution; that of a single one equals it to rounding, and is left out.
+        """
         return self.cells == 1
 
     @property
