@@ -112,7 +112,8 @@ def test_a_run_without_any_result_raises_and_writes_nothing(without_film, tmp_pa
 
 
 def test_fields_that_cannot_be_written_leave_the_rest(tmp_path, monkeypatch):
-    import flankfilm.runs.run_scene as running
+    from flankfilm.runs import begin
+    from flankfilm.runs import run_scene as running
 
     def write_fields(*_):
         raise SolverError("no field; refine")
@@ -120,7 +121,7 @@ def test_fields_that_cannot_be_written_leave_the_rest(tmp_path, monkeypatch):
     text = ISHIKAWA.replace("[WANTS]", '["geometry", "vtk"]')
     scene = parse_scene(text.replace('"ishikawa"', '"fem"').replace('"independent"', '"coupled"'))
     monkeypatch.setattr(running, "write_fields", write_fields)
-    monkeypatch.setattr(running, "goals", lambda _: (PAIR,))
+    monkeypatch.setattr(begin, "goals", lambda _: (PAIR,))
     found = run_scene(scene, tmp_path, use_cache=False)
     assert [one.title for one in found.failures] == ["fields for ParaView"]
     with xr.open_dataset(tmp_path / "results.nc", engine="h5netcdf") as data:
