@@ -24,6 +24,7 @@ from flankfilm.runs.report import _asked
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from gears import Gear, GearPair, closed_form, dimensions
+from tests.flankfilm.pictured import PURE
 from tests.flankfilm.scenes import CLOSED_FORMS_WITH_FILM, ishikawa
 
 register()
@@ -82,7 +83,7 @@ def test_records_draw_themselves_with_units_and_show_figures_and_picture():
     for record in records():
         figure = record.plot()
         for label in labels(figure):
-            assert "[" in label or label == "point [-]", (type(record), label)
+            assert "[" in label or label in PURE, (type(record), label)
         html = record._repr_html_()
         assert "<script" not in html
         tree = ET.fromstring(f"<div>{html}</div>")
