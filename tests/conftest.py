@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 from flankfilm.files.cache import keep_compiled_code
@@ -36,6 +38,12 @@ keep_compiled_code()
 def pytest_report_header() -> list[str]:
     """Lines of the session's head: what repeats the choices and the order of this session."""
     return [seed_header(), order_header()]
+
+
+def pytest_runtest_teardown() -> None:
+    """Close figures of pyplot, which keeps each of them once a test has loaded it, and warns of the twenty-first."""
+    if (pyplot := sys.modules.get("matplotlib.pyplot")) is not None:
+        pyplot.close("all")
 
 
 @pytest.fixture(scope="session")
