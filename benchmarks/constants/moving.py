@@ -180,7 +180,7 @@ def _moved(constant: Constant, twice: bool, here: Known, anew: bool) -> Move:
             after = computed(answers()[here.name])
     except (RefusedError, SolverError, InputError) as refused:
         return Move(constant, twice, here.name, refused=f"refused, {type(refused).__name__}: {refused}"[:200])
-    except Exception as broken:  # noqa: BLE001
+    except Exception as broken:  # noqa: BLE001 - a changed constant may break anything; the study lists what
         return Move(constant, twice, here.name, broken=f"broken, {type(broken).__name__}: {broken}"[:200])
     return Move(constant, twice, here.name, *_compared(here.figures, after))
 

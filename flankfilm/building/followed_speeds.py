@@ -109,7 +109,7 @@ def followed_speed(scene: Scene, pair: gears.GearPair, series: MeshSeries) -> fl
     scales = pair_scales(pair, pinion_torque(scene), series.mean, extra, length)
     total = math.fsum(map(abs, series.stiffness.amplitudes)) / series.mean
     least = scales.rpm(least_frequency(section.known_damping, total))
-    rpm = scene.operating.pinion_speed_rpm if scene.operating else None
+    rpm = scene.rpm
     if rpm is not None and rpm > least:
         return rpm
     if rpm is not None:

@@ -115,6 +115,11 @@ def pinion_speed(scene: Scene) -> float:
     return _operating(scene, "pinion_speed_rpm", "Give the pinion's speed")
 
 
+def pinion_speed_if_any(scene: Scene) -> float | None:
+    """Pinion speed [rad/s]; None where the scene does not say it."""
+    return None if scene.rpm is None else pinion_speed(scene)
+
+
 def pinion_torque(scene: Scene) -> float:
     """Pinion torque [N m]."""
     return _operating(scene, "pinion_torque_Nm", "Add the section [operating]")

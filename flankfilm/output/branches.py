@@ -10,7 +10,6 @@ import numpy as np
 
 from base import Array
 from base.results import EXACT, ITSELF
-from dynamics.attraction.returns import returns
 from flankfilm.output.variables import figure_of, of_quantities
 from gears.closed_form.record import STANDARD
 
@@ -129,6 +128,8 @@ def diagram_tables(
 
 def branch_tables(diagram: SpeedDiagram) -> list[xr.Dataset]:
     """Variables of a diagram, table by table, the pinion's speed beside every frequency where it has one."""
+    from dynamics.attraction.returns import returns  # which loads all of branches
+
     table = Columns(diagram.speed_of_one).table
     whole, special = diagram.diagram, (row[:5] for row in diagram.diagram.table())
     stable = ((stretch.label, stretch.low, stretch.high) for stretch in diagram.stable)

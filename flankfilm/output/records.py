@@ -9,7 +9,6 @@ import numpy as np
 
 from base import Array, Quantity
 from base.results import EXACT, Figure
-from dynamics.attraction.returns import returns
 from flankfilm.output import drawing_data as drawn
 from flankfilm.output import drives, heat
 from flankfilm.output.branches import branch_tables, diagram_tables
@@ -221,6 +220,8 @@ def run_up(prefix: str, run: dynamics.RunUp) -> Parts:
 
 def diagram(prefix: str, whole: dynamics.Diagram) -> Parts:
     """Points of all branches, further points of orbits of several periods, and special points."""
+    from dynamics.attraction.returns import returns  # which loads all of branches
+
     rows = (row[:5] for row in whole.table())
     return diagram_tables(whole.columns(), returns(whole), rows, across=whole.parameter.replace("_", " "))
 

@@ -52,7 +52,7 @@ def films(scene: Scene, foreseen: Callable[[], FilmChange | None]) -> Options:
         if wanted or unknown or tolerance >= FINE or (known := foreseen()) is None:
             return Options((_solved(tolerance=tolerance if wanted else 1.0),), reason)
         return Options((_solved(MOST_OF_FORESEEN * abs(known.mean)),), reason, known)
-    if scene.lubricant is None or scene.operating is None or scene.operating.pinion_speed_rpm is None:
+    if scene.lubricant is None or scene.rpm is None:
         return Options((_LEFT_OUT,), "left out; the scene has no lubricant or no speed")
     if unknown:
         return Options(

@@ -45,9 +45,8 @@ def headlines(computed: Computed) -> Iterator[Headline]:
     if (stage := computed.get(DRIVE_SWEEP)) is None:
         return
     yield from ranked(drive_parts.headlines(stage), 2, 2, 2)
-    operating = computed.scene.operating
-    if operating is not None and operating.pinion_speed_rpm is not None:
-        yield from ranked(drive_parts.operating_headlines(stage, operating.pinion_speed_rpm), 1)
+    if (rpm := computed.scene.rpm) is not None:
+        yield from ranked(drive_parts.operating_headlines(stage, rpm), 1)
 
 
 def of_a_train(stage: Stage[Any]) -> Callable[[Engine], Any]:
@@ -66,11 +65,11 @@ def of_a_train(stage: Stage[Any]) -> Callable[[Engine], Any]:
 
 def outputs() -> tuple[Named, ...]:
     """Numbers that a study can ask for."""
-    _drive = outputs_from(lambda engine: engine[DRIVE], coupling.PairDrive, "sweep")
-    _carried = outputs_from(lambda engine: engine[DRIVE_SWEEP], coupling.DriveSweep, "sweep")
+    of_drive = outputs_from(lambda engine: engine[DRIVE], coupling.PairDrive, "sweep")
+    of_carried = outputs_from(lambda engine: engine[DRIVE_SWEEP], coupling.DriveSweep, "sweep")
     return (
-        _drive("lowest_frequency", name="lowest_drive_frequency", error_output="drive_frequency_error"),
-        _drive("mesh_frequency", name="drive_mesh_frequency", error_output="drive_frequency_error"),
+        of_drive("lowest_frequency", name="lowest_drive_frequency", error_output="drive_frequency_error"),
+        of_drive("mesh_frequency", name="drive_mesh_frequency", error_output="drive_frequency_error"),
         output_of(
             "drive_frequency_error",
             Figure(
@@ -81,16 +80,16 @@ def outputs() -> tuple[Named, ...]:
             "sweep",
             in_result(DRIVE, lambda drive: max(drive.lowest_frequency_error, drive.mesh_frequency_error)),
         ),
-        _drive("valid_to", name="drive_valid_to"),
-        _drive("tilt_stiffness", name="drive_tilt_stiffness"),
-        _drive("load_centre", name="drive_load_centre"),
-        _drive("tilt_change", name="drive_tilt_change"),
-        _carried(
+        of_drive("valid_to", name="drive_valid_to"),
+        of_drive("tilt_stiffness", name="drive_tilt_stiffness"),
+        of_drive("load_centre", name="drive_load_centre"),
+        of_drive("tilt_change", name="drive_tilt_change"),
+        of_carried(
             "greatest_bearing_force",
             error_output="drive_sampling_error",
             model_output="greatest_bearing_force_model_error",
         ),
-        _carried(
+        of_carried(
             "greatest_shaft_torque",
             error_output="drive_sampling_error",
             model_output="greatest_shaft_torque_model_error",

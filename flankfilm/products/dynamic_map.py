@@ -153,7 +153,7 @@ def headlines(stage: coupling.DynamicMap) -> list[Headline]:
 
 def outputs() -> tuple[Named, ...]:
     """Numbers that a study can ask for."""
-    _of_parts = outputs_from(of_a_train(DYNAMIC_MAP), coupling.DynamicMap, "dynamic-map")
+    of_parts = outputs_from(of_a_train(DYNAMIC_MAP), coupling.DynamicMap, "dynamic-map")
     return (
         output_of(
             "greatest_map_factor",
@@ -168,12 +168,12 @@ def outputs() -> tuple[Named, ...]:
             "dynamic-map",
             in_result(DYNAMIC_MAP, attrgetter("sampling_error")),
         ),
-        _of_parts(
+        of_parts(
             "greatest_bearing_force",
             name="greatest_map_bearing_force",
             error_output="greatest_map_factor_error",
         ),
-        _of_parts(
+        of_parts(
             "greatest_shaft_torque",
             name="greatest_map_shaft_torque",
             error_output="greatest_map_factor_error",

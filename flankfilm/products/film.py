@@ -177,11 +177,11 @@ def _regime(cycle: coupling.LubricatedCycle) -> float | None:
 
 def outputs() -> tuple[Named, ...]:
     """Numbers that a study can ask for."""
-    _film = outputs_from(lambda engine: engine[FILM].film, coupling.FilmAlongPath, "film")
-    _lubricated = outputs_from(lambda engine: engine[FILM], coupling.LubricatedCycle, "film")
+    of_film = outputs_from(lambda engine: engine[FILM].film, coupling.FilmAlongPath, "film")
+    of_lubricated = outputs_from(lambda engine: engine[FILM], coupling.LubricatedCycle, "film")
     return (
-        _film("least_film", error_output="least_film_error"),
-        _film(
+        of_film("least_film", error_output="least_film_error"),
+        of_film(
             "central_thickness",
             np.min,
             "least_central_film",
@@ -198,8 +198,8 @@ def outputs() -> tuple[Named, ...]:
             "{} at the pitch point",
             error_output="film_error",
         ),
-        _film("greatest_pressure", name="hertz_pressure"),
-        _lubricated("secant_stiffness_change", name="film_change"),
+        of_film("greatest_pressure", name="hertz_pressure"),
+        of_lubricated("secant_stiffness_change", name="film_change"),
         *_at_points(),
         _through(
             "spike",
@@ -232,7 +232,7 @@ def outputs() -> tuple[Named, ...]:
             Figure("1", "minimum over central film of the contact at C"),
             lambda film: film.minimum_thickness / film.central_thickness,
         ),
-        _film(
+        of_film(
             "least_film_ratio",
             name="film_ratio",
             said="{}; nan if smooth",
@@ -244,8 +244,8 @@ def outputs() -> tuple[Named, ...]:
             "film",
             in_result(FILM, _regime),
         ),
-        _film("asperity_share", np.max, said="largest {} along the path; nan if smooth"),
-        _film("starvation", np.min, said="minimum {} along the path; nan if flooded"),
+        of_film("asperity_share", np.max, said="largest {} along the path; nan if smooth"),
+        of_film("starvation", np.min, said="minimum {} along the path; nan if flooded"),
         output_of(
             "least_film_error",
             Figure("1", "estimated relative error of the minimum film and film ratio; nan where unknown"),

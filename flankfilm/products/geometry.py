@@ -10,7 +10,7 @@ import numpy as np
 import gears
 from base import Figure
 from flankfilm.building.flanks import deviations
-from flankfilm.building.pair import pinion_speed
+from flankfilm.building.pair import pinion_speed, pinion_speed_if_any
 from flankfilm.output import drawing_data as drawn
 from flankfilm.output.flanks import measured_flanks
 from flankfilm.output.variables import of_quantities, of_record
@@ -44,12 +44,10 @@ def variables(computed: Computed) -> Iterator[xr.Dataset]:
     """Sizes, outlines of teeth, the path of contact, deviations of flanks, and growth."""
     scene = computed.scene
     if (pair := computed.get(PAIR)) is not None:
-        operating = scene.operating
-        turns = operating is not None and operating.pinion_speed_rpm is not None
         yield of_record("pair", pair)
         yield of_record("dimensions", gears.dimensions(pair))
         yield of_quantities("outline", drawn.outlines(pair))
-        yield of_quantities("path", drawn.path(pair, pinion_speed(scene) if turns else None))
+        yield of_quantities("path", drawn.path(pair, pinion_speed_if_any(scene)))
         yield from measured_flanks(pair, deviations(scene, pair, every_tooth=True))
     if (warm := computed.get(HEAT)) is not None:
         yield of_record("heat", warm)
@@ -74,14 +72,14 @@ def _ends(engine: Engine) -> Any:
 
 def outputs() -> tuple[Named, ...]:
     """Numbers that a study can ask for."""
-    _pair = outputs_from(lambda engine: engine[PAIR], gears.GearPair, "geometry")
-    _heat = outputs_from(lambda engine: engine[HEAT], gears.WarmPair, "geometry")
+    of_pair = outputs_from(lambda engine: engine[PAIR], gears.GearPair, "geometry")
+    of_heat = outputs_from(lambda engine: engine[HEAT], gears.WarmPair, "geometry")
     return (
-        _pair("contact_ratio"),
-        _heat("cold_backlash"),
-        _heat("base_pitch_difference"),
-        _pair("working_centre_distance", name="centre_distance"),
-        _pair("working_pressure_angle"),
+        of_pair("contact_ratio"),
+        of_heat("cold_backlash"),
+        of_heat("base_pitch_difference"),
+        of_pair("working_centre_distance", name="centre_distance"),
+        of_pair("working_pressure_angle"),
         output_of(
             "specific_sliding",
             Figure("1", "largest specific sliding of both flanks, A to E"),

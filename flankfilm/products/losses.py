@@ -139,38 +139,38 @@ def _error(name: str, meaning: str, value: Take) -> Named:
 
 def outputs() -> tuple[Named, ...]:
     """Numbers that a study can ask for."""
-    _losses = outputs_from(lambda engine: engine[LOSSES], coupling.MeshLosses, "losses")
-    _path = outputs_from(lambda engine: engine[LOSSES].path, coupling.LossesAlongPath, "losses")
+    of_losses = outputs_from(lambda engine: engine[LOSSES], coupling.MeshLosses, "losses")
+    of_path = outputs_from(lambda engine: engine[LOSSES].path, coupling.LossesAlongPath, "losses")
     return (
-        _losses("mean_friction", error_output="losses_error", model_output="mean_friction_model_error"),
-        _losses("mesh_loss", error_output="losses_error", model_output="losses_model_error"),
+        of_losses("mean_friction", error_output="losses_error", model_output="mean_friction_model_error"),
+        of_losses("mesh_loss", error_output="losses_error", model_output="losses_model_error"),
         *_band("mesh_loss"),
-        _losses("sliding_loss", error_output="losses_error", model_output="sliding_loss_model_error"),
-        _losses("rolling_loss"),
-        _losses(
+        of_losses("sliding_loss", error_output="losses_error", model_output="sliding_loss_model_error"),
+        of_losses("rolling_loss"),
+        of_losses(
             "efficiency",
             name="mesh_efficiency",
             error_output="efficiency_error",
             model_output="efficiency_model_error",
         ),
-        _losses("loss_factor"),
-        _path("greatest_oil_rise", name="oil_temperature_rise", error_output="temperature_rise_error"),
-        _losses(
+        of_losses("loss_factor"),
+        of_path("greatest_oil_rise", name="oil_temperature_rise", error_output="temperature_rise_error"),
+        of_losses(
             "greatest_contact_temperature",
             name="flank_temperature",
             error_output="flank_temperature_error",
         ),
-        _path(
+        of_path(
             "flash_temperature", np.max, said="maximum flash temperature after Blok along the path, a rise"
         ),
         *_gears(),
-        _path(
+        of_path(
             "least_film",
             name="least_film_with_heat",
             said="{} along the path, with heat and shear thinning",
             error_output="film_with_heat_error",
         ),
-        _path(
+        of_path(
             "least_film_ratio",
             name="film_ratio_with_heat",
             said="{} with heat; nan if smooth",
@@ -186,7 +186,7 @@ def outputs() -> tuple[Named, ...]:
             )
         ),
         *_boundary(),
-        _path("greatest_pressure_times_sliding", name="pressure_times_sliding"),
+        of_path("greatest_pressure_times_sliding", name="pressure_times_sliding"),
         _error("losses_error", "estimated relative error of mean friction and losses", attrgetter("error")),
         *(
             _error(

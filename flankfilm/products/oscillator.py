@@ -173,9 +173,9 @@ def _resonance(motion: coupling.PairOscillator) -> float | None:
 
 def outputs() -> tuple[Named, ...]:
     """Numbers that a study can ask for."""
-    _oscillator = outputs_from(lambda engine: engine[SCALING], coupling.PairOscillator, "fourier")
+    of_oscillator = outputs_from(lambda engine: engine[SCALING], coupling.PairOscillator, "fourier")
     return (
-        _oscillator(
+        of_oscillator(
             "natural_frequency",
             error_output="natural_frequency_error",
             model_output="natural_frequency_model_error",
@@ -204,7 +204,7 @@ def outputs() -> tuple[Named, ...]:
             lambda engine: engine[SCALING],
             "natural_frequency",
         ),
-        _oscillator("error_range"),
+        of_oscillator("error_range"),
     )
 
 

@@ -93,13 +93,7 @@ def section_of(
     stage: Stage[T] | Stage[T | None], part: Callable[[T, xr.Dataset], Part]
 ) -> Callable[[Computed, xr.Dataset], Iterator[Part]]:
     """Section of the report about a stage's result; none where there is no result."""
-
-    def of(computed: Computed, results: xr.Dataset) -> Iterator[Part]:
-        value: T | None = computed.values.get(stage.name)
-        if value is not None:
-            yield part(value, results)
-
-    return of
+    return lambda computed, results: when(stage, lambda value: [part(value, results)])(computed)
 
 
 def together(*parts: Callable[..., Iterable[T]]) -> Callable[..., Iterator[T]]:

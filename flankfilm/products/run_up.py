@@ -99,7 +99,7 @@ def _extremes(stage: coupling.SpeedRunUp, way: str, unit: float) -> tuple[str, .
 
 def outputs() -> tuple[Named, ...]:
     """Numbers that a study can ask for."""
-    _of_parts = outputs_from(of_a_train(RUN_UP), coupling.SpeedRunUp, "run-up")
+    of_parts = outputs_from(of_a_train(RUN_UP), coupling.SpeedRunUp, "run-up")
     return (
         output_of(
             "greatest_run_up_factor",
@@ -108,10 +108,8 @@ def outputs() -> tuple[Named, ...]:
             in_result(RUN_UP, lambda run_up: greatest_of(run_up.force_factor)),
             error_output="run_up_error",
         ),
-        _of_parts(
-            "greatest_bearing_force", name="greatest_run_up_bearing_force", error_output="run_up_error"
-        ),
-        _of_parts("greatest_shaft_torque", name="greatest_run_up_shaft_torque", error_output="run_up_error"),
+        of_parts("greatest_bearing_force", name="greatest_run_up_bearing_force", error_output="run_up_error"),
+        of_parts("greatest_shaft_torque", name="greatest_run_up_shaft_torque", error_output="run_up_error"),
         output_of(
             "run_up_error",
             Figure(

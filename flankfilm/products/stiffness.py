@@ -12,7 +12,7 @@ from base import Figure, Quantity
 from base.results import EXACT, figures
 from flankfilm import coupling
 from flankfilm.building.face import varies_by
-from flankfilm.building.pair import pinion_speed
+from flankfilm.building.pair import pinion_speed_if_any
 from flankfilm.figures.reading import PER_FACE, read_figure
 from flankfilm.output.variables import figure_of, of_models, of_quantities, of_record, sentence
 from flankfilm.products.closed_forms import CLOSED_FORMS
@@ -110,10 +110,8 @@ def variables(computed: Computed) -> Iterator[xr.Dataset]:
     if (dry := computed.get(DRY_CYCLE)) is not None:
         yield of_record("dry", dry)
         if dry.contact is not None:
-            operating = computed.scene.operating
-            turns = operating is not None and operating.pinion_speed_rpm is not None
             yield of_record("dry", dry.contact, CONTACTS)
-            yield of_quantities("dry", _sliding(dry.contact, pinion_speed(computed.scene) if turns else None))
+            yield of_quantities("dry", _sliding(dry.contact, pinion_speed_if_any(computed.scene)))
     if (references := computed.get(REFERENCES)) is not None:
         yield of_record("reference", references)
     if others := computed.get(OTHER_CYCLES):
@@ -264,7 +262,7 @@ def _harmonics_error(curve: str, name: str) -> Named:
 
 def outputs() -> tuple[Named, ...]:
     """Numbers that a study can ask for."""
-    _mesh = outputs_from(lambda engine: engine[MESH], coupling.MeshCycle, "stiffness")
+    of_mesh = outputs_from(lambda engine: engine[MESH], coupling.MeshCycle, "stiffness")
     return (
         _per_face(
             "mean_secant_stiffness", error_output="stiffness_error", model_output="stiffness_model_error"
@@ -275,7 +273,7 @@ def outputs() -> tuple[Named, ...]:
         ),
         _per_face("least_secant_stiffness"),
         _per_face("greatest_secant_stiffness", name="largest_secant_stiffness"),
-        _mesh(
+        of_mesh(
             "transmission_error_range",
             name="transmission_error",
             error_output="transmission_error_error",
@@ -283,9 +281,9 @@ def outputs() -> tuple[Named, ...]:
         ),
         *(_harmonic("harmonic", "secant", "secant_stiffness", order) for order in range(1, 6)),
         *(_harmonic("tangent_harmonic", "tangent", "stiffness", order) for order in range(1, 6)),
-        _mesh("mean_error", name="stiffness_error"),
+        of_mesh("mean_error", name="stiffness_error"),
         _error_of("mean_stiffness", "tangent_stiffness_error"),
-        _mesh("range_error", name="transmission_error_error"),
+        of_mesh("range_error", name="transmission_error_error"),
         _harmonics_error("secant_stiffness", "secant"),
         _harmonics_error("stiffness", "tangent"),
         output_of(

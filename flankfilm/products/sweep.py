@@ -141,8 +141,7 @@ def headlines(computed: Computed) -> Iterator[Headline]:
     if (stage := computed.get(SWEEP)) is None:
         return
     yield from ranked(_of_range(stage), 2, 2)
-    operating = computed.scene.operating
-    if operating is not None and operating.pinion_speed_rpm is not None:
+    if computed.scene.rpm is not None:
         yield from ranked(_of_operation(stage), 1)
 
 

@@ -115,6 +115,11 @@ class Scene(Section):
         return self.model_dump(mode="json", exclude_unset=True, exclude_none=True)
 
     @property
+    def rpm(self) -> float | None:
+        """Speed of the pinion [rpm]; None where the scene does not say it."""
+        return None if self.operating is None else self.operating.pinion_speed_rpm
+
+    @property
     def reference(self) -> Literal["body", "bore", "teeth"] | None:
         """What the scene says that deflections by finite elements are measured against; None where it does not."""
         return self.stiffness.reference or (
