@@ -23,6 +23,35 @@ LAWS: Mapping[str, str] = {
     "gears.closed_form.tooth_stiffness.LIGHT_LOAD": "tests/gears/test_closed_form.py"
     "::test_iso_light_load_and_modulus",
     "fem.fields.grids.DROPPED": "tests/fem/test_formats.py::test_mantissas_in_pictures_are_rounded_to_eleven_bits",
+    "ehl.discrete.asperities.MEAN_OVER_DEVIATION": "tests/ehl/test_mixed.py::test_roughness_of_drawings",
+    "ehl.discrete.asperities.PEAKS_OVER_MEAN": "tests/ehl/test_mixed.py::test_roughness_of_drawings",
+    "ehl.discrete.asperities.USUAL_NUMBER": "tests/ehl/test_mixed.py::test_roughness_of_drawings",
+    "ehl.discrete.asperities.USUAL_SLENDERNESS": "tests/ehl/test_mixed.py::test_roughness_of_drawings",
+    "ehl.discrete.equations.LOAD": "tests/ehl/test_solver.py"
+    "::test_the_film_converges_at_second_order_or_better[2.0-1.0]",
+    "ehl.discrete.flash._SHAPE": "tests/ehl/test_flash.py"
+    "::test_both_surfaces_are_as_hot_as_the_moving_source_makes_them",
+    "ehl.discrete.solids._LN_LEAST": "tests/ehl/test_flash.py"
+    "::test_both_surfaces_are_as_hot_as_the_moving_source_makes_them",
+    "ehl.oil.lubricant._POLE": "tests/ehl/test_lubricant.py"
+    "::test_oil_thickens_by_roelands_law_as_it_cools_towards_135_below_zero",
+    "ehl.oil.measured._POLE": "tests/ehl/test_measured.py::test_a_table_of_roelands_law_is_roelands_law",
+    "ehl.oil.oil_grades._T100": "tests/validation/test_iso_viscosity.py"
+    "::test_walther_meets_its_two_viscosities_and_is_straight_between",
+    "ehl.oil.oil_grades._T15": "tests/validation/test_iso_viscosity.py::test_typical_gear_oil",
+    "ehl.oil.oil_grades._T40": "tests/validation/test_iso_viscosity.py"
+    "::test_walther_meets_its_two_viscosities_and_is_straight_between",
+    "ehl.oil.oil_grades._ZERO": "tests/validation/test_iso_viscosity.py"
+    "::test_a_grade_gives_back_its_viscosity_and_index",
+    "ehl.oil.rheology.ROELANDS_LN_VISCOSITY": "tests/ehl/test_lubricant.py"
+    "::test_an_oil_thinner_than_the_pole_of_the_law_is_refused",
+    "ehl.oil.rheology.ROELANDS_PRESSURE": "tests/ehl/test_lubricant.py"
+    "::test_derived_index_gives_roelands_law_in_its_usual_form",
+    "ehl.oil.rheology._DENSITY_LIMIT": "tests/ehl/test_lubricant.py::test_density_limits",
+    "ehl.oil.rheology._DENSITY_RISE": "tests/ehl/test_lubricant.py::test_density_limits",
+    "ehl.solving.levels._DROP": "tests/ehl/test_spike.py::test_a_spike_asked_for_is_resolved",
+    "gears.pair.thermal_expansion.ROOM": "tests/gears/test_thermal_expansion.py"
+    "::test_all_of_one_temperature_and_material_keeps_its_angles",
 }
 """Test of a constant, by the constant's name."""
 

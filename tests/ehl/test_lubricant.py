@@ -83,3 +83,11 @@ def test_an_oil_at_another_temperature_is_the_same_oil():
     by_T = (oil.hot_log_viscosity(0.0, 378.15 + h)[0] - oil.hot_log_viscosity(0.0, 378.15 - h)[0]) / (2 * h)
     assert warm.viscosity_slope == pytest.approx(-float(by_T), rel=1e-6)
     assert warm.density == pytest.approx(910.0 * (1 - 25 * 6.5e-4))
+
+
+def test_oil_thickens_by_roelands_law_as_it_cools_towards_135_below_zero():
+    """ln(eta) + 9.67 grows as a power of the distance from 138 K, by the slope that the oil has at its temperature."""
+    oil = Lubricant(0.1, 2e-8, temperature=338.0, viscosity_slope=0.04)
+    above = math.log(0.1) + 9.67
+    power = 0.04 * 200.0 / above
+    assert math.log(oil.at_temperature(238.0).viscosity) + 9.67 == pytest.approx(above * 2**power, rel=1e-12)
