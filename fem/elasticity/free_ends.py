@@ -58,14 +58,11 @@ class HalfFace:
     def face(self, even: bool, free: bool) -> Face:
         """Products for displacements that are equal (even) or opposite on the other half, with free ends or walls."""
         n = len(self.mass)
-        psi = slice(0 if even else 1, n)
-        phi = slice(1 if even else 0, n if free else n - 1)
-        return Face(
-            (self.mass[psi, psi], self.mass[phi, phi]),
-            (self.stiffness[psi, psi], self.stiffness[phi, phi]),
-            self.mixed[psi, phi],
-            self.mixed.T[psi, phi],
-        )
+        psi = np.arange(0 if even else 1, n)
+        phi = np.arange(1 if even else 0, n if free else n - 1)
+        functions = np.ix_(np.concatenate([psi, phi]), np.concatenate([psi, phi]))
+        products = (self.mass, self.mixed, self.stiffness)
+        return Face(len(psi), len(phi), *(table[functions] for table in products))
 
     def values(self, z: Array) -> Array:
         """Every function (n, k) at places (k,) of the half with z >= 0 [m]."""

@@ -1,21 +1,24 @@
-"""A gear as a prism: a solid of constant section, whose displacements are functions over the section times such over z.
+"""A gear as a solid of constant section, straight or twisted: functions over the section times such over z.
 
-With the triangles' shape functions N over the section and any functions psi over the face,
+The section of a helical gear turns as it moves along the axis, by ``twist`` a metre. In coordinates that turn with it
+u = sum U_ip N_i psi_p (v likewise) and w = sum W_iq N_i phi_q, with the triangles' shape functions N and any functions
+psi and phi along the face. The derivative along the axis is
 
-    u = sum U_ip N_i psi_p   (v likewise),   w = sum W_iq N_i phi_q ,
+    D_z = d_z - twist T,   T(u, v) = (x d_y - y d_x)(u, v) - (-v, u),   T w = (x d_y - y d_x) w ,
 
-the energy of the solid needs no more of the section than the integrals
+and the strains 11, 22, 33, 12, 13, 23 are S0 U + S1 d_z U:
 
-    K_(ia)(jb) of plane strain (``fem.elasticity.plane_elasticity``), M_ij = Int N_i N_j,
-    L_ij = Int grad N_i . grad N_j,  D_iaj = Int d_a N_i N_j ,
+    S0 = (d_x u, d_y v, -twist T w, d_y u + d_x v, d_x w - twist (T u)_1, d_y w - twist (T u)_2) ,
+    S1 = (0, 0, w, 0, u, v) .
 
-and no more of the face than products of psi, phi and their derivatives:
+The energy needs no more of the section than A0 = <S0, C S0>, B = <S0, C S1> and A2 = <S1, C S1>, and no more of the
+face than products of its functions f, g and their derivatives:
 
-    (ia p)(jb q)  K_(ia)(jb) <psi_p psi_q> + mu M_ij delta_ab <psi_p' psi_q'>
-    (ia p)(jw q)  lambda D_iaj <psi_p phi_q'> + mu D_jai <psi_p' phi_q>
-    (iw p)(jw q)  mu L_ij <phi_p phi_q> + (lambda + 2 mu) M_ij <phi_p' phi_q'> .
+    A0 <f g> + B <f g'> + B^T <f' g> + A2 <f' g'> .
 
-The ring of equal sectors is closed as in the plane (``fem.elasticity.ring``), with more unknowns at a node.
+A spur gear has no twist. There A0, A2 join u and v with themselves and w with itself, B joins u and v with w: cosines
+of u, v and sines of w are apart from the others, and half the functions do. The ring of equal sectors is closed as in
+the plane (``fem.elasticity.ring``), with more unknowns at a node, since T does not depend on the tooth.
 """
 
 from __future__ import annotations
@@ -29,7 +32,7 @@ from base import Array, Integers, record, unclocked
 from fem.elasticity.condensation import Condensation, condensation
 from fem.elasticity.cyclic_structure import CyclicStructure, cyclic_structure
 from fem.elasticity.line_load import FlankPoints
-from fem.elasticity.plane_elasticity import INTEGRATION, PlaneElasticity, element_matrices, physical_gradients
+from fem.elasticity.plane_elasticity import INTEGRATION, PlaneElasticity, physical_gradients
 from fem.elasticity.ring import held_and_cut, polar_components
 from meshes.triangle import shape
 
@@ -48,83 +51,106 @@ class Section:
     Attributes
     ----------
     mesh : SectorMesh
-    law : PlaneElasticity
-        In plane strain: constants of the solid.
-    plane : (m, 6, 2, 6, 2) array
-        K [Pa].
-    mass, laplace : (m, 6, 6) arrays
-        M [m^2], L [-].
-    slopes : (m, 6, 2, 6) array
-        D [m].
+    twist : float
+        Turn of the section along the axis [rad/m], positive for a right hand.
+    still, sloped, steep : (m, 6, 3, 6, 3) arrays
+        A0 [Pa], B [Pa m] and A2 [Pa m^2]: node and component of the trial function last.
     """
 
     mesh: SectorMesh
-    law: PlaneElasticity
-    plane: Array
-    mass: Array
-    laplace: Array
-    slopes: Array
+    twist: float
+    still: Array
+    sloped: Array
+    steep: Array
 
     def elements(self, face: Face, triangles: Integers) -> Array:
         """Stiffness matrices of some triangles (k, 6 n, 6 n), n unknowns a node: pairs (u, v) of each psi, then w."""
-        lam, mu = self.law.lame
-        in_plane, across = len(face.masses[0]), len(face.masses[1])
-        count, n = len(triangles), 2 * in_plane + across
-        stiffness = np.empty((count, 6, n, 6, n))
-        plane_block = np.einsum("kiajb,pq->kipajqb", self.plane[triangles], face.masses[0], optimize=True)
-        along = mu * np.einsum("kij,pq->kipjq", self.mass[triangles], face.stiffnesses[0], optimize=True)
-        for a in range(2):
-            plane_block[:, :, :, a, :, :, a] += along
-        m = 2 * in_plane
-        stiffness[:, :, :m, :, :m] = plane_block.reshape(count, 6, m, 6, m)
-        mixed = lam * np.einsum("kiaj,pq->kipajq", self.slopes[triangles], face.by_across, optimize=True)
-        mixed += mu * np.einsum("kjai,pq->kipajq", self.slopes[triangles], face.by_plane, optimize=True)
-        coupled = mixed.reshape(count, 6, m, 6, across)
-        stiffness[:, :, :m, :, m:] = coupled
-        stiffness[:, :, m:, :, :m] = np.transpose(coupled, (0, 3, 4, 1, 2))
-        own = mu * np.einsum("kij,pq->kipjq", self.laplace[triangles], face.masses[1], optimize=True)
-        own += (lam + 2 * mu) * np.einsum(
-            "kij,pq->kipjq", self.mass[triangles], face.stiffnesses[1], optimize=True
+        split, n = 2 * face.psi, 2 * face.psi + face.phi
+        parts = (
+            (slice(0, 2), slice(0, face.psi), slice(0, split)),
+            (slice(2, 3), slice(face.psi, None), slice(split, n)),
         )
-        stiffness[:, :, m:, :, m:] = own
-        return stiffness.reshape(count, 6 * n, 6 * n)
+        still, sloped, steep = (table[triangles] for table in (self.still, self.sloped, self.steep))
+        stiffness = np.empty((len(triangles), 6, n, 6, n))
+        for component, function, row in parts:
+            for other, by, column in parts:
+                products = (
+                    (still[:, :, component, :, other], face.mass[function, by]),
+                    (sloped[:, :, component, :, other], face.mixed[function, by]),
+                    (
+                        np.moveaxis(sloped[:, :, other, :, component], (1, 2), (3, 4)),
+                        face.mixed[by, function].T,
+                    ),
+                    (steep[:, :, component, :, other], face.stiffness[function, by]),
+                )
+                shape_ = len(triangles), 6, row.stop - row.start, 6, column.stop - column.start
+                stiffness[:, :, row, :, column] = _sum_of_products(products).reshape(shape_)
+        return stiffness.reshape(len(triangles), 6 * n, 6 * n)
+
+
+def _sum_of_products(products: Sequence[tuple[Array, Array]]) -> Array:
+    """Sum of tables of the section (k, i, a, j, b) times products over the face (p, q): (k, i, p, a, j, q, b)."""
+    tables = [(table, over_face) for table, over_face in products if over_face.any() and table.any()]
+    if not tables:
+        (table, over_face), *_ = products
+        k, i, a, j, b = table.shape
+        return np.zeros((k, i, len(over_face), a, j, over_face.shape[1], b))
+    section_ = np.stack([table for table, _ in tables], axis=-1)
+    over_z = np.stack([over_face for _, over_face in tables])
+    return np.asarray(np.einsum("kiajbt,tpq->kipajqb", section_, over_z, optimize=True))
 
 
 @record
 class Face:
-    """Products over the face of functions psi of u and v, and phi of w.
+    """Products over the face of functions: psi of u and v, then phi of w.
 
     Attributes
     ----------
-    masses, stiffnesses : two arrays (p, p) and (q, q)
-        <psi psi>, <phi phi> [m or -], <psi' psi'>, <phi' phi'> [1/m or 1/m^2].
-    by_across, by_plane : (p, q) arrays
-        <psi phi'>, <psi' phi>.
+    psi, phi : int
+        How many there are.
+    mass, mixed, stiffness : (psi + phi, psi + phi) arrays
+        <f g> [m or -], <f g'> [- or 1/m], <f' g'> [1/m or 1/m^2].
     """
 
-    masses: tuple[Array, Array]
-    stiffnesses: tuple[Array, Array]
-    by_across: Array
-    by_plane: Array
+    psi: int
+    phi: int
+    mass: Array
+    mixed: Array
+    stiffness: Array
 
     @classmethod
-    def wave(cls, wavenumber: float) -> Face:
-        """Give u, v ~ cos k z and w ~ sin k z, over the mean of cos^2; u and v alone without a wave."""
-        unit, k = np.ones((1, 1)), np.full((1, 1), float(wavenumber))
-        if wavenumber:
-            return cls((unit, unit), (k**2, k**2), k, -k)
-        none, empty = np.zeros((0, 0)), np.zeros((1, 0))
-        return cls((unit, none), (0.0 * unit, none), empty, empty)
+    def wave(cls, wavenumber: float, twisted: bool = False) -> Face:
+        """Waves over the mean of cos^2.
+
+        Without a twist u, v ~ cos k z and w ~ sin k z; u and v alone without a wave. In a twisted solid u, v and w have
+        cosine and sine; without a wave each is constant.
+
+        Parameters
+        ----------
+        wavenumber : float
+            k [1/m]
+        twisted : bool
+        """
+        k, unit = float(wavenumber), np.eye(2)
+        quarter = k * np.array([[0.0, 1.0], [-1.0, 0.0]])  # (cos, sin)' = k (-sin, cos)
+        if twisted and k:
+            return cls(2, 2, np.tile(unit, (2, 2)), np.tile(quarter, (2, 2)), np.tile(k**2 * unit, (2, 2)))
+        if twisted:
+            return cls(1, 1, np.ones((2, 2)), np.zeros((2, 2)), np.zeros((2, 2)))
+        count = 1 + bool(k)
+        return cls(1, count - 1, *(table[:count, :count] for table in (unit, quarter, k**2 * unit)))
 
 
-def section(mesh: SectorMesh, law: PlaneElasticity) -> Section:
+def section(mesh: SectorMesh, law: PlaneElasticity, twist: float = 0.0) -> Section:
     """Integrate over a sector's triangles with scikit-fem's quadrature.
 
     Parameters
     ----------
     mesh : SectorMesh
     law : PlaneElasticity
-        In plane strain.
+        In plane strain: constants of the solid.
+    twist : float
+        Turn of the section along the axis [rad/m], tan(beta_b)/r_b, positive for a right hand.
     """
     with unclocked():
         from skfem.quadrature import get_quadrature
@@ -133,17 +159,38 @@ def section(mesh: SectorMesh, law: PlaneElasticity) -> Section:
     (xi, eta), weight = get_quadrature(RefTri, INTEGRATION)
     gradient, determinant = physical_gradients(mesh.points, mesh.triangles, xi, eta)
     scale = determinant * weight * mesh.thickness[:, None]
-    values, count = shape(xi, eta), len(mesh.triangles)
-    plane = element_matrices(mesh.points, mesh.triangles, law) * mesh.thickness[:, None, None]
-    flat = np.swapaxes(gradient, 1, 2).reshape(count, 6, -1)  # (m, i, q a)
-    return Section(
-        mesh,
-        law,
-        plane.reshape(count, 6, 2, 6, 2),
-        np.einsum("mq,qi,qj->mij", scale, values, values, optimize=True),
-        (flat * np.repeat(scale, 2, axis=1)[:, None]) @ np.swapaxes(flat, 1, 2),
-        np.einsum("mqia,mq,qj->miaj", gradient, scale, values, optimize=True),
-    )
+    values = shape(xi, eta)
+    places = np.einsum("qi,mia->mqa", values, mesh.points[mesh.triangles], optimize=True)
+    still, sloped = _strains(values, gradient, places, twist)
+    lam, mu = law.lame
+    hooke = np.diag([2 * mu, 2 * mu, 2 * mu, mu, mu, mu])
+    hooke[:3, :3] += lam
+    count, unknowns = len(mesh.triangles), 18
+
+    def product(test: Array, trial: Array) -> Array:
+        stress = np.einsum("mq,st,mqtu->mqsu", scale, hooke, trial, optimize=True).reshape(
+            count, -1, unknowns
+        )
+        by_test = np.swapaxes(test.reshape(count, -1, unknowns), 1, 2)
+        return np.asarray(by_test @ stress).reshape(count, 6, 3, 6, 3)
+
+    return Section(mesh, twist, product(still, still), product(still, sloped), product(sloped, sloped))
+
+
+def _strains(values: Array, gradient: Array, places: Array, twist: float) -> tuple[Array, Array]:
+    """S0 and S1 (m, q, 6, 18) of shape functions (q, 6), their gradients (m, q, 6, 2) and places (m, q, 2)."""
+    still, sloped = np.zeros((2, *gradient.shape[:2], 6, 6, 3))
+    d_x, d_y = gradient[..., 0], gradient[..., 1]
+    turned = -twist * (places[..., :1] * d_y - places[..., 1:] * d_x)
+    still[:, :, 0, :, 0], still[:, :, 1, :, 1] = d_x, d_y
+    still[:, :, 3, :, 0], still[:, :, 3, :, 1] = d_y, d_x
+    still[:, :, 2, :, 2] = turned
+    still[:, :, 4, :, 2], still[:, :, 5, :, 2] = d_x, d_y
+    still[:, :, 4, :, 0], still[:, :, 5, :, 1] = turned, turned
+    # -twist (-J): J(u, v) = (-v, u)
+    still[:, :, 4, :, 1], still[:, :, 5, :, 0] = -twist * values, twist * values
+    sloped[:, :, 2, :, 2] = sloped[:, :, 4, :, 0] = sloped[:, :, 5, :, 1] = values
+    return still.reshape(*still.shape[:3], 18), sloped.reshape(*sloped.shape[:3], 18)
 
 
 @record
@@ -153,6 +200,8 @@ class Prism:
     Attributes
     ----------
     mesh : SectorMesh
+    twist : float
+        Turn of the section along the axis [rad/m].
     psi, phi : int
         Functions of u and v, and of w.
     inner : (inner,) array of int
@@ -165,6 +214,7 @@ class Prism:
     """
 
     mesh: SectorMesh
+    twist: float
     psi: int
     phi: int
     inner: Integers
@@ -252,15 +302,24 @@ class Prism:
         return np.asarray(moved)
 
     def _nodal(self, at: FlankPoints) -> Array:
-        """Nodal forces that stand for unit line loads psi(z) (unknowns, loads psi)."""
+        """Nodal forces that stand for unit line loads psi(z) (unknowns, loads psi).
+
+        The surface of a helix leans along the axis: a force d in the section, normal to the flank there, has
+        -twist (x d_y - y d_x) along the axis beside it.
+        """
         count, n = len(at.rho), 2 * self.psi + self.phi
         force = np.zeros((n * len(self.mesh.points), count, self.psi))
+        (x, y), (d_x, d_y) = at.points.T, at.direction.T
+        along_axis = -self.twist * (x * d_y - y * d_x)
+        load = np.arange(count)[:, None]
         for p in range(self.psi):
             for a in range(2):
                 rows = n * at.nodes + 2 * p + a
-                np.add.at(
-                    force[..., p], (rows, np.arange(count)[:, None]), at.weights * at.direction[:, a : a + 1]
-                )
+                np.add.at(force[..., p], (rows, load), at.weights * at.direction[:, a : a + 1])
+        # without a twist nothing, whatever the functions of w
+        for p in range(min(self.psi, self.phi)):
+            rows = n * at.nodes + 2 * self.psi + p
+            np.add.at(force[..., p], (rows, load), at.weights * along_axis[:, None])
         return force.reshape(len(force), -1)
 
 
@@ -272,7 +331,7 @@ def prism(over: Section, face: Face) -> Prism:
     over : Section
     face : Face
     """
-    mesh, psi, phi = over.mesh, len(face.masses[0]), len(face.masses[1])
+    mesh, psi, phi = over.mesh, face.psi, face.phi
     n = 2 * psi + phi
     cut, hub = held_and_cut(mesh)
     condensed = condensation(
@@ -283,4 +342,4 @@ def prism(over: Section, face: Face) -> Prism:
     nodes = np.setdiff1d(np.arange(len(mesh.points)), np.concatenate([cut, hub]))
     inner = (n * nodes[:, None] + np.arange(n)).ravel()
     links = cyclic_structure(0.5 * (stiffness + stiffness.T), mesh.teeth)
-    return Prism(mesh, psi, phi, inner, condensed, polar, links)
+    return Prism(mesh, over.twist, psi, phi, inner, condensed, polar, links)
