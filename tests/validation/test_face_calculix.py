@@ -15,10 +15,6 @@ Skipped where ccx is not installed (Debian: apt-get install calculix-ccx), unles
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
@@ -31,10 +27,7 @@ from fem.elasticity.plane_elasticity import PlaneElasticity, stiffness_matrix
 from fem.pair.face_setting import FaceSetting
 from gears import STEEL, Gear, GearPair
 from meshes import Sizes, gear_mesh, mesh_sector
-from meshes.abaqus import number
-
-CCX = shutil.which("ccx")
-REQUIRED = os.environ.get("FLANKFILM_REQUIRE_CCX") == "1"
+from tests.validation.wedges import CCX, REQUIRED, displacements, heights_of, line_forces, wedges
 
 pytestmark = [
     pytest.mark.slow,
@@ -81,60 +74,20 @@ def by_unit_load(mesh, loaded, normal):
 
 def calculix(mesh, loaded, normal, load, folder):
     """Displacements along the normal of the loaded line's nodes, and their z, by a load q(z) on half the face."""
-    assert CCX is not None, "FLANKFILM_REQUIRE_CCX=1, but there is no ccx on PATH"
     levels = np.concatenate([[0.0], np.cumsum(LAYERS)])
-    count, layers = len(mesh.points), len(LAYERS)
-    elements = []
-    for k in range(layers):
-        low, high = mesh.triangles + k * count, mesh.triangles + (k + 1) * count
-        middle = mesh.triangles[:, :3] + (layers + 1 + k) * count
-        elements.append(np.hstack([low[:, :3], high[:, :3], low[:, 3:], high[:, 3:], middle]))
-    elements = np.concatenate(elements)
+    count, heights = len(mesh.points), heights_of(levels)
+    elements = wedges(mesh.triangles, count, len(LAYERS))
     used = np.unique(elements)
-    heights = np.concatenate([levels, 0.5 * (levels[1:] + levels[:-1])])
-    at, weight = np.polynomial.legendre.leggauss(3)
-    line = np.zeros(2 * layers + 1)  # forces of levels, then of what lies between
-    for k, long in enumerate(LAYERS):
-        t = 0.5 * (at + 1)
-        part = 0.5 * long * weight * load(levels[k] + long * t)
-        line[k] += part @ ((1 - t) * (1 - 2 * t))
-        line[k + 1] += part @ (t * (2 * t - 1))
-        line[layers + 1 + k] += part @ (4 * t * (1 - t))
-    on_line = np.arange(2 * layers + 1) * count + loaded
-    bore = used[np.isin(used % count, np.unique(mesh.facets["bore"]))]
-    deck = ["*NODE"]
-    deck += [
-        f"{node + 1}, {number(mesh.points[node % count, 0])}, {number(mesh.points[node % count, 1])}, "
-        f"{number(heights[node // count])}"
-        for node in used
-    ]
-    deck.append("*ELEMENT, TYPE=C3D15, ELSET=GEAR")
-    for i, nodes in enumerate(elements + 1, 1):
-        text = [str(v) for v in (i, *nodes)]
-        deck += [", ".join(text[:9]) + ",", ", ".join(text[9:])]
-    for name, nodes in (("BORE", bore), ("MIDDLE", used[used < count]), ("LOADED", on_line)):
-        deck += [f"*NSET, NSET={name}", *(f"{node + 1}," for node in nodes)]
-    deck += ["*MATERIAL, NAME=STEEL", "*ELASTIC", f"{number(LAW.E)}, {number(LAW.nu)}"]
-    deck += ["*SOLID SECTION, ELSET=GEAR, MATERIAL=STEEL", "*BOUNDARY", "BORE, 1, 3"]
-    deck += ["MIDDLE, 1, 2" if load is odd else "MIDDLE, 3, 3", "*STEP", "*STATIC", "*CLOAD"]
-    deck += [
-        f"{n + 1}, {a + 1}, {number(f * normal[a])}"
-        for n, f in zip(on_line, line, strict=True)
-        for a in (0, 1)
-    ]
-    deck += ["*NODE PRINT, NSET=LOADED", "U", "*END STEP", ""]
-    name = load.__name__
-    (folder / f"{name}.inp").write_text("\n".join(deck), encoding="ascii")
-    done = subprocess.run([CCX, name], cwd=folder, capture_output=True, text=True, timeout=300, check=False)
-    assert done.returncode == 0, done.stdout[-2000:]
-    assert "*ERROR" not in done.stdout, done.stdout[-2000:]
-    moved = {}
-    for row in (folder / f"{name}.dat").read_text().splitlines():
-        parts = row.split()
-        if len(parts) == 4 and parts[0].isdigit():
-            moved[int(parts[0]) - 1] = np.array([float(one) for one in parts[1:3]]) @ normal
+    points = np.column_stack([np.tile(mesh.points, (len(heights), 1)), np.repeat(heights, count)])
+    on_line = np.arange(len(heights)) * count + loaded
+    held = {
+        "BORE": (used[np.isin(used % count, np.unique(mesh.facets["bore"]))], "1, 3"),
+        "MIDDLE": (used[used < count], "1, 2" if load is odd else "3, 3"),
+    }
+    forces = line_forces(levels, load)[:, None] * np.append(normal, 0.0)
+    moved = displacements(folder, load.__name__, points, elements, LAW, held, (on_line, forces))
     order = np.argsort(heights)
-    return heights[order], np.array([moved[node] for node in on_line])[order]
+    return heights[order], (moved[:, :2] @ normal)[order]
 
 
 def ours(rho, load, model="free-ends"):
