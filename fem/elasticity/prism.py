@@ -304,22 +304,23 @@ class Prism:
     def _nodal(self, at: FlankPoints) -> Array:
         """Nodal forces that stand for unit line loads psi(z) (unknowns, loads psi).
 
-        The surface of a helix leans along the axis: a force d in the section, normal to the flank there, has
-        -twist (x d_y - y d_x) along the axis beside it.
+        The surface of a helix leans along the axis: with d the unit vector in the section, normal to the flank there, a
+        normal force has cos(beta_b) (d, -twist (x d_y - y d_x)), since the arm of d about the axis is r_b.
         """
         count, n = len(at.rho), 2 * self.psi + self.phi
         force = np.zeros((n * len(self.mesh.points), count, self.psi))
         (x, y), (d_x, d_y) = at.points.T, at.direction.T
         along_axis = -self.twist * (x * d_y - y * d_x)
+        size = 1.0 / np.sqrt(1.0 + along_axis**2)
         load = np.arange(count)[:, None]
         for p in range(self.psi):
             for a in range(2):
                 rows = n * at.nodes + 2 * p + a
-                np.add.at(force[..., p], (rows, load), at.weights * at.direction[:, a : a + 1])
+                np.add.at(force[..., p], (rows, load), at.weights * (size * at.direction[:, a])[:, None])
         # without a twist nothing, whatever the functions of w
         for p in range(min(self.psi, self.phi)):
             rows = n * at.nodes + 2 * self.psi + p
-            np.add.at(force[..., p], (rows, load), at.weights * along_axis[:, None])
+            np.add.at(force[..., p], (rows, load), at.weights * (size * along_axis)[:, None])
         return force.reshape(len(force), -1)
 
 

@@ -170,7 +170,7 @@ def _energy_in_fixed_axes(mesh: SectorMesh, half: HalfFace, at: FlankPoints) -> 
             turn = _turned(TWIST * z)
             profile = np.append(turn @ [-inward[1], inward[0]], 0.0)
             normal = np.cross(profile, np.append(TWIST * (turn @ [-y, x]), 1.0))
-            normal *= np.sign(normal[:2] @ turn @ inward) / np.linalg.norm(normal[:2])
+            normal *= np.sign(normal[:2] @ turn @ inward) / np.linalg.norm(normal)
             along = half.values(np.array([z]))[:, 0]
             force[at.nodes[0]] += part * at.weights[0][:, None, None] * along[:, None] * normal
     return _twice_the_energy(mesh, _elements_in_fixed_axes(mesh, half), 3 * count, force.ravel())

@@ -77,7 +77,7 @@ def calculix(sector, node, twist, at, folder):
     (x, y), (d_x, d_y) = mesh.points[loaded], at.inward[0]
     # across the flank's profile and the line that the helix draws
     normal = np.cross([-d_y, d_x, 0.0], [-twist * y, twist * x, 1.0])
-    normal *= np.sign(normal[:2] @ at.inward[0]) / np.linalg.norm(normal[:2])
+    normal *= np.sign(normal[:2] @ at.inward[0]) / np.linalg.norm(normal)
     on_line = np.arange(len(heights)) * count + loaded
 
     def density(z):
