@@ -51,6 +51,8 @@ class Section:
     Attributes
     ----------
     mesh : SectorMesh
+    law : PlaneElasticity
+        In plane strain: constants of the solid.
     twist : float
         Turn of the section along the axis [rad/m], positive for a right hand.
     still, sloped, steep : (m, 6, 3, 6, 3) arrays
@@ -58,6 +60,7 @@ class Section:
     """
 
     mesh: SectorMesh
+    law: PlaneElasticity
     twist: float
     still: Array
     sloped: Array
@@ -174,7 +177,7 @@ def section(mesh: SectorMesh, law: PlaneElasticity, twist: float = 0.0) -> Secti
         by_test = np.swapaxes(test.reshape(count, -1, unknowns), 1, 2)
         return np.asarray(by_test @ stress).reshape(count, 6, 3, 6, 3)
 
-    return Section(mesh, twist, product(still, still), product(still, sloped), product(sloped, sloped))
+    return Section(mesh, law, twist, product(still, still), product(still, sloped), product(sloped, sloped))
 
 
 def _strains(values: Array, gradient: Array, places: Array, twist: float) -> tuple[Array, Array]:

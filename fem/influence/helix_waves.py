@@ -29,12 +29,13 @@ from numpy.polynomial import chebyshev
 
 from base import Array, record, unclocked
 from fem.elasticity.flank_samples import sample_places
-from fem.elasticity.line_load import flank_points
-from fem.elasticity.prism import Face, prism, section
+from fem.elasticity.line_load import FlankPoints, flank_points, line_loads
+from fem.elasticity.prism import Face, Section, prism, section
+from fem.elasticity.ring import ring_of
 from fem.influence.flank_variable import FlankVariable, RootVariable
 from fem.influence.gear_face import BEND, between_waves, solid_of, solved_waves
 from fem.influence.gear_shape import MeshedShape
-from fem.influence.series import CrossSeries
+from fem.influence.series import CrossSeries, FlankFit, FlankSeries
 
 __all__ = ["HelixHarmonics", "helix_harmonics"]
 
@@ -54,32 +55,45 @@ class HelixHarmonics:
         Real and imaginary part of the smooth rest of S at the solved waves, on the loaded flank.
     cross : mapping of int to CrossSeries of (waves, 2)
         S on the k-th tooth on the side of growing rho; on the other side it is the conjugate with places exchanged.
+    even_own : FlankSeries
+        What an even load yields at itself beyond the half-space's 2/(pi E* l) [-ln(q/l) - (1 + nu*)/2].
+    even_cross : mapping of int to CrossSeries
+        c(a, b; 0) on the k-th tooth.
     """
 
     base_radius: float
     twist: float
     own: CrossSeries
     cross: Mapping[int, CrossSeries]
+    even_own: FlankSeries
+    even_cross: Mapping[int, CrossSeries]
+
+    @property
+    def cos_base(self) -> float:
+        """cos(beta_b): length of the axis over that of a line of contact."""
+        return float(1.0 / np.sqrt(1.0 + (self.twist * self.base_radius) ** 2))
+
+    def helix(self, load: Array, point: Array) -> Array:
+        """Length l of a helix through the flank for a unit of z, in the mean between two places (...)."""
+        return np.asarray(np.sqrt(1.0 + self.twist**2 * (self.base_radius**2 + load * point)))
+
+    def smooth(self, tooth: int, load: Array, point: Array) -> Array:
+        """Smooth part of S at the solved waves (..., waves), complex; tooth 0 is the loaded one."""
+        series = self.cross[abs(tooth)] if tooth else self.own
+        load, point = np.broadcast_arrays(load, point)
+        parts = series.at(point, load) if tooth < 0 else series.at(load, point)
+        return np.asarray(parts[..., 0] + (-1j if tooth < 0 else 1j) * parts[..., 1])
 
     def own_at(self, load: Array, point: Array, wavenumber: Array) -> Array:
         """S on the loaded flank (..., waves), complex, for curvature radii (...) and k (waves,)."""
-        smooth = _between(self.own, load, point, wavenumber)
-        return np.asarray(smooth + self._half_space(load, point, wavenumber))
+        return self.cross_at(0, load, point, wavenumber) + self._half_space(load, point, wavenumber)
 
     def cross_at(self, tooth: int, load: Array, point: Array, wavenumber: Array) -> Array:
         """S on a neighbour (..., waves), counted from 1 to the side of growing rho; negative on the other side."""
-        if tooth < 0:
-            return np.conj(self.cross_at(-tooth, point, load, wavenumber))
-        return _between(self.cross[tooth], load, point, wavenumber)
+        return np.asarray(self.smooth(tooth, load, point) @ between_waves(wavenumber).T)
 
     def _half_space(self, load: Array, point: Array, wavenumber: Array) -> Array:
         return _half_space(self.base_radius, self.twist, load, point, wavenumber)
-
-
-def _between(series: CrossSeries, load: Array, point: Array, wavenumber: Array) -> Array:
-    load, point = np.broadcast_arrays(load, point)
-    by_wave = np.einsum("wk,...kc->...wc", between_waves(wavenumber), series.at(load, point))
-    return np.asarray(by_wave[..., 0] + 1j * by_wave[..., 1])
 
 
 def _half_space(base_radius: float, twist: float, load: Array, point: Array, wavenumber: Array) -> Array:
@@ -131,7 +145,29 @@ def helix_harmonics(meshed: MeshedShape, twist: float) -> HelixHarmonics:
     own = _fitted(RootVariable(span, rho_end), rho, samples[0])
     place = FlankVariable(span)
     cross = {tooth: _fitted(place, rho, samples[tooth]) for tooth in teeth[1:]}
-    return HelixHarmonics(profile.base_radius, twist, own, cross)
+    even = _at_the_load(over, at, np.diagonal(still[0]))
+    return HelixHarmonics(
+        profile.base_radius,
+        twist,
+        own,
+        cross,
+        FlankFit(own.variable, own.variable.unit(rho, hold=False), PLACES - 1).series(even),
+        {tooth: _fitted(place, rho, still[tooth]) for tooth in teeth[1:]},
+    )
+
+
+def _at_the_load(over: Section, at: FlankPoints, by_nodes: Array) -> Array:
+    """What even loads yield at themselves beyond the half-space (loads,), from answers of nodal forces there.
+
+    What these lack is what they lack in the plane on the same mesh, where the singular solution is known, for lengths
+    that the helix leaves of those in the section.
+    """
+    regular = line_loads(ring_of(over.mesh, over.law), at).regular_at_load()
+    straight = prism(section(over.mesh, over.law), Face.wave(0.0)).influence(at, 0)[0][:, 0, 0]
+    radius, twist = over.mesh.base_radius, over.twist
+    helix = np.sqrt(1.0 + twist**2 * (radius**2 + at.rho**2))
+    shorter = np.sqrt(1.0 + (twist * radius) ** 2) / helix**2
+    return np.asarray(by_nodes + (regular - straight + 2.0 / np.pi * np.log(shorter)) / helix)
 
 
 def _fitted(variable: FlankVariable, rho: Array, samples: Array) -> CrossSeries:
