@@ -13,9 +13,10 @@ import numpy as np
 
 import ehl
 import gears
-from base import Array, SolverError, Stopwatch
+from base import Array, Stopwatch
 from fem.laws.local_law import film_yielding
 from flankfilm.coupling.films import films
+from flankfilm.coupling.films.agreement import MOST_ROUNDS, in_agreement
 from flankfilm.coupling.films.along_path import gathered
 from flankfilm.coupling.films.films import (
     FilmModel,
@@ -37,8 +38,6 @@ if TYPE_CHECKING:
 
 __all__ = ["FilmRun", "lubricate_path"]
 
-MOST_ROUNDS = 12
-
 LIGHT_SHARE = 5e-3
 """Part of the force at which films are solved beside the loaded places, where pairs come and go."""
 
@@ -53,14 +52,15 @@ and a half (`FilmLaw.halves`); extremes lie where pairs come and go, where halvi
 def lubricate_path(run: FilmRun, *, profiles: bool) -> LubricatedCycle:
     """Bring films and load share into agreement where the load is even along the face; see `lubricate`."""
     dry = run.dry
-    agreed = run.agree(min(films.FILM_POSITIONS, dry.position.size))
+    positions = min(films.FILM_POSITIONS, dry.position.size)
+    agreed, rounds = run.agree(positions)
     path, law = agreed.path, agreed.law
     cycle = run.with_film(path, f"{dry.label} with film")
     least = np.array([film.minimum_thickness for film in path.films])
     return LubricatedCycle(
         **MeshCycle.fields_of(cycle),
         least_film=law.carried(least, cycle.rho1, cycle.forces),
-        rounds=agreed.rounds,
+        rounds=rounds,
         mismatch=agreed.mismatch,
         dry=dry,
         film=gathered(
@@ -69,20 +69,19 @@ def lubricate_path(run: FilmRun, *, profiles: bool) -> LubricatedCycle:
             run.teeth.pair,
             dry,
             agreed.seconds,
-            agreed.positions if profiles else None,
+            positions if profiles else None,
         ),
         otherwise=run.otherwise(path),
     )
 
 
 @dataclass(frozen=True)
-class _Agreement:
-    """Films whose loads are those of the load share that they bring about, and the seconds that these took."""
+class _FilmRound:
+    """Films with their law, the cycle of the load share that they bring about, how far that moved, and the seconds."""
 
     path: PathFilms
     law: FilmLaw
-    positions: int
-    rounds: int
+    cycle: MeshCycle
     mismatch: float
     seconds: float
 
@@ -102,27 +101,30 @@ class FilmRun:
         """Law of films, with the model's definition of stiffness."""
         return law_of(path, self.teeth.pair.face_width, self.model.stiffness)
 
-    def agree(self, positions: int) -> _Agreement:
-        """Iterate films and load share until both agree."""
-        seconds, mismatch, rounds = 0.0, np.inf, 0
-        cycle = self.teeth.cycle(positions)
-        path: PathFilms | None = None
-        while mismatch > self.resolution.agreement:
-            if rounds == MOST_ROUNDS:
-                raise SolverError(
-                    f"films and load share did not agree within {MOST_ROUNDS} rounds (forces still change by "
-                    f"{mismatch:.1e} of the whole): {SOFTER}"
-                )
-            rounds += 1
-            watch = Stopwatch()
-            rho1, contacts, beside = self.contacts(cycle, positions)
-            path = films_of(self.model, rho1, contacts, path, self.resolution.films, beside)
-            law = self.law(path)
-            seconds += watch.seconds
-            before, cycle = cycle, self.teeth.with_films(positions, law)
-            mismatch = float(np.max(np.abs(cycle.load_share - before.load_share)))
-        assert path is not None
-        return _Agreement(path, law, positions, rounds, mismatch, seconds)
+    def agree(self, positions: int) -> tuple[_FilmRound, int]:
+        """Films whose loads are those of the load share that they bring about, and the rounds that these took."""
+        return in_agreement(
+            self._round(positions, self.teeth.cycle(positions)),
+            lambda last: self._round(positions, last.cycle, last.path, last.seconds),
+            lambda last: last.mismatch <= self.resolution.agreement,
+            lambda last: (
+                f"films and load share did not agree within {MOST_ROUNDS} rounds (forces still change by "
+                f"{last.mismatch:.1e} of the whole): {SOFTER}"
+            ),
+        )
+
+    def _round(
+        self, positions: int, cycle: MeshCycle, near: PathFilms | None = None, seconds: float = 0.0
+    ) -> _FilmRound:
+        """Films under the loads of a cycle, solved from others near them, and the load share with them."""
+        watch = Stopwatch()
+        rho1, contacts, beside = self.contacts(cycle, positions)
+        path = films_of(self.model, rho1, contacts, near, self.resolution.films, beside)
+        law = self.law(path)
+        seconds += watch.seconds
+        shared = self.teeth.with_films(positions, law)
+        mismatch = float(np.max(np.abs(shared.load_share - cycle.load_share)))
+        return _FilmRound(path, law, shared, mismatch, seconds)
 
     def contacts(
         self, cycle: MeshCycle, positions: int

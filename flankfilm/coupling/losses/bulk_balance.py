@@ -2,24 +2,50 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-__all__ = ["BulkBalance"]
+__all__ = ["BulkTrial"]
 
 
-class BulkBalance:
-    """Bulk temperatures that are sought: the mean of both by secants, what they differ by as it comes."""
+@dataclass(frozen=True)
+class BulkTrial:
+    """Bulk temperatures that were tried, and those that their losses ask for.
 
-    def __init__(self) -> None:
-        self.last: tuple[float, float] | None = None
+    Attributes
+    ----------
+    bulk : (float, float)
+        Of pinion and wheel [K].
+    asked : (float, float)
+        At which the losses are taken away [K].
+    before : BulkTrial or None
+        The trial before.
+    """
 
-    def next(self, tried: tuple[float, float], asked: tuple[float, float]) -> tuple[float, float]:
-        """Temperatures to try next, after given ones have asked for others."""
-        at, wanted = 0.5 * sum(tried), 0.5 * sum(asked)
+    bulk: tuple[float, float]
+    asked: tuple[float, float]
+    before: BulkTrial | None
+
+    @property
+    def change(self) -> float:
+        """Larger difference of what is asked for from what was tried [K]."""
+        return float(np.max(np.abs(np.subtract(self.asked, self.bulk))))
+
+    @property
+    def following(self) -> tuple[float, float]:
+        """Temperatures to try next [K]: their mean by a secant, what they differ by as it is asked for."""
+        if not self.change:
+            return self.bulk
+        at, wanted = self._means
         slope = 0.0
-        if self.last is not None and at != self.last[0]:
-            slope = float(np.clip((wanted - self.last[1]) / (at - self.last[0]), -3.0, 0.5))
-        self.last = at, wanted
+        if self.before is not None and at != (last := self.before._means)[0]:
+            slope = float(np.clip((wanted - last[1]) / (at - last[0]), -3.0, 0.5))
         mean = at + (wanted - at) / (1.0 - slope)
-        apart = 0.5 * (asked[0] - asked[1])
+        apart = 0.5 * (self.asked[0] - self.asked[1])
         return mean + apart, mean - apart
+
+    @property
+    def _means(self) -> tuple[float, float]:
+        """Mean of pinion and wheel, as tried and as asked for [K]."""
+        return 0.5 * sum(self.bulk), 0.5 * sum(self.asked)

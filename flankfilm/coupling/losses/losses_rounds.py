@@ -8,7 +8,8 @@ import numpy as np
 
 import ehl
 from base import Array, SolverError
-from flankfilm.coupling.losses.bulk_balance import BulkBalance
+from flankfilm.coupling.films.agreement import MOST_ROUNDS, in_agreement
+from flankfilm.coupling.losses.bulk_balance import BulkTrial
 from flankfilm.coupling.losses.heated_films import (
     HeatedFilms,
     HeatedOil,
@@ -32,23 +33,39 @@ FINER = 8
 FINER_FACE = 3
 """The same where the load varies along the face, whose cells take their time; that of films is reported as an error."""
 
-MOST_ROUNDS = 12
-
 WARMER = 0.2
 """Change of bulk temperatures that is left where they are balanced [K]."""
 
 
 @dataclass(frozen=True)
 class Agreed:
-    """Films, forces and temperatures that agree."""
+    """Films, forces and temperatures of a round, which agree in the last one.
+
+    Attributes
+    ----------
+    films : HeatedFilms or HeatedTable
+    forces : MeshCycle
+        Cycle that their mean friction tilts, at the positions of the films.
+    cycle : MeshCycle
+        The same at the positions that means are taken over.
+    means : Means
+    shares : float
+        Change of a pair's force over the whole force.
+    trial : BulkTrial
+        Bulk temperatures of the films, and those that their losses ask for.
+    """
 
     films: HeatedFilms | HeatedTable
+    forces: MeshCycle
     cycle: MeshCycle
-    bulk: tuple[float, float]
     means: Means
-    rounds: int
     shares: float
-    warmer: float
+    trial: BulkTrial
+
+    @property
+    def bulk(self) -> tuple[float, float]:
+        """Bulk temperatures of pinion and wheel [K]."""
+        return self.trial.bulk
 
 
 @dataclass(frozen=True)
@@ -95,29 +112,40 @@ class LossRounds:
         friction: float,
         bulk: tuple[float, float],
         films: HeatedFilms | HeatedTable | None = None,
+    ) -> tuple[Agreed, int]:
+        """Iterate films, load share and temperatures, with so many films at most, from some where they are as many.
+
+        The number of rounds goes with them.
+        """
+        return in_agreement(
+            self._round(most, self.cycle(friction, self.positions), bulk, films),
+            lambda last: self._round(most, last.forces, last.trial.following, last.films, last.trial),
+            lambda last: last.shares <= self.agreement and last.trial.change <= WARMER,
+            lambda last: (
+                f"losses and bulk temperatures did not agree within {MOST_ROUNDS} rounds (temperatures still "
+                f"change by {last.trial.change:.2g} K, forces by {last.shares:.1e} of the whole): "
+                "give bulk_temperatures"
+            ),
+        )
+
+    def _round(
+        self,
+        most: int | None,
+        cycle: MeshCycle,
+        bulk: tuple[float, float],
+        near: HeatedFilms | HeatedTable | None,
+        before: BulkTrial | None = None,
     ) -> Agreed:
-        """Iterate films, load share and temperatures, with so many films at most, from some where they are as many."""
-        balance, rounds = BulkBalance(), 0
-        cycle = self.cycle(friction, self.positions)
-        while True:
-            rounds += 1
-            films = self._films(cycle, most, bulk, films)
-            means = self.means(cycle, films)
-            before, cycle = cycle, self.cycle(means.friction, self.positions)
-            shares = float(np.nanmax(np.abs(cycle.load_share - before.load_share)))
-            by = FINER if isinstance(films, HeatedFilms) else FINER_FACE
-            finer = self.cycle(means.friction, by * self.positions)
-            means = self.means(finer, films)
-            asked = bulk if self.transfer is None else self._balanced(means)
-            warmer = float(np.max(np.abs(np.subtract(asked, bulk))))
-            if shares <= self.agreement and warmer <= WARMER:
-                return Agreed(films, finer, bulk, means, rounds, shares, warmer)
-            if rounds == MOST_ROUNDS:
-                raise SolverError(
-                    f"losses and bulk temperatures did not agree within {MOST_ROUNDS} rounds (temperatures still "
-                    f"change by {warmer:.2g} K, forces by {shares:.1e} of the whole): give bulk_temperatures"
-                )
-            bulk = bulk if self.transfer is None else balance.next(bulk, asked)
+        """Films under the loads of a cycle, the forces that their friction tilts, and the temperatures asked for."""
+        films = self._films(cycle, most, bulk, near)
+        friction = self.means(cycle, films).friction
+        forces = self.cycle(friction, self.positions)
+        shares = float(np.nanmax(np.abs(forces.load_share - cycle.load_share)))
+        by = FINER if isinstance(films, HeatedFilms) else FINER_FACE
+        finer = self.cycle(friction, by * self.positions)
+        means = self.means(finer, films)
+        asked = bulk if self.transfer is None else self._balanced(means)
+        return Agreed(films, forces, finer, means, shares, BulkTrial(bulk, asked, before))
 
     def _films(
         self,

@@ -154,8 +154,8 @@ def mesh_losses(
 def _solved(rounds: LossRounds, bulk: tuple[float, float], ends: tuple[float, float]) -> MeshLosses:
     """Losses with films that agree with all they depend on, first by few of them."""
     watch = Stopwatch()
-    first = rounds.agree(FEW, FIRST_FRICTION, bulk)
-    agreed = rounds.agree(None, first.means.friction, first.bulk, first.films)
+    first, tried = rounds.agree(FEW, FIRST_FRICTION, bulk)
+    agreed, settled = rounds.agree(None, first.means.friction, first.bulk, first.films)
     means, full_cycle = agreed.means, rounds.cycle(agreed.means.friction, rounds.positions)
     along = rounds.along(agreed, full_cycle)
     path = losses_along(rounds.teeth.pair, along, agreed.bulk)
@@ -184,9 +184,9 @@ def _solved(rounds: LossRounds, bulk: tuple[float, float], ends: tuple[float, fl
         heat_transfer=rounds.transfer,
         band=loss_band(rounds, agreed, along, FEW, error),
         boundary=None if rounds.oil.roughness is None else boundary_band_of(rounds, agreed, ends),
-        rounds=first.rounds + agreed.rounds,
+        rounds=tried + settled,
         share_mismatch=agreed.shares,
-        temperature_mismatch=agreed.warmer,
+        temperature_mismatch=agreed.trial.change,
         error=error,
         message=_message(error, carried) if error > rounds.oil.tolerance else "",
         cost=Cost(watch.seconds, max(film.cost.unknowns for film in agreed.films.films)),
