@@ -239,14 +239,6 @@ def _moved(
     )
 
 
-def _force_error(sweep: SpeedSweep | coupling.DriveSweep) -> float | None:
-    """Sampling, and what more harmonics change; None where that is not known."""
-    if not isinstance(sweep, coupling.DriveSweep):
-        return sweep.greatest_factor_error
-    truncation = greatest_of(sweep.force_change)
-    return None if truncation is None else truncation + sweep.sampling_error
-
-
 def _loss_speed(sweep: SpeedSweep) -> float | None:
     """Lowest pinion speed at which contact is lost, by the sweep's own speed over frequency."""
     least = sweep.least_grazing
@@ -267,7 +259,7 @@ def outputs() -> tuple[Named, ...]:
         _moved(
             "greatest_force_factor_error",
             Figure("1", "its estimated relative error by samples and the series' order"),
-            _force_error,
+            attrgetter("greatest_factor_error"),
         ),
         _moved(
             "separated",

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from itertools import count
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,25 +12,14 @@ from numpy.typing import ArrayLike
 from base import Array, Cost, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
 from flankfilm.coupling.drive.pair_drive import PairDrive
+from flankfilm.coupling.speeds.both_ways import LEFT, SweptForce, both_ways, frequencies_of
 from flankfilm.coupling.speeds.drive_peaks import drive_peaks
-from flankfilm.coupling.speeds.speed_sweep import frequencies_of
-from flankfilm.coupling.speeds.swept_truncation import LEAST_HARMONICS, checked_values, motion_changes
-from flankfilm.coupling.speeds.truncation import longer_motion
+from flankfilm.coupling.speeds.swept_truncation import LongerChanges, longer_changes
 from flankfilm.coupling.vibration.part_loads import PARTS, greatest, part_figures
-from flankfilm.coupling.vibration.resonance import Vibrations, vibrations
-
-if TYPE_CHECKING:
-    import dynamics
-    from flankfilm.coupling.speeds.truncation import Longer
-
-LEFT = (
-    "relative change of {} there by the longer series; nan where the motion does not repeat, infinite where there is "
-    "none of the same label"
-)
 
 
 @record
-class DriveSweep:
+class DriveSweep(SweptForce):
     """Motion of a drive train swept up and down in speed; figures go by direction, ``"up"`` and ``"down"``."""
 
     headline = ("greatest_bearing_force", "greatest_shaft_torque")
@@ -50,17 +38,6 @@ class DriveSweep:
         "1",
         "largest change of the swing of a force by these modes, of the linear response within the speeds of the train",
         no_error=ITSELF,
-    )
-    labels: Mapping[str, tuple[str, ...]] = quantity("", "motion n-p-q", "frequency")
-    force_factor: Mapping[str, Array] = quantity(
-        "1", "maximum mesh force over the mean force", "frequency", error="sampling_error"
-    )
-    separated: Mapping[str, Array] = quantity(
-        "1",
-        "part of the time without contact of the driving flanks",
-        "frequency",
-        shown="%",
-        no_error="not estimated: straight lines between the samples of a period",
     )
     bearings: tuple[str, ...] = quantity("", "bearings, in the order of their forces", "bearing")
     bearing_force_mean: Mapping[str, Array] = quantity(
@@ -152,23 +129,6 @@ class DriveSweep:
     force_peak_error: float = quantity(
         "1", "relative error of the peak by search, samples and that band", no_error=ITSELF
     )
-    sampling_error: float = quantity(
-        "1", "largest change with half as many samples of a period, over the largest of its part"
-    )
-    longer_order: int | None = quantity(
-        "1",
-        "harmonics of the longer series that the figures are held against; None for a given series",
-        no_error=EXACT,
-    )
-    checked: Array | None = quantity(
-        "1",
-        "frequencies at which motions are computed with the longer series as well",
-        "checked",
-        no_error=EXACT,
-    )
-    force_change: Mapping[str, Array] | None = quantity(
-        "1", LEFT.format("the maximum mesh force"), "checked", no_error=ITSELF
-    )
     bearing_force_change: Mapping[str, Array] | None = quantity(
         "1", LEFT.format("the maximum force of bearings"), "checked bearing", no_error=ITSELF
     )
@@ -221,7 +181,16 @@ class DriveSweep:
     @described("1", no_error=ITSELF)
     def carried_error(self) -> float | None:
         """Error of what parts carry by samples and the series' order; infinite where a motion is another one."""
-        known = [values[~np.isnan(values)] for change in self._changes for values in change.values()]
+        return self._error_with(self._changes)
+
+    @property
+    def greatest_factor_error(self) -> float | None:
+        """Relative error of the mesh force by samples and the series' order, the largest; None for a given series."""
+        return None if self.force_change is None else self._error_with([self.force_change])
+
+    def _error_with(self, changes: Sequence[Mapping[str, Array]]) -> float | None:
+        """Error by samples and the largest of changes that are known; None where none is."""
+        known = [values[~np.isnan(values)] for change in changes for values in change.values()]
         if not any(values.size for values in known):
             return None
         return self.sampling_error + float(np.max(np.concatenate([values.ravel() for values in known])))
@@ -280,37 +249,29 @@ def drive_sweep(
     >>> [round(value) for value in swept.shaft_torque_mean["up"][0]]  # of both shafts, N m
     [600, 667]
     """
-    from dynamics.motion.up_and_down import up_and_down
-
     watch = Stopwatch()
     values, speeds = frequencies_of(drive.rigid, speed, frequency)
     if speeds is None:
         speeds = np.array([drive.scales.speed(nu) for nu in values.tolist()])
-    oscillator, outputs = drive.oscillator, drive.outputs
-    sweeps = up_and_down(oscillator, "frequency", values, partial(progress, "speeds"))
-    shaken = {
-        way: vibrations(oscillator, result, load=drive.mean_force, outputs=outputs)
-        for way, result in sweeps.items()
-    }
-    parts = {way: np.moveaxis(response.parts, 1, 0) for way, response in shaken.items()}
-    peaks = drive_peaks(drive, sweeps, shaken, partial(progress, "peaks"))
+    swept = both_ways(drive, values, partial(progress, "speeds"))
+    parts = {way: np.moveaxis(response.parts, 1, 0) for way, response in swept.shaken.items()}
+    peaks = drive_peaks(drive, swept.sweeps, swept.shaken, partial(progress, "peaks"))
     at_peaks = {
         "_peak": peaks.height, "_peak_speed": peaks.frequency * drive.scales.speed(1.0), "_peak_band": peaks.band,
         "_peak_error": peaks.error,
     }  # fmt: skip
-    longer = longer_motion(drive, (float(values.min()), float(values.max())), LEAST_HARMONICS)
-    lost = [f"{way}: {result.message}" for way, result in sweeps.items() if not result.converged]
-    said = [f"{way}: {result.message}" for way, result in sweeps.items() if result.message]
+    changes = longer_changes(
+        drive, swept.sweeps, swept.forces, partial(progress, "motions with more harmonics")
+    )
+    lost = [f"{way}: {result.message}" for way, result in swept.sweeps.items() if not result.converged]
+    said = [f"{way}: {result.message}" for way, result in swept.sweeps.items() if result.message]
     return DriveSweep(
-        frequency=values,
+        **swept.figures(changes),
         speed=speeds,
         valid_to=drive.valid_to,
         reduction_error=drive.reduction_error,
-        labels={way: result.labels for way, result in sweeps.items()},
-        force_factor={way: response.force for way, response in shaken.items()},
-        separated={way: response.separated for way, response in shaken.items()},
         **part_figures(
-            outputs,
+            drive.outputs,
             {end: {way: carried[k] for way, carried in parts.items()} for k, end in enumerate(ENDINGS)}
             | {end: figures[..., 1:] for end, figures in at_peaks.items()},
         ),
@@ -318,10 +279,9 @@ def drive_sweep(
         force_peak_speed=float(at_peaks["_peak_speed"][0]),
         force_peak_band=peaks.band[:, 0],
         force_peak_error=float(peaks.error[0]),
-        sampling_error=max(response.change for response in shaken.values()),
-        **_beside(drive, longer, sweeps, shaken, partial(progress, "motions with more harmonics")),
-        error=max(result.error for result in sweeps.values()),
-        cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in sweeps.values())),
+        **_part_changes(drive, changes),
+        error=swept.error,
+        cost=Cost(watch.seconds, periods=swept.periods),
         converged=not lost,
         message="; ".join([*_beyond(drive, float(values.max())), *(lost or said)]),
     )
@@ -340,33 +300,14 @@ ENDINGS = ("_mean", "_swing", "")
 """Endings of the figures' names, in the order of `Vibration.parts`."""
 
 
-def _beside(
-    drive: PairDrive,
-    longer: Longer | None,
-    sweeps: Mapping[str, dynamics.SweepResult],
-    shaken: Mapping[str, Vibrations],
-    progress: Callable[[int, int], None],
-) -> dict[str, Any]:
-    """What the longer series changes of forces and torques; None of each for a given series."""
-    if longer is None:
-        figures = [f"{figure}{end}_change" for figure, _ in PARTS.values() for end in ENDINGS[1:]]
-        return dict.fromkeys(("longer_order", "checked", "force_change", *figures))
-    frequencies = next(iter(sweeps.values())).values
-    at = checked_values(len(frequencies), {way: response.force for way, response in shaken.items()})
-    done, total = count(1), len(sweeps) * len(at)
-    changes = {
-        way: motion_changes(longer, drive, result, at, lambda: progress(next(done), total))
-        for way, result in sweeps.items()
-    }
+def _part_changes(drive: PairDrive, changes: LongerChanges | None) -> dict[str, Any]:
+    """What the longer series changes of what parts carry; None of each for a given series."""
+    if changes is None:
+        return dict.fromkeys(f"{figure}{end}_change" for figure, _ in PARTS.values() for end in ENDINGS[1:])
     by_end = {
-        f"{end}_change": {way: change.parts[:, k] for way, change in changes.items()}
+        f"{end}_change": {way: parts[:, k] for way, parts in changes.each("parts").items()}
         for k, end in enumerate(ENDINGS)
         if end != "_mean"
     }
-    figures_of = part_figures(drive.outputs, by_end)
-    return {
-        "longer_order": longer.order,
-        "checked": frequencies[at],
-        "force_change": {way: change.force for way, change in changes.items()},
-        **{name: value for name, value in figures_of.items() if name.endswith("_change")},
-    }
+    figures = part_figures(drive.outputs, by_end)
+    return {name: value for name, value in figures.items() if name.endswith("_change")}

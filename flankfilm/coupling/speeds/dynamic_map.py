@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,17 +10,12 @@ from numpy.typing import ArrayLike
 from base import Array, Cost, Faults, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
 from dynamics.model.limits import NUMBER, checked_grid
-from dynamics.motion.up_and_down import up_and_down
 from flankfilm.coupling.drive.pair_drive import PairDrive
-from flankfilm.coupling.speeds.swept_truncation import LEAST_HARMONICS, checked_values, motion_changes
-from flankfilm.coupling.speeds.truncation import longer_motion
+from flankfilm.coupling.speeds.both_ways import both_ways
+from flankfilm.coupling.speeds.swept_truncation import LongerChanges, longer_changes
 from flankfilm.coupling.vibration.oscillator import PairOscillator
 from flankfilm.coupling.vibration.part_loads import greatest, part_figures
-from flankfilm.coupling.vibration.resonance import Vibrations, vibrations
 from flankfilm.coupling.vibration.speed_ranges import standard_factors
-
-if TYPE_CHECKING:
-    import dynamics
 
 
 @record
@@ -173,13 +167,13 @@ def dynamic_map(
         motion = motion_at(torque)
         assert motion.scales is not None
         values = np.array([motion.scales.frequency(speed) for speed in at.tolist()])
-        responses, ways = [], up_and_down(motion.oscillator, "frequency", values, shown)
-        for way, swept in ways.items():
-            shaken = vibrations(motion.oscillator, swept, load=motion.mean_force, outputs=motion.outputs)
-            rows[way].append(shaken.force)
-            responses.append(shaken)
-            off, used, lost = max(off, shaken.change), used + swept.cost.periods, lost + (not swept.converged)
-        changed += _changed(motion, ways, responses)
+        swept = both_ways(motion, values, shown)
+        for way, force in swept.forces.items():
+            rows[way].append(force)
+        responses = swept.shaken.values()
+        off, used = max(off, *(response.change for response in responses)), used + swept.periods
+        lost += sum(not result.converged for result in swept.sweeps.values())
+        changed += _changed(longer_changes(motion, swept.sweeps, swept.forces))
         rows["separated"].append(np.fmax(*(response.separated for response in responses)))
         rows["parts"].append(np.fmax(*(response.parts for response in responses)))
         rows["iso"].append(standard_factors(motion.rigid, values))
@@ -203,16 +197,9 @@ def dynamic_map(
     )
 
 
-def _changed(
-    motion: PairOscillator | PairDrive, ways: Mapping[str, dynamics.SweepResult], shaken: Sequence[Vibrations]
-) -> list[Array]:
+def _changed(changes: LongerChanges | None) -> list[Array]:
     """What a longer series changes of factors and of what parts carry; nothing for a given one."""
-    values = next(iter(ways.values())).values
-    longer = longer_motion(motion, (float(values.min()), float(values.max())), LEAST_HARMONICS)
-    if longer is None:
+    if changes is None:
         return []
-    at = checked_values(
-        len(values), {way: response.force for way, response in zip(ways, shaken, strict=True)}
-    )
-    changes_of_ways = [motion_changes(longer, motion, swept, at) for swept in ways.values()]
-    return [part for change in changes_of_ways for part in (change.force, change.parts[:, 1:].ravel())]
+    by_way = changes.by_way.values()
+    return [part for change in by_way for part in (change.force, change.parts[:, 1:].ravel())]

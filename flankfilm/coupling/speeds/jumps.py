@@ -12,8 +12,8 @@ import numpy as np
 import dynamics
 from base import Array, Cost, Stopwatch, described, part, quantity, record, unclocked
 from flankfilm.coupling.drive.pair_drive import PairDrive
+from flankfilm.coupling.speeds.both_ways import frequencies_of
 from flankfilm.coupling.speeds.jump_errors import Jump, alike, rises, stiffness_errors, train_jump
-from flankfilm.coupling.speeds.speed_sweep import frequencies_of
 from flankfilm.coupling.speeds.truncation import (
     Longer,
     MissedJump,

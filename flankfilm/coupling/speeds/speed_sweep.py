@@ -11,15 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import dynamics
-from base import Array, Cost, InputError, Result, Stopwatch, part, quantity, record, unclocked
-from base.results import EXACT, ITSELF
-from flankfilm.coupling.speeds.swept_truncation import (
-    LEAST_HARMONICS,
-    checked_values,
-    grazing_errors,
-    motion_changes,
-)
-from flankfilm.coupling.speeds.truncation import longer_motion
+from base import Array, Cost, Result, Stopwatch, part, quantity, record, unclocked
+from base.results import ITSELF
+from flankfilm.coupling.speeds.both_ways import LEFT, SweptForce, both_ways, frequencies_of
+from flankfilm.coupling.speeds.swept_truncation import grazing_errors, longer_changes
 from flankfilm.coupling.vibration.contact_loss_error import grazing_budget
 from flankfilm.coupling.vibration.oscillator import PairOscillator
 from flankfilm.coupling.vibration.resonance import vibrations
@@ -55,27 +50,19 @@ class Portrait:
 
 SCALED = "not estimated: the backlash over the length scale, which follows from the mean stiffness"
 
-STRAIGHT = (
-    "not estimated: crossings between samples of a period are taken as straight; force_change is what a longer series "
-    "changes"
-)
-
 
 @record
-class SpeedSweep:
-    """Motion swept up and down in speed.
+class SpeedSweep(SweptForce):
+    """Motion of a pair on rigid shafts swept up and down in speed.
 
     ``states`` and ``labels`` go by direction, ``"up"`` and ``"down"``.
     """
 
     headline = ("least_grazing", "half_backlash")
 
-    frequency: Array = quantity("1", "mesh frequency over natural frequency", "frequency")
-    speed: Array | None = quantity("rad/s", "pinion speed", "frequency", shown="rpm")
     states: Mapping[str, Array] = quantity(
         "1", "displacement and velocity at tau = 0", "frequency kept state", error="error"
     )
-    labels: Mapping[str, Sequence[str]] = quantity("", "motion n-p-q", "frequency")
     grazings: Array = quantity(
         "1",
         "where the orbit that never leaves contact touches the backlash",
@@ -84,16 +71,6 @@ class SpeedSweep:
         no_error="rounding of the exact flow, for the stiffness as given",
     )
     half_backlash: float = quantity("1", "half the backlash D", no_error=SCALED)
-    force_factor: Mapping[str, Array] = quantity(
-        "1", "maximum force over the mean force", "frequency", error="sampling_error"
-    )
-    separated: Mapping[str, Array] = quantity(
-        "1",
-        "part of the time without contact of the driving flanks",
-        "frequency",
-        shown="%",
-        no_error=STRAIGHT,
-    )
     spread: Mapping[str, Array] = quantity(
         "1", "root mean square of the displacement about its mean", "frequency", error="sampling_error"
     )
@@ -105,38 +82,17 @@ class SpeedSweep:
         "maximum force over the mean force at that speed, the motion settled from rest in contact",
         error="sampling_error",
     )
-    sampling_error: float = quantity(
-        "1", "largest relative change of force and spread with half as many samples of a period"
-    )
     grazing_budget: Mapping[str, float] = part(
         "source of error to relative error of the lowest speed at which contact is lost: stiffness, truncation, flow"
-    )
-    longer_order: int | None = quantity(
-        "1",
-        "harmonics of the longer series that the figures are held against; None for a given series",
-        no_error=EXACT,
     )
     grazing_error: Array | None = quantity(
         "1",
         "relative change of the frequency of the touch by the longer series; infinite where it has none near",
         "grazing",
     )
-    checked: Array | None = quantity(
-        "1",
-        "frequencies at which motions are computed with the longer series as well",
-        "checked",
-        no_error=EXACT,
-    )
-    force_change: Mapping[str, Array] | None = quantity(
-        "1",
-        "relative change of the maximum force there by the longer series; nan where the motion does not repeat, "
-        "infinite where there is none of the same label",
-        "checked",
-        no_error=ITSELF,
-    )
     spread_change: Mapping[str, Array] | None = quantity(
         "1",
-        "relative change of the displacement's root mean square there, likewise",
+        LEFT.format("the displacement's root mean square"),
         "checked",
         no_error=ITSELF,
     )
@@ -211,51 +167,34 @@ def speed_sweep(
     """
     with unclocked():
         from dynamics import contact_grazing, sweep
-        from dynamics.motion.up_and_down import up_and_down
     watch = Stopwatch()
     values, speeds = frequencies_of(motion, speed, frequency)
     oscillator = motion.oscillator
-    sweeps = up_and_down(oscillator, "frequency", values)
+    swept = both_ways(motion, values)
     grazing = contact_grazing(oscillator, "frequency", (float(values[0]), float(values[-1])))
-    settled = sweep(oscillator, "frequency", [oscillator.frequency])
-    operating = vibrations(oscillator, settled)
-    solved: list[Result] = [*sweeps.values(), grazing]
-    shaken = {direction: vibrations(oscillator, result) for direction, result in sweeps.items()}
+    operating = vibrations(oscillator, sweep(oscillator, "frequency", [oscillator.frequency]))
+    solved: list[Result] = [*swept.sweeps.values(), grazing]
     touched = grazing.columns()
-    longer = longer_motion(motion, (float(values[0]), float(values[-1])), LEAST_HARMONICS)
-    at = np.zeros(0, dtype=np.int64)
-    beside, left_out = {}, None
-    if longer is not None:
-        at = checked_values(
-            len(values), {direction: response.force for direction, response in shaken.items()}
-        )
-        beside = {way: motion_changes(longer, motion, result, at) for way, result in sweeps.items()}
-        left_out = grazing_errors(longer, touched)
+    changes = longer_changes(motion, swept.sweeps, swept.forces)
+    left_out = None if changes is None else grazing_errors(changes.longer, touched)
     return SpeedSweep(
-        frequency=values,
+        **swept.figures(changes, operating),
         speed=speeds,
-        states={direction: result.states for direction, result in sweeps.items()},
-        labels={direction: result.labels for direction, result in sweeps.items()},
+        states={direction: result.states for direction, result in swept.sweeps.items()},
         portraits=tuple(
-            _portrait(oscillator, sweeps[direction], direction, index)
-            for direction, index in _choices(values, portraits, sweeps)
+            _portrait(oscillator, swept.sweeps[direction], direction, index)
+            for direction, index in _choices(values, portraits, swept.sweeps)
         ),
         grazings=touched,
         half_backlash=oscillator.half_backlash,
-        force_factor={direction: response.force for direction, response in shaken.items()},
-        separated={direction: response.separated for direction, response in shaken.items()},
-        spread={direction: response.spread for direction, response in shaken.items()},
+        spread={direction: response.spread for direction, response in swept.shaken.items()},
         operating_frequency=oscillator.frequency,
         operating_force_factor=float(operating.force[0]),
-        sampling_error=max(response.change for response in (*shaken.values(), operating)),
         grazing_budget=_first_loss(motion, touched, left_out, grazing.error),
-        longer_order=None if longer is None else longer.order,
         grazing_error=left_out,
-        checked=None if longer is None else values[at],
-        force_change={way: change.force for way, change in beside.items()} or None,
-        spread_change={way: change.spread for way, change in beside.items()} or None,
-        error=max(result.error for result in sweeps.values()),
-        cost=Cost(watch.seconds, periods=sum(result.cost.periods for result in sweeps.values())),
+        spread_change=None if changes is None else changes.each("spread"),
+        error=swept.error,
+        cost=Cost(watch.seconds, periods=swept.periods),
         messages=tuple(solution.message for solution in solved if not solution.converged),
     )
 
@@ -269,26 +208,6 @@ def _first_loss(
     first = int(np.argmin(touched))
     truncation = None if left_out is None else float(left_out[first])
     return grazing_budget(motion, float(touched[first]), flow, truncation)
-
-
-def frequencies_of(
-    motion: PairOscillator, speed: ArrayLike | None, frequency: ArrayLike | None
-) -> tuple[Array, Array | None]:
-    """Frequencies of pinion speeds [rad/s], or those given, with the speeds where there are any.
-
-    Raises
-    ------
-    InputError
-        Where both are given, or neither; for speeds of an oscillator in its own units.
-    """
-    if (speed is None) == (frequency is None):
-        raise InputError.at("speed", "", "or frequency must be given, one of both")
-    if frequency is not None:
-        return np.asarray(frequency, dtype=np.float64), None
-    if motion.scales is None:
-        raise InputError.at("speed", "", "requires an oscillator with physical scales", "give frequency")
-    speeds = np.asarray(speed, dtype=np.float64)
-    return np.array([motion.scales.frequency(omega) for omega in speeds.tolist()]), speeds
 
 
 def _choices(

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from itertools import count
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 import dynamics
 from base import Array, Integers
+from flankfilm.coupling.speeds.truncation import Longer, longer_motion
 from flankfilm.coupling.vibration.resonance import vibration
 
 if TYPE_CHECKING:
     from flankfilm.coupling.drive.pair_drive import PairDrive
-    from flankfilm.coupling.speeds.truncation import Longer
     from flankfilm.coupling.vibration.oscillator import PairOscillator
 
 CHECKED = 12
@@ -111,3 +112,56 @@ def motion_changes(
             changes[row, column] = abs(figure / other - 1.0) if other > 0.0 else np.nan
         parts[row] = np.abs(before.parts - after.parts) / np.maximum(after.parts[2], 1e-300)
     return MotionChanges(changes[:, 0], changes[:, 1], parts)
+
+
+class LongerChanges(NamedTuple):
+    """What a longer series changes of a sweep up and down.
+
+    Attributes
+    ----------
+    longer : Longer
+        The oscillator with that series.
+    at : ndarray of int, shape (n,)
+        Values of the sweep that are looked at.
+    by_way : mapping
+        Changes there, by direction.
+    """
+
+    longer: Longer
+    at: Integers
+    by_way: Mapping[str, MotionChanges]
+
+    def each(self, figure: str) -> dict[str, Array]:
+        """Changes of a figure by direction."""
+        return {way: getattr(change, figure) for way, change in self.by_way.items()}
+
+
+def longer_changes(
+    motion: PairOscillator | PairDrive,
+    sweeps: Mapping[str, dynamics.SweepResult],
+    forces: Mapping[str, Array],
+    progress: Callable[[int, int], None] = lambda done, every: None,
+) -> LongerChanges | None:
+    """What a longer series changes of the motions of a sweep; None where the series was given.
+
+    Parameters
+    ----------
+    motion : PairOscillator or PairDrive
+    sweeps : mapping
+        Sweeps over the frequency, by direction.
+    forces : mapping
+        Maximum forces of the mesh of their motions.
+    progress : callable
+        Called with the number of the motion that begins, and that of all.
+    """
+    values = next(iter(sweeps.values())).values
+    longer = longer_motion(motion, (float(values.min()), float(values.max())), LEAST_HARMONICS)
+    if longer is None:
+        return None
+    at = checked_values(len(values), forces)
+    done, total = count(1), len(sweeps) * len(at)
+    changes = {
+        way: motion_changes(longer, motion, result, at, lambda: progress(next(done), total))
+        for way, result in sweeps.items()
+    }
+    return LongerChanges(longer, at, changes)
