@@ -6,9 +6,10 @@ The one place that turns a variable into numbers and a label; both follow from t
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from textwrap import fill
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -37,6 +38,9 @@ LONGEST = 60
 GEARS = ("pinion", "wheel")
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
+
+Pictures: TypeAlias = Mapping[str, str | tuple[str, ...]]
+"""Function of `flankfilm.figures` to how the names of the variables begin that it draws."""
 
 
 @dataclass(frozen=True)
@@ -155,6 +159,20 @@ def need(results: xr.Dataset, wants: str, *names: str) -> None:
     if missing:
         title = results.attrs.get("title") or "these results"
         raise ValueError(f"{title}: no {', '.join(missing)} to draw; {wants}")
+
+
+def drawable(pictures: Pictures, results: xr.Dataset) -> tuple[str, ...]:
+    """Pictures whose variables are there.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> shown = {"fourier": "fourier_samples", "portraits": ("portrait_x", "portrait_v")}
+    >>> drawable(shown, xr.Dataset({"portrait_v_of_one": 1.0}))
+    ('portraits',)
+    """
+    names = [str(name) for name in results.variables]
+    return tuple(draw for draw, begins in pictures.items() if any(name.startswith(begins) for name in names))
 
 
 def text(results: xr.Dataset, name: str) -> str:

@@ -8,6 +8,9 @@ from typing import NamedTuple
 from base import show_with
 from base.views import ANY
 
+OF_PRODUCT = ""
+"""How a record is drawn that a product has: by the first picture of that."""
+
 
 class Picture(NamedTuple):
     """How a record is drawn: from its own dataset, by the function that draws it of a run.
@@ -15,7 +18,7 @@ class Picture(NamedTuple):
     Attributes
     ----------
     draw : str
-        Module and function of `flankfilm.figures`, of a dataset.
+        Module and function of `flankfilm.figures`, of a dataset; or `OF_PRODUCT`.
     prefix : str
         What the record's variables begin with: that of a run, where a run has such a record.
     data : str
@@ -25,6 +28,11 @@ class Picture(NamedTuple):
     draw: str
     prefix: str
     data: str = "alone"
+
+    @property
+    def by(self) -> str:
+        """Module and function that draw the record: the products' are loaded for theirs alone."""
+        return "flankfilm.figures.records:picture" if self.draw else "flankfilm.products.pictures:record"
 
 
 _DYNAMICS = {
@@ -43,24 +51,24 @@ _DYNAMICS = {
 
 _COUPLING = {
     "mesh.mesh_curves:MeshCycle": Picture("stiffness.mesh_cycle", "dry", "cycle"),
-    "films.face_films:FaceFilms": Picture("face.film_map", "film_face", "with_points"),
-    "films.along_path:FilmAlongPath": Picture("film.film_along_path", "film"),
+    "films.face_films:FaceFilms": Picture(OF_PRODUCT, "film_face", "with_points"),
+    "films.along_path:FilmAlongPath": Picture(OF_PRODUCT, "film"),
     "losses.losses_along_path:LossesAlongPath": Picture("heat.heat_along_path", "losses_path"),
     "losses.losses_record:MeshLosses": Picture("heat.heat_along_path", "losses", "losses"),
-    "mesh.torque_curves:TorqueCurves": Picture("stiffness.over_torque", "torque"),
-    "mesh.face_models:FaceLoadModels": Picture("face.line_load_models", "face_models"),
+    "mesh.torque_curves:TorqueCurves": Picture(OF_PRODUCT, "torque"),
+    "mesh.face_models:FaceLoadModels": Picture(OF_PRODUCT, "face_models"),
     "mesh.face_tolerance:FaceTolerance": Picture("curves.curves", "face_tolerance"),
     "vibration.film_damping:FilmDamping": Picture("curves.curves", "damping"),
     "films.transient_film:PassageFilm": Picture("curves.curves", "passage"),
-    "speeds.speed_sweep:SpeedSweep": Picture("motion.resonance", "sweep"),
-    "speeds.jumps:SpeedDiagram": Picture("motion.diagram", "diagram", "speed_diagram"),
-    "vibration.excitation:ErrorSeries": Picture("excitation.excitation", "excitation"),
-    "speeds.sidebands:MotionSpectrum": Picture("excitation.spectrum", "spectrum", "carrying"),
-    "speeds.run_ups:SpeedRunUp": Picture("speeds.run_up", "run_up", "carrying"),
-    "speeds.dynamic_map:DynamicMap": Picture("speeds.dynamic_map", "dynamic_map", "carrying"),
-    "drive.pair_drive:PairDrive": Picture("drives.drive_modes", "drive"),
-    "speeds.drive_sweep:DriveSweep": Picture("drives.drive_sweep", "drive_sweep", "carrying"),
-    "mesh.root_stress:RootStresses": Picture("gear.root_stress", "root", "root_stresses"),
+    "speeds.speed_sweep:SpeedSweep": Picture(OF_PRODUCT, "sweep"),
+    "speeds.jumps:SpeedDiagram": Picture(OF_PRODUCT, "diagram", "speed_diagram"),
+    "vibration.excitation:ErrorSeries": Picture(OF_PRODUCT, "excitation"),
+    "speeds.sidebands:MotionSpectrum": Picture(OF_PRODUCT, "spectrum", "carrying"),
+    "speeds.run_ups:SpeedRunUp": Picture(OF_PRODUCT, "run_up", "carrying"),
+    "speeds.dynamic_map:DynamicMap": Picture(OF_PRODUCT, "dynamic_map", "carrying"),
+    "drive.pair_drive:PairDrive": Picture(OF_PRODUCT, "drive"),
+    "speeds.drive_sweep:DriveSweep": Picture(OF_PRODUCT, "drive_sweep", "carrying"),
+    "mesh.root_stress:RootStresses": Picture(OF_PRODUCT, "root", "root_stresses"),
     "vibration.oscillator:PairOscillator": Picture("stiffness.fourier", "fourier", "series_of"),
     "vibration.series:MeshSeries": Picture("stiffness.fourier", "fourier", "series"),
     "mesh.verification:Verification": Picture("closed_forms.verification", "verify", "comparison"),
@@ -86,11 +94,11 @@ PICTURES: Mapping[str, Picture] = {
 """Record to its picture."""
 
 OUTCOMES: Mapping[str, str] = {
-    "flankfilm.outcome.results:Results": "flankfilm.outcome.pictures:results",
+    "flankfilm.outcome.results:Results": "flankfilm.products.pictures:results",
     "flankfilm.studies.run:StudyResults": "flankfilm.studies.pictures:study",
     "flankfilm.optimisation.optimum:Optimum": "flankfilm.optimisation.pictures:optimum",
 }
-"""Runs, studies and optimisations to the functions that draw them, which stand beside them."""
+"""Runs, studies and optimisations to the functions that draw them."""
 
 VIEWS: Mapping[str, str] = {
     "flankfilm.outcome.results:Results": "flankfilm.notebook:results_html",
@@ -104,4 +112,4 @@ VIEWS: Mapping[str, str] = {
 
 def register() -> None:
     """Register views and pictures; the entry point ``base.views`` of the distribution."""
-    show_with(VIEWS, {**dict.fromkeys(PICTURES, "flankfilm.figures.records:picture"), **OUTCOMES})
+    show_with(VIEWS, {**{place: how.by for place, how in PICTURES.items()}, **OUTCOMES})

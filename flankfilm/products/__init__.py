@@ -1,1 +1,1 @@
-"""What a user can get: each product with its stages, variables, tables, report and outputs of studies, in one file."""
+"""What a user can get: each product with its stages, variables, tables, pictures, report and outputs of studies."""

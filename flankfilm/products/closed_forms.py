@@ -18,6 +18,7 @@ from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS as FORMS
 from flankfilm.output.variables import of_record
 from flankfilm.products.output import Named, in_result, output_of
 from flankfilm.products.product import CurveTable, Product, when
+from flankfilm.report import stiffness_parts
 from flankfilm.scene import Scene
 from flankfilm.stages.engine import Engine, Stage, stage
 from flankfilm.stages.mesh import COMPLIANCE, PAIR, PLAN, TEETH_DECIDED
@@ -116,5 +117,6 @@ PRODUCT = Product(
     ),
     solved={"single_pair": CLOSED_FORMS, "iso6336_2": CLOSED_FORMS},
     tables={"single_pair_stiffness": CurveTable("single_pair", "rho1", axis="path")},
+    pictures=stiffness_parts.SINGLE_PAIRS,
     outputs=outputs,
 )

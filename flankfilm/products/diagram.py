@@ -12,6 +12,7 @@ import numpy as np
 from base import Figure
 from base.units import factor
 from flankfilm import coupling
+from flankfilm.figures.reading import Pictures
 from flankfilm.output.branches import branch_tables
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.products.output import Named, in_result, output_of
@@ -35,6 +36,9 @@ if TYPE_CHECKING:
 
 LONGEST = 40
 """Maximum number of stable ranges listed; the data files hold all."""
+
+
+PICTURES: Pictures = {"diagram": "diagram_branch"}
 
 
 @stage(
@@ -82,7 +86,7 @@ def section(stage: SpeedDiagram, results: xr.Dataset) -> Part:
     tables = [Table.of(stage.stable[:LONGEST], ranges)]
     tables += [Table.of(stage.jumps, jumps)] if stage.jumps else []
     tables += [Table.of(stage.variants.items(), variants)] if stage.variants else []
-    drawn, message = pictures(results, "diagram"), stage.diagram.message
+    drawn, message = pictures(results, PICTURES), stage.diagram.message
     return Part("diagram", "Branches and jumps", (message,), drawn, tuple(tables), tuple(_notes(stage)))
 
 
@@ -242,6 +246,7 @@ PRODUCT = Product(
         "force_over_speed": CurveTable("force", "factor", axis="force"),
     },
     headlines=when(DIAGRAM, lambda stage: ranked(headlines(stage), 2)),
+    pictures=PICTURES,
     sections=section_of(DIAGRAM, section),
     work={DIAGRAM.name: _of_diagram},
     outputs=outputs,

@@ -156,6 +156,7 @@ PRODUCT = Product(
         "drive_sweep": CurveTable("drive_sweep", "force_factor_up", axis="frequency"),
     },
     headlines=headlines,
+    pictures={**drive_parts.SWEPT, **drive_parts.MODES},
     sections=together(section_of(DRIVE, drive_parts.drive), section_of(DRIVE_SWEEP, drive_parts.drive_sweep)),
     outputs=outputs,
 )

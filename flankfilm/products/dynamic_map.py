@@ -14,6 +14,7 @@ from flankfilm import coupling
 from flankfilm.building.film import film_model, lubricant
 from flankfilm.building.pair import pinion_speed
 from flankfilm.building.shafts import drive_arguments
+from flankfilm.figures.reading import Pictures
 from flankfilm.output.drives import carrying
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.products.drive import CARRIED, of_a_train
@@ -32,6 +33,12 @@ from flankfilm.stages.motion import FOURIER
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+PICTURES: Pictures = {
+    "dynamic_map": "dynamic_map_factor",
+    "drive_map": ("dynamic_map_bearings", "dynamic_map_shafts"),
+}
 
 
 @stage(
@@ -131,7 +138,7 @@ def section(stage: coupling.DynamicMap, results: xr.Dataset) -> Part:
         lambda figure: np.asarray(getattr(stage, figure)),
         lambda at: (f"{RPM * stage.speed[at[1]]:.0f}", number(float(stage.torque[at[0]]))),
     )
-    drawn = pictures(results, "dynamic_map", *(["drive_map"] if carried else []))
+    drawn = pictures(results, PICTURES)
     tables = (Table(heads, tuple(rows)), *carried)
     return Part(
         "dynamic-map",
@@ -194,6 +201,7 @@ PRODUCT = Product(
         )
     },
     headlines=when(DYNAMIC_MAP, lambda factors: ranked(headlines(factors), 2)),
+    pictures=PICTURES,
     sections=section_of(DYNAMIC_MAP, section),
     outputs=outputs,
 )

@@ -239,6 +239,7 @@ PRODUCT = Product(
         "face_models": CurveTable("face_models", "line_load", ("face_position", "model", "line_load")),
     },
     headlines=headlines,
+    pictures=face_parts.PICTURES,
     sections=sections,
     outputs=outputs,
 )

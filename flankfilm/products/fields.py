@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flankfilm.building.face import varies_by
+from flankfilm.figures.reading import Pictures
 from flankfilm.output import drawing_data as drawn
 from flankfilm.output.variables import of_quantities
 from flankfilm.products.product import Product, section_of
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from flankfilm.coupling import LoadedFields
+
+
+PICTURES: Pictures = {"tooth_stress": "field_von_mises"}
 
 
 def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
@@ -41,7 +45,7 @@ def section(stage: LoadedFields, results: xr.Dataset) -> Part:
     """Picture of the loaded teeth."""
     peak = max(float(np.nanmax(field.von_mises_Pa)) for field in (stage.pinion, stage.wheel))
     note = said("peak", peak=number(1e-6 * peak))
-    drawn = pictures(results, "tooth_stress")
+    drawn = pictures(results, PICTURES)
     return Part("fields", "Loaded teeth", figures=drawn, notes=(note,))
 
 
@@ -50,5 +54,6 @@ PRODUCT = Product(
     goals=goals,
     variables=variables,
     solved={"field": FIELDS},
+    pictures=PICTURES,
     sections=section_of(FIELDS, section),
 )

@@ -271,6 +271,7 @@ PRODUCT = Product(
         "film_along_path": CurveTable("film", "rho1", axis="point"),
     },
     headlines=headlines,
+    pictures=film_parts.PICTURES,
     sections=sections,
     work={FILM.name: _of_films},
     outputs=outputs,

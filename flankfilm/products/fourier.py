@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flankfilm.coupling.mesh.references import MEANINGS
-from flankfilm.figures.reading import read
+from flankfilm.figures.reading import Pictures, read
 from flankfilm.output import records
 from flankfilm.output.model_errors import first_harmonic
 from flankfilm.output.uncertainty import Uncertainty
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from flankfilm.coupling import MeshSeries
+
+
+PICTURES: Pictures = {"fourier": "fourier_samples"}
 
 
 def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
@@ -59,7 +62,7 @@ def section(stage: MeshSeries, results: xr.Dataset) -> Part:
         series_note = said("series", order=len(series.amplitudes), rms=rms, largest=largest)
         measured = said("measured_against", what=MEANINGS[stage.reference or "bore"])
         notes += [measured, series_note, said("tangent_or_secant")]
-    drawn = pictures(results, *(["fourier"] if stage.fit else []), source=stage.source)
+    drawn = pictures(results, PICTURES, source=stage.source)
     unit = "" if mean.unit == "-" else f" {mean.unit}"
     known = "as given" if stage.cycle is None else plus_minus(stage.cycle.mean_error)
     text = f"Mean {number(float(mean.values), 6)}{unit} ({known})."
@@ -96,6 +99,7 @@ PRODUCT = Product(
     variables=when(FOURIER, lambda series: records.series("fourier", series)),
     solved={"fourier": FOURIER},
     headlines=when(FOURIER, headlines),
+    pictures=PICTURES,
     sections=section_of(FOURIER, section),
     work={FOURIER.name: _of_series},
 )

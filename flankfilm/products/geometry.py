@@ -11,6 +11,7 @@ import gears
 from base import Figure
 from flankfilm.building.flanks import deviations
 from flankfilm.building.pair import pinion_speed, pinion_speed_if_any
+from flankfilm.figures.reading import Pictures
 from flankfilm.output import drawing_data as drawn
 from flankfilm.output.flanks import measured_flanks
 from flankfilm.output.variables import of_quantities, of_record
@@ -28,8 +29,9 @@ if TYPE_CHECKING:
 
 GEARS = ("pinion", "wheel")
 
-ALONG_FLANKS = ("diameter", "face_place")
-"""Abscissas of the drawings of measured flanks."""
+FLANKS: Pictures = {
+    "flanks": tuple(f"flank_{gear}_{along}" for gear in GEARS for along in ("diameter", "face_place"))
+}
 
 
 def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
@@ -60,8 +62,8 @@ def sections(computed: Computed, results: xr.Dataset) -> Iterator[Part]:
     yield pair_parts.geometry(pair, results)
     if (warm := computed.get(HEAT)) is not None:
         yield pair_parts.heat(warm)
-    if any(f"flank_{gear}_{along}" in results for gear in GEARS for along in ALONG_FLANKS):
-        yield Part("flanks", "Flanks", figures=pictures(results, "flanks"))
+    if flanks := pictures(results, FLANKS):
+        yield Part("flanks", "Flanks", figures=flanks)
 
 
 def _ends(engine: Engine) -> Any:
@@ -117,6 +119,7 @@ PRODUCT = Product(
             for gear in GEARS
         },
     },
+    pictures={**pair_parts.IN_MESH, **pair_parts.PATH, **FLANKS},
     sections=sections,
     outputs=outputs,
 )

@@ -228,6 +228,7 @@ PRODUCT = Product(
         "losses_by_eyring_stress": CurveTable("losses_band", "eyring_stress", STRESSES),
     },
     headlines=when(LOSSES, lambda lost: ranked(losses_parts.headlines(lost), 2, 2, 3, 1, 1)),
+    pictures=losses_parts.PICTURES,
     sections=sections,
     work={LOSSES.name: _of_losses},
     outputs=outputs,

@@ -12,6 +12,7 @@ from base import Figure
 from flankfilm import coupling
 from flankfilm.coupling.mesh.references import MEANINGS
 from flankfilm.coupling.vibration.excitation import peak_to_peak
+from flankfilm.figures.reading import Pictures
 from flankfilm.output.variables import of_record
 from flankfilm.products.output import Named, in_result, model_error_of, output_of, outputs_from
 from flankfilm.products.product import CurveTable, Product, section_of, together
@@ -39,6 +40,9 @@ LISTED = 12
 
 OF_ERROR = 6
 """Harmonics of the error that the table of the oscillator lists."""
+
+
+PICTURES: Pictures = {"excitation": "excitation_amplitude"}
 
 
 def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
@@ -79,7 +83,7 @@ def excitation(stage: ErrorSeries, results: xr.Dataset) -> Part:
         *([] if stage.converged else [stage.message]),
     ]
     text = f"{stage.source[:1].upper()}{stage.source[1:]}, peak to peak {number(1e6 * stage.range)} µm."
-    drawn = pictures(results, "excitation")
+    drawn = pictures(results, PICTURES)
     return Part("excitation", "Unloaded transmission error", (text,), drawn, (table,), tuple(notes))
 
 
@@ -214,6 +218,7 @@ PRODUCT = Product(
     variables=variables,
     solved={"oscillator": SCALING, "excitation": EXCITATION},
     tables={"excitation": CurveTable("excitation", "amplitude", axis="harmonic")},
+    pictures=PICTURES,
     sections=together(
         section_of(EXCITATION, excitation),
         section_of(FILM_DAMPING, film_damping),

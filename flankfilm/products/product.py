@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from flankfilm.figures.reading import Pictures
 from flankfilm.output.variables import of_record
 from flankfilm.products.output import Named
 from flankfilm.report.page import Headline, Part
@@ -52,6 +53,9 @@ class Product:
         CSV files by name.
     headlines : callable
         Numbers for the head of the report and for the terminal.
+    pictures : mapping
+        Functions of `flankfilm.figures` to the variables that they draw. The first one whose variables are there is
+        what ``plot()`` of a run, and of the product's record, draws.
     sections : callable
         Sections of the report.
     work : mapping
@@ -66,6 +70,7 @@ class Product:
     solved: Mapping[str, Stage[Any]] = field(default_factory=dict)
     tables: Mapping[str, CurveTable] = field(default_factory=dict)
     headlines: Callable[[Computed], Iterable[Headline]] = _nothing
+    pictures: Pictures = field(default_factory=dict)
     sections: Callable[[Computed, xr.Dataset], Iterable[Part]] = _nothing
     work: Mapping[str, Callable[[Any, Computed], Work]] = field(default_factory=dict)
     outputs: Callable[[], Iterable[Named]] = _nothing

@@ -10,7 +10,7 @@ import numpy as np
 import fem
 from base.results import figures
 from flankfilm import coupling
-from flankfilm.figures.reading import read
+from flankfilm.figures.reading import Pictures, read
 from flankfilm.output.variables import of_record
 from flankfilm.products.product import CurveTable, Product, section_of, wanting, when
 from flankfilm.report.page import Part, Table, pictures
@@ -20,6 +20,9 @@ from flankfilm.stages.mesh import COMPLIANCE, FACE_GEARS, TEETH, loaded_teeth
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+PICTURES: Pictures = {"revolution": "revolution_transmission_error"}
 
 
 @stage("revolution", "mesh cycle tooth by tooth", TEETH, COMPLIANCE, FACE_GEARS)
@@ -41,7 +44,7 @@ def variables(cycle: fem.MeshCycle) -> Iterator[xr.Dataset]:
 
 def section(cycle: fem.MeshCycle, results: xr.Dataset) -> Part:
     """Transmission error tooth by tooth."""
-    drawn = pictures(results, "revolution")
+    drawn = pictures(results, PICTURES)
     curves = {
         "under load": read(results, "revolution_transmission_error"),
         "without load": read(results, "revolution_unloaded_transmission_error"),
@@ -66,5 +69,6 @@ PRODUCT = Product(
             ("position", "transmission_error", "unloaded_transmission_error", "secant_stiffness"),
         )
     },
+    pictures=PICTURES,
     sections=section_of(REVOLUTION, section),
 )

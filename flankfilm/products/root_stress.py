@@ -16,7 +16,7 @@ from fem.pair.face_setting import FREE_ENDS
 from flankfilm import coupling
 from flankfilm.building.face import face, varies_by
 from flankfilm.building.pair import gear_pair
-from flankfilm.figures.reading import GEARS, read_figure
+from flankfilm.figures.reading import GEARS, Pictures, read_figure
 from flankfilm.output.model_errors import entry
 from flankfilm.output.passages import fillet_stress, passage
 from flankfilm.output.uncertainty import Uncertainty, uncertainty
@@ -48,6 +48,9 @@ OF_EACH_SECTION = {
 """Figures of the root of either gear by ISO 6336-3."""
 
 EVEN = "{}; nan where the load is even along the face"
+
+
+PICTURES: Pictures = {"root_stress": "root_pinion_tension", "root_face_map": "root_face_pinion_tension"}
 
 
 @stage(
@@ -137,7 +140,7 @@ def section(stage: coupling.RootStresses, results: xr.Dataset) -> Part:
         tables.append(_iso(stage.iso))
         places = "at D for the pinion and at B for the wheel"
         note = said("iso6336_3", where="at the tip" if stage.iso.load_at == "tip" else places)
-    drawn = pictures(results, "root_stress", *(("root_face_map",) if over_face else ()))
+    drawn = pictures(results, PICTURES)
     notes = (note, *((said("root_over_face", left_out=stage.iso_left_out),) if over_face else ()))
     return Part("roots", "Root stress", figures=drawn, tables=tuple(tables), notes=notes)
 
@@ -294,6 +297,7 @@ PRODUCT = Product(
         **{f"fillet_stress_{gear}": CurveTable(f"fillet_{gear}", "arc", axis="arc") for gear in GEARS},
     },
     headlines=when(ROOT_STRESS, lambda stage: ranked(headlines(stage), 1)),
+    pictures=PICTURES,
     sections=section_of(ROOT_STRESS, section),
     work={FILLETS.name: _of_fillets},
     outputs=outputs,

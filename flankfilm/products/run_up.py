@@ -10,6 +10,7 @@ import numpy as np
 
 from base import Array, Figure
 from flankfilm import coupling
+from flankfilm.figures.reading import Pictures
 from flankfilm.output.drives import carrying
 from flankfilm.products.drive import of_a_train
 from flankfilm.products.output import Named, in_result, output_of, outputs_from
@@ -25,6 +26,13 @@ from flankfilm.stages.motion import SCALING
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+PICTURES: Pictures = {
+    "run_up": "run_up_peak_up",
+    "waterfall": "run_up_order_force_up",
+    "drive_run_up": ("run_up_bearings", "run_up_shafts"),
+}
 
 
 @stage("run-up", "run-up and coast-down", "dynamics", SCALING, DRIVE, kept="dynamics flankfilm gears")
@@ -65,7 +73,7 @@ def section(stage: coupling.SpeedRunUp, results: xr.Dataset) -> Part:
         greatest=percent(stage.greatest_error),
     )
     carried = _carried_on_the_way(stage)
-    drawn = pictures(results, "run_up", "waterfall", *(["drive_run_up"] if carried else []))
+    drawn = pictures(results, PICTURES)
     tables = (Table(heads, rows), *carried)
     return Part("run-up", "Run-up and coast-down", figures=drawn, tables=tables, notes=(note,))
 
@@ -129,6 +137,7 @@ PRODUCT = Product(
     variables=when(RUN_UP, lambda ways: [carrying("run_up", ways)]),
     solved={"run_up": RUN_UP},
     tables={"run_up": CurveTable("run_up", "force_factor_up", axis="block")},
+    pictures=PICTURES,
     sections=section_of(RUN_UP, section),
     outputs=outputs,
 )

@@ -11,6 +11,7 @@ from base import InputError
 from base.results import figures
 from flankfilm import coupling
 from flankfilm.building.pair import pinion_torque
+from flankfilm.figures.reading import Pictures
 from flankfilm.output.drives import carrying
 from flankfilm.products.output import Named, in_result, output_of
 from flankfilm.products.product import CurveTable, Product, section_of, wanting, when
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
 
 LISTED = 12
 """Lines that a table lists; the data files hold all."""
+
+
+PICTURES: Pictures = {"spectrum": "spectrum_force"}
 
 
 @stage(
@@ -79,7 +83,7 @@ def section(stage: coupling.MotionSpectrum, results: xr.Dataset) -> Part:
         orders = float(stage.error_order[-1])
         notes.append(said("spectrum_revolution", orders=orders, left=percent(stage.error_left_out)))
     notes += [] if stage.converged else [stage.message]
-    drawn = pictures(results, "spectrum")
+    drawn = pictures(results, PICTURES)
     return Part(
         "spectrum", "Orders of the motion", figures=drawn, tables=(Table(heads, rows),), notes=tuple(notes)
     )
@@ -103,6 +107,7 @@ PRODUCT = Product(
     variables=when(SPECTRUM, lambda lines: [carrying("spectrum", lines)]),
     solved={"spectrum": SPECTRUM},
     tables={"spectrum": CurveTable("spectrum", "force", axis="line")},
+    pictures=PICTURES,
     sections=section_of(SPECTRUM, section),
     outputs=outputs,
 )

@@ -316,6 +316,7 @@ PRODUCT = Product(
         ),
     },
     headlines=headlines,
+    pictures=stiffness_parts.PICTURES,
     sections=sections,
     work={BODIES.name: _of_bodies, DRY_CYCLE.name: _of_cycle},
     outputs=outputs,

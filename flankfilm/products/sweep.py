@@ -10,7 +10,7 @@ import numpy as np
 
 from base import Array, Figure, InputError
 from flankfilm import coupling
-from flankfilm.figures.reading import read_figure
+from flankfilm.figures.reading import Pictures, read_figure
 from flankfilm.output import drawing_data as drawn
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.output.variables import of_quantities, of_record
@@ -43,6 +43,13 @@ RESONANCE = (
 )
 
 
+PICTURES: Pictures = {
+    "resonance": "sweep_force_factor_up",
+    "sweep": "sweep_up",
+    "portraits": "portrait_displacement",
+}
+
+
 def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
     """The sweep of a pair on rigid shafts; a drive train has a sweep with forces of bearings."""
     if "sweep" in wants and scene.shafts is None:
@@ -61,7 +68,7 @@ def variables(sweep: SpeedSweep) -> Iterator[xr.Dataset]:
 
 def section(stage: SpeedSweep, results: xr.Dataset) -> Part:
     """Draw the sweeps and portraits."""
-    drawn = pictures(results, "resonance", "sweep", *(["portraits"] if stage.portraits else []))
+    drawn = pictures(results, PICTURES)
     notes = []
     if stage.grazings.size:
         at = "omega = " + ", ".join(f"{g:.6g}" for g in stage.grazings)
@@ -295,6 +302,7 @@ PRODUCT = Product(
         "resonance": CurveTable("sweep", "force_factor_up", RESONANCE),
     },
     headlines=headlines,
+    pictures=PICTURES,
     sections=section_of(SWEEP, section),
     work={SWEEP.name: _of_sweep},
     outputs=outputs,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from flankfilm import coupling
-from flankfilm.figures.reading import read
+from flankfilm.figures.reading import Pictures, read
 from flankfilm.products.product import CurveTable, Product, record_of, section_of, wanting
 from flankfilm.report.page import Part, Table, pictures
 from flankfilm.report.text import number, percent
@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from flankfilm.coupling import TorqueCurves
+
+
+PICTURES: Pictures = {"over_torque": "torque_transmission_error"}
 
 
 @stage("torques", "mesh cycles over torque", TEETH, COMPLIANCE, FACE_GEARS, DRY_CYCLE)
@@ -34,7 +37,7 @@ def section(stage: TorqueCurves, results: xr.Dataset) -> Part:
     errors = {"stiffness": stage.error, "peak to peak": stage.range_error}
     caption = "Largest numerical errors: " + ", ".join(f"{n} {percent(e)}" for n, e in errors.items()) + "."
     table = Table(tuple(reading.label for reading in shown), tuple(cells), caption)
-    drawn = pictures(results, "over_torque")
+    drawn = pictures(results, PICTURES)
     notes = (f"Left out: {stage.message}",) if stage.message else ()
     orders = stage.transmission_error_harmonic
     waves = [read(results, f"torque_transmission_error_harmonic_{order}") for order in orders]
@@ -55,5 +58,6 @@ PRODUCT = Product(
     variables=record_of("torque", TORQUES),
     solved={"torque": TORQUES},
     tables={"torques": CurveTable("torque", "torque", axis="torque")},
+    pictures=PICTURES,
     sections=section_of(TORQUES, section),
 )

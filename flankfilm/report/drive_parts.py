@@ -9,6 +9,7 @@ import numpy as np
 
 from base.units import factor
 from flankfilm.coupling.vibration.part_loads import PARTS
+from flankfilm.figures.reading import Pictures
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import counted, number, percent
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
     from flankfilm.coupling import DriveSweep, DynamicMap, PairDrive, SpeedRunUp
 
 RPM = 1.0 / factor("rpm")
+
+
+SWEPT: Pictures = {"drive_sweep": "drive_sweep_force_factor_up"}
+MODES: Pictures = {"drive_modes": "drive_mode_shapes"}
 
 
 def drive(stage: PairDrive, results: xr.Dataset) -> Part:
@@ -64,7 +69,7 @@ def drive(stage: PairDrive, results: xr.Dataset) -> Part:
         ),
         *valid(stage),
     ]
-    drawn = pictures(results, "drive_modes")
+    drawn = pictures(results, MODES)
     return Part("drive", "Drive train", figures=drawn, tables=(Table(heads, rows),), notes=tuple(notes))
 
 
@@ -100,7 +105,7 @@ def drive_sweep(stage: DriveSweep, results: xr.Dataset) -> Part:
     said_of = {"error": percent(stage.sampling_error), "periods": counted(stage.cost.periods, "period")}
     notes = [said("drive_sweep", flow=f"{stage.error:.0e}", **said_of), *valid(stage), *_truncated(stage)]
     notes += [stage.message] if stage.message else []
-    drawn = pictures(results, "drive_sweep")
+    drawn = pictures(results, SWEPT)
     return Part(
         "drive-sweep",
         "Motion of the drive train",

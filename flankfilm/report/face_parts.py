@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flankfilm.coupling.mesh.face_models import LABELS
-from flankfilm.figures.reading import read_figure
+from flankfilm.figures.reading import Pictures, read_figure
 from flankfilm.output.uncertainty import uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent, plus_minus
@@ -22,12 +22,15 @@ if TYPE_CHECKING:
 GREATEST = "maximum face-load factor"
 
 
+MODELS: Pictures = {"line_load_models": "face_models_line_load"}
+PICTURES: Pictures = {"flank_map": "dry_face_travel", "face_load_factor": "dry_face_travel", **MODELS}
+
+
 def face(loads: fem.FaceLoads, models: FaceLoadModels | None, results: xr.Dataset) -> Part:
     """Flank maps, the face-load factor along the path, and other models beside it."""
-    drawn = pictures(results, "flank_map", "face_load_factor", model=LABELS[loads.setting.model])
+    drawn = pictures(results, PICTURES, model=LABELS[loads.setting.model])
     tables, notes = [_bears(loads)], [said("face")]
     if models is not None:
-        drawn += pictures(results, "line_load_models")
         tables.append(models_table(models))
         notes += _failing(models)
     return Part("face", "Load over the face", (_made_of(loads),), drawn, tuple(tables), tuple(notes))
@@ -35,7 +38,7 @@ def face(loads: fem.FaceLoads, models: FaceLoadModels | None, results: xr.Datase
 
 def beside(models: FaceLoadModels, results: xr.Dataset) -> Part:
     """Other models of the load over the face alone, for a verification."""
-    drawn = pictures(results, "line_load_models")
+    drawn = pictures(results, MODELS)
     tables, notes = (models_table(models),), tuple(_failing(models))
     return Part("face", "Load over the face", figures=drawn, tables=tables, notes=notes)
 

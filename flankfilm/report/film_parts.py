@@ -12,7 +12,7 @@ from base import Array
 from base.units import factor
 from ehl.discrete.regimes import MEASURED, regime
 from flankfilm.coupling.films.least_film import parts_of
-from flankfilm.figures.reading import PER_FACE, read_figure, unit_text
+from flankfilm.figures.reading import PER_FACE, Pictures, read_figure, unit_text
 from flankfilm.output.uncertainty import Uncertainty, uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import counted, number, percent
@@ -27,6 +27,15 @@ LEAST, LEAST_WITH_HEAT = "minimum film on the path", "minimum film with heat"
 """Names of headlines."""
 
 HELD = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}
+
+
+PICTURES: Pictures = {
+    "film_along_path": "film_central_thickness",
+    "film_map": "film_face_minimum_thickness",
+    "film_shares": ("film_starvation", "film_ratio", "film_asperity_share"),
+    "film_profiles": "film_profile",
+    "film_changes": "held_tangent_stiffness",
+}
 
 
 def held_as_it_is(cycle: LubricatedCycle) -> str:
@@ -50,24 +59,10 @@ def film(cycle: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
         "film",
         "Oil film",
         (verdict, *_over_face(cycle), *_supply(stage), *_mixed(stage)),
-        pictures(results, *_pictured(cycle), **_captions(stage)),
+        pictures(results, PICTURES, **_captions(stage)),
         tables,
         (rounds, "Steady, isothermal, " + ("fully flooded." if stage.supply == "flooded" else "starved.")),
     )
-
-
-def _pictured(cycle: LubricatedCycle) -> Iterator[str]:
-    """Names of the figures of a film."""
-    stage = cycle.film
-    yield "film_along_path"
-    if cycle.over_face is not None:
-        yield "film_map"
-    if any(known is not None for known in (stage.starvation, stage.film_ratio, stage.asperity_share)):
-        yield "film_shares"
-    if stage.profiles:
-        yield "film_profiles"
-    if cycle.otherwise:
-        yield "film_changes"
 
 
 def _captions(stage: FilmAlongPath) -> dict[str, str]:

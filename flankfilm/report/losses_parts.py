@@ -10,7 +10,7 @@ import numpy as np
 
 from ehl.discrete.regimes import MEASURED, regime
 from flankfilm.building.heat import shearing_oil, warmth
-from flankfilm.figures.reading import read_figure
+from flankfilm.figures.reading import Pictures, read_figure
 from flankfilm.output.uncertainty import Uncertainty, uncertainty
 from flankfilm.report.film_parts import LEAST_WITH_HEAT, regime_said
 from flankfilm.report.page import Headline, Part, Table, pictures, said
@@ -24,14 +24,18 @@ if TYPE_CHECKING:
     from flankfilm.scene import Scene
 
 
+PICTURES: Pictures = {
+    "losses_along_path": "losses_path_friction_coefficient",
+    "temperatures_along_path": "losses_path_surface_temperature_rise",
+    "temperature_field": "hot_contact_temperature",
+}
+
+
 def losses(mesh_losses: MeshLosses, results: xr.Dataset, scene: Scene) -> Part:
     """Losses with their band, temperatures along the path and in the hottest contact."""
     film = " beside the isothermal one" if "film_rho1" in results else ""
-    hot = "hot_contact_temperature" in results
-    drawn = pictures(results, "losses_along_path", "temperatures_along_path", beside=film)
-    if hot:
-        rho1 = mesh_losses.path.rho1[int(np.argmax(mesh_losses.path.oil_temperature_rise))]
-        drawn += pictures(results, "temperature_field", rho1=number(1e3 * rho1))
+    rho1 = mesh_losses.path.rho1[int(np.argmax(mesh_losses.path.oil_temperature_rise))]
+    drawn = pictures(results, PICTURES, beside=film, rho1=number(1e3 * rho1))
     return Part(
         "losses",
         "Friction, losses and temperatures",

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from flankfilm import figures
+from flankfilm.figures.reading import Pictures, drawable
 from flankfilm.output.files import write_text
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.text import counted, missed, off, parts, percent, total
@@ -238,10 +239,13 @@ def picture(draw: Callable[[xr.Dataset], Figure], results: xr.Dataset, caption: 
     return Drawing(to_svg(draw(results), draw.__name__), caption, name, redraw if fits else None)
 
 
-def pictures(results: xr.Dataset, *names: str, **words: str) -> tuple[Drawing, ...]:
-    """Draw results with several of `flankfilm.figures`, each with its caption, into which `words` are filled."""
+def pictures(results: xr.Dataset, shown: Pictures, **words: str) -> tuple[Drawing, ...]:
+    """Draw what results have the variables of, each with its caption, into which `words` are filled."""
     captions = _prose()["captions"]
-    return tuple(picture(getattr(figures, name), results, captions[name].format(**words)) for name in names)
+    return tuple(
+        picture(getattr(figures, name), results, captions[name].format(**words))
+        for name in drawable(shown, results)
+    )
 
 
 def said(note: str, **words: Any) -> str:

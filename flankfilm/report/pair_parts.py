@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base.results import quantities
-from flankfilm.figures.reading import read, read_figure, travel
+from flankfilm.figures.reading import Pictures, read, read_figure, travel
 from flankfilm.output.geometry import Row, geometry_rows
 from flankfilm.report.page import Drawing, Headline, Part, Table, pictures
 from flankfilm.report.text import number
@@ -28,6 +28,10 @@ OF_BLANKS = ("pair_rim_thicknesses", "pair_web_thicknesses")
 
 HEADLINES = ("contact_ratio", "working_centre_distance", "working_pressure_angle", "backlash")
 """Figures of the pair for the head of a page without any others."""
+
+
+IN_MESH: Pictures = {"gears_in_mesh": "outline_pinion"}
+PATH: Pictures = {"kinematics": "path_rho2"}
 
 
 def headlines(pair: GearPair) -> list[Headline]:
@@ -53,7 +57,7 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
     path = ("path of contact A to E [mm]", *_aligned("mm", [float(travel(results, "path_point_rho1")[-1])]))
     common = (*(row for row in cells if len(row) == 2), path)
     of_gears = (*(row for row in cells if len(row) == 3), ("undercut", *undercut))
-    drawn = pictures(results, "kinematics")
+    drawn = pictures(results, PATH)
     tables = Table(("pair", ""), common), Table(("", "pinion", "wheel"), of_gears)
     note = (
         "Thicknesses, span and size over pins include the thinning of the teeth; spans and pins touch near d + 2 x m, "
@@ -64,7 +68,7 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
 
 def drawing(results: xr.Dataset) -> Drawing:
     """Drawing of the pair in mesh, for the page's head."""
-    return replace(pictures(results, "gears_in_mesh")[0], redraw=None)
+    return replace(pictures(results, IN_MESH)[0], redraw=None)
 
 
 def printed(results: xr.Dataset) -> list[str]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flankfilm.coupling.mesh.references import MEANINGS, PARTS, RELATIVE, relative_to
-from flankfilm.figures.reading import PER_FACE, read_figure, unit_text
+from flankfilm.figures.reading import PER_FACE, Pictures, read_figure, unit_text
 from flankfilm.output.uncertainty import uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import SMALLEST, alike, number, of_both, percent
@@ -26,6 +26,15 @@ EXPLAINED = {"body": "reference_body", "bore": "reference_bore", "teeth": "refer
 
 LISTED = 6
 """Harmonics in the table of a mesh cycle."""
+
+
+PICTURES: Pictures = {
+    "mesh_stiffness": "dry_secant_stiffness",
+    "load_share": "dry_load_share",
+    "transmission_error": "dry_transmission_error",
+}
+
+SINGLE_PAIRS: Pictures = {"single_pairs": "single_pair_rho1"}
 
 
 def stiffness(
@@ -51,12 +60,10 @@ def stiffness(
         [m]
     results : xarray.Dataset
     """
-    shown = ["mesh_stiffness", "load_share", "transmission_error"]
     tables = [_cycles(cycles, face_width), _harmonics(cycles[0])]
     if single is not None:
-        shown.append("single_pairs")
         tables += [iso_table(single.iso), contact_table(single.contact, loaded)]
-    drawn = pictures(results, *shown, model=cycles[0].label)
+    drawn = pictures(results, {**PICTURES, **SINGLE_PAIRS}, model=cycles[0].label)
     notes = (said(EXPLAINED[cycles[0].reference]), *changes, said("closed_forms"))
     return Part("stiffness", "Mesh stiffness", figures=drawn, tables=tuple(tables), notes=notes)
 

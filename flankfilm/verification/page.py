@@ -56,7 +56,7 @@ def write_verification_page(verification: Verification, data: xr.Dataset, folder
     ]
     over = verification.over_face
     parts = [
-        Part("curves", "Curves", figures=pictures(data, "verification")),
+        Part("curves", "Curves", figures=pictures(data, {"verification": "model"})),
         Part(
             "differences",
             "Differences",

@@ -14,8 +14,13 @@ from matplotlib.figure import Figure
 
 from base import InputError
 from flankfilm import coupling, figures
-from flankfilm.figures.records import dataset, function, picture_of
-from flankfilm.figures.views import PICTURES, register
+from flankfilm.figures.reading import drawable
+from flankfilm.figures.records import dataset, function
+from flankfilm.figures.views import OF_PRODUCT, PICTURES, register
+from flankfilm.products.catalogue import PRODUCTS
+from flankfilm.products.pictures import first
+from flankfilm.products.product import Product
+from flankfilm.report.page import _prose
 from tests.flankfilm import pictured
 from tests.flankfilm.pictured import RECORDS, faults_of
 
@@ -38,7 +43,9 @@ OF_RUNS: dict[str, tuple[Any, ...]] = {
 }  # fmt: skip
 """Run, or record, to the functions that are drawn from it."""
 
-OF_RECORDS = {how.draw.partition(".")[2] for how in PICTURES.values()}
+OF_RECORDS = {how.draw.partition(".")[2] for how in PICTURES.values() if how.draw != OF_PRODUCT}
+
+OF_PRODUCTS = {name for product in PRODUCTS for name in product.pictures}
 
 RENDERED = {"Frame", "animate_cycle", "teeth_scene", "tooth_picture", "view_cycle"}
 """What VTK draws; see test_report_animation and test_face_pictures."""
@@ -59,8 +66,50 @@ def test_a_record_draws_itself_by_the_function_of_its_dataset(place: str):
     assert faults_of(picture) == []
     assert any(axes.lines or axes.collections or axes.patches for axes in picture.axes)
     assert not blank(picture)
-    again = function(picture_of(record))(dataset(record))
+    again = drawing(place)(dataset(record))
     assert lines_of(again) == lines_of(picture)
+
+
+def drawing(place: str) -> Callable[[xr.Dataset], Figure]:
+    """Function that draws a record: its own, or the first of its product."""
+    how = PICTURES[place]
+    return getattr(figures, first(dataset(RECORDS[place]()))) if how.draw == OF_PRODUCT else function(how)
+
+
+WENT_FURTHEST = {
+    "outline_pinion": "gears_in_mesh",
+    "single_pair_rho1": "single_pairs",
+    "dry_secant_stiffness": "mesh_stiffness",
+    "film_central_thickness": "film_along_path",
+    "losses_path_friction_coefficient": "losses_along_path",
+    "sweep_force_factor_up": "resonance",
+    "drive_mode_shapes": "drive_modes",
+    "drive_sweep_force_factor_up": "drive_sweep",
+    "diagram_branch": "diagram",
+    "spectrum_force": "spectrum",
+    "run_up_peak_up": "run_up",
+    "dynamic_map_factor": "dynamic_map",
+}
+"""Variable to what a run that has it, and those above it, draws."""
+
+
+def test_a_run_draws_the_first_picture_of_its_last_product():
+    there = xr.Dataset()
+    assert first(there) == ""
+    for variable, name in WENT_FURTHEST.items():
+        there[variable] = 1.0
+        assert first(there) == name
+
+
+@pytest.mark.parametrize(
+    "product", [product for product in PRODUCTS if product.pictures], ids=lambda p: p.name
+)
+def test_every_picture_of_a_product_is_a_function_with_a_caption(product: Product):
+    assert set(product.pictures) <= set(figures.__all__) & set(_prose()["captions"])
+
+
+def test_every_caption_is_of_a_picture_of_a_product():
+    assert set(_prose()["captions"]) == OF_PRODUCTS | {"verification"}
 
 
 @pytest.mark.slow
@@ -70,6 +119,13 @@ def test_pictures_of_runs_keep_to_the_same(name: str):
     data: xr.Dataset = getattr(made, "dataset", None)
     for draw in OF_RUNS[name]:
         assert faults_of(draw(data if data is not None else dataset(made))) == [], draw.__name__
+    if data is not None:
+        assert of_products(data) >= {draw.__name__ for draw in OF_RUNS[name]} & OF_PRODUCTS
+
+
+def of_products(data: xr.Dataset) -> set[str]:
+    """Pictures of all products that a run has the variables of."""
+    return {name for product in PRODUCTS for name in drawable(product.pictures, data)}
 
 
 def lines_of(figure: Figure) -> list[tuple[int, ...]]:

@@ -179,6 +179,11 @@ def test_every_function_is_tried_here_or_among_the_records():
     assert tried == set(figures.__all__)
 
 
+def test_products_draw_every_picture_of_the_run(made):
+    drawn_here = {draw.__name__ for draw in OF_A_RUN}
+    assert test_pictures.of_products(made.results) == drawn_here & test_pictures.OF_PRODUCTS
+
+
 SEEN_AT_ONCE = {
     "diagram", "film_along_path", "flanks", "fourier", "mesh_stiffness", "optimum", "optimum_map", "over_torque",
     "resonance", "revolution", "root_stress", "study", "tooth_stress", "verification",
