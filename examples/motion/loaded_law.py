@@ -33,6 +33,7 @@ from dynamics import (
     fit_fourier,
 )
 from dynamics.flow.motions import turning_points
+from flankfilm.figures.style import COLOURS, MARK, legend_over, save, sheet
 from gears import BasicRack, Gear, GearPair, Material
 
 Array = NDArray[np.float64]
@@ -40,7 +41,7 @@ TORQUE = 600.0  # N m
 SHARES = (0.003, 0.01, 0.03, 0.08, 0.2, 0.4, 0.7, 1.0, 1.5, 2.2, 3.2, 4.5)  # of it, in the sweep
 SPEEDS = (6000.0, 13000.0)  # rpm
 DAMPING, ERROR, BACKLASH, POSITIONS = 0.05, 10e-6, 50e-6, 40
-COLOURS = {"secant": "tab:blue", "tangent": "tab:red", "loaded law": "black"}
+LAWS = {"secant": COLOURS[0], "tangent": COLOURS[1], "loaded law": COLOURS[6]}
 
 
 @dataclass(frozen=True)
@@ -208,30 +209,32 @@ def extent(osc: GearOscillator | SmoothOscillator, frequency: float, state: Arra
 
 
 def figure(setup: MeshSetup, curves: Sequence[Curve], order: int) -> Figure:
-    """Laws at the stiffest and the softest position, and the swing over the speed."""
-    page = Figure(figsize=(10, 4.2), layout="constrained")
-    left, right = page.subplots(1, 2, width_ratios=(1, 1.7))
-    for row, style in ((int(np.argmax(setup.secant)), "-"), (int(np.argmin(setup.secant)), "--")):
-        x = 1e6 * setup.deflection[row]
-        at = setup.load / setup.secant[row]
-        line = np.array([0.0, 2.0 * at])
-        left.plot(x, 1e-3 * setup.force, "k.", markersize=4)
-        left.plot(1e6 * line, 1e-3 * setup.secant[row] * line, style, color=COLOURS["secant"])
-        touching = setup.load + setup.tangent[row] * (line - at)
-        left.plot(1e6 * line, 1e-3 * touching, style, color=COLOURS["tangent"])
-    left.axhline(1e-3 * setup.load, color="grey", linewidth=0.7)
-    left.set(xlabel="deflection [µm]", ylabel="normal force [kN]", xlim=(0, 60), ylim=(0, 50))
-    left.set_title("finite elements (dots), stiffest (solid), softest (dashed)", fontsize=8)
-    for response in curves:
-        for wanted, style in ((True, "-"), (False, ":")):
-            swing = where_stable(response.stable, response.swing, wanted)
-            label = response.name if wanted else None
-            right.plot(response.rpm, swing, style, color=COLOURS[response.name], linewidth=1.2, label=label)
-        for speed, swing in response.jumps:
-            right.plot(speed, swing, "o", color=COLOURS[response.name], markersize=4)
-    right.set(xlabel="pinion speed [rpm]", ylabel="peak to peak [µm]", xlim=SPEEDS, ylim=(0, None))
-    right.set_title(f"motions of period 1, {order} harmonic(s); stable solid, folds as dots", fontsize=8)
-    right.legend(fontsize=8, loc="upper left")
+    """Laws at the stiffest and the softest position, and the swing over the speed: stable solid, folds as dots."""
+    with sheet(None, 1, 2, width=7.6, height=3.8, legend=0, width_ratios=(1, 1.5)) as (page, (left, right)):
+        for row, dash in ((int(np.argmax(setup.secant)), "-"), (int(np.argmin(setup.secant)), "--")):
+            end = "stiffest" if dash == "-" else "softest"
+            at = setup.load / setup.secant[row]
+            line = np.array([0.0, 2.0 * at])
+            x, force = 1e6 * line, {"secant": setup.secant[row] * line}
+            force["tangent"] = setup.load + setup.tangent[row] * (line - at)
+            left.plot(1e6 * setup.deflection[row], 1e-3 * setup.force, "k.", markersize=4)
+            for law, curve in force.items():
+                left.plot(x, 1e-3 * curve, dash, color=LAWS[law], label=f"{law}, {end}")
+        left.plot([], [], "k.", markersize=6, label="finite elements")
+        left.axhline(1e-3 * setup.load, color=MARK, linestyle="-", linewidth=0.8)
+        left.set(xlabel="deflection [µm]", ylabel="normal force [kN]", xlim=(0, 60), ylim=(0, 50))
+        for response in curves:
+            for wanted, dash in ((True, "-"), (False, ":")):
+                swing = where_stable(response.stable, response.swing, wanted)
+                label = response.name if wanted else None
+                right.plot(response.rpm, swing, dash, color=LAWS[response.name], linewidth=1.2, label=label)
+            for speed, swing in response.jumps:
+                right.plot(speed, swing, "o", color=LAWS[response.name], markersize=4)
+        harmonics = "one harmonic" if order == 1 else f"{order} harmonics"
+        right.set(xlabel="pinion speed [rpm]", ylabel=f"peak to peak, {harmonics} [µm]", xlim=SPEEDS)
+        right.set_ylim(bottom=0.0)
+        legend_over(left, 2)
+        legend_over(right, 3)
     return page
 
 
@@ -291,7 +294,7 @@ def main(arguments: Sequence[str] | None = None) -> list[Path]:
             f"{1e6 * mean.length * loaded.reach:.0f} um"
         )
         files.append(options.out / f"loaded_law_{order}.png")
-        figure(here, curves, order).savefig(files[-1], dpi=130)
+        save(figure(here, curves, order), files[-1])
     files.append(options.out / "loaded_law.txt")
     files[-1].write_text("\n".join(text) + "\n", encoding="utf-8")
     sys.stdout.write("\n".join(text) + "\n")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flankfilm.figures.panels import plain_ticks
 from flankfilm.figures.style import COLOURS, sheet
 
 if TYPE_CHECKING:
@@ -22,6 +23,9 @@ __all__ = ["error_against_cost", "estimates", "overview"]
 
 LEAST = 1e-16
 """Errors below the rounding of one number are drawn here."""
+
+NARROW = 6.0
+"""Smallest ratio of the ends of an axis: two of the ticks at 1, 2 and 5 stand in it."""
 
 MARKS = "osD^vP*"
 PEER_MARKS = "xX1+"
@@ -52,8 +56,8 @@ def error_against_cost(case: CaseResult, peers: Sequence[PeerRow] = ()) -> Figur
                 axes.set(xscale="log", yscale="log")
                 _ticks(axes)
             what = quantities[0] if len(quantities) == 1 else "each mean"
-            over_time.set(xlabel="processor time [s]", ylabel=f"relative error\n{what}")
-            over_size.set(xlabel=case.size_name)
+            over_time.set(xlabel="processor time [s]", ylabel=f"relative error [-]\n{what}")
+            over_size.set(xlabel=f"{case.size_name} [-]")
         _legend(drawn, panels[::2], [case.orders[q] for group in groups for q in group if q in case.orders])
     return drawn
 
@@ -108,17 +112,13 @@ def _slope(axes: Axes, rows: Sequence[Row], orders: dict[str, float]) -> None:
 
 def _ticks(axes: Axes) -> None:
     """Give an axis of less than two decades room, and ticks at 1, 2 and 5 that carry plain numbers."""
-    from matplotlib.ticker import LogLocator, NullLocator
-
     low, high = axes.get_xlim()
     if high > 100.0 * low:
         return
-    if high < 12.0 * low:
-        middle, half = math.sqrt(low * high), math.sqrt(12.0)
+    if high < NARROW * low:
+        middle, half = math.sqrt(low * high), math.sqrt(NARROW)
         axes.set_xlim(middle / half, middle * half)
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.xaxis.set_major_formatter(lambda value, _: f"{value:.3g}" if value < 1000 else f"{value:.0f}")
+    plain_ticks(axes.xaxis)
 
 
 def _legend(drawn: Figure, panels: Iterable[Axes], orders: Sequence[float]) -> None:
@@ -154,7 +154,7 @@ def estimates(cases: Sequence[CaseResult]) -> Figure:
         for factor, line, name in ((1.0, "-", "estimate = error"), (10.0, ":", "ten times the error")):
             axes.plot(span, [factor * v for v in span], line, **GREY, label=name)
         axes.set(xscale="log", yscale="log", xlim=span, ylim=span)
-        axes.set(xlabel="true relative error", ylabel="estimated relative error")
+        axes.set(xlabel="true relative error [-]", ylabel="estimated relative error [-]")
     return drawn
 
 
@@ -170,5 +170,5 @@ def overview(cases: Sequence[CaseResult]) -> Figure:
             rows = [r for r in rows if (r.series, r.quantity) == (rows[0].series, rows[0].quantity)]
             label = f"{solver}: {rows[0].quantity}" if rows else None
             axes.plot([r.cpu for r in rows], _drawn(rows, "error"), "-", **_look(place), label=label)
-        axes.set(xscale="log", yscale="log", xlabel="processor time [s]", ylabel="true relative error")
+        axes.set(xscale="log", yscale="log", xlabel="processor time [s]", ylabel="true relative error [-]")
     return drawn

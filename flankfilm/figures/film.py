@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base import Array
-from flankfilm.figures.panels import PATH_LABEL, curves, over_path
+from flankfilm.figures.panels import curves, over_path, plain_ticks
 from flankfilm.figures.reading import Reading, beside, labelled, need, read, text, travel
 from flankfilm.figures.style import MARK, Style, colours, films_from_zero, from_zero, looks, sheet
 
@@ -149,7 +149,8 @@ def film_families(
         rcParams that overrule the house's.
     """
     (name,) = [name for name in POINTS if name.endswith(point)]
-    with sheet(style, 2, 2, width=7.6, height=4.4) as (drawn, (pressure, hertz, thickness, along)):
+    with sheet(style, 2, 2, width=7.6, height=4.4, sharex="col") as (drawn, panels):
+        pressure, hertz, thickness, along = panels
         for (label, results), look in zip(family.items(), looks(len(family)), strict=True):
             need(results, SOLVED, f"film_profile_{name}_x", "film_rho1")
             _through(pressure, thickness, results, name, label, look)
@@ -160,7 +161,7 @@ def film_families(
         hertz.set(ylabel=read(results, "film_hertz_pressure").named("Hertz pressure"))
         pressure.set(xlim=(-1.5, 1.2))
         thickness.set(xlabel=THROUGH, xlim=(-1.5, 1.2), ylim=(0, 2 * _thickest(thickness)))
-        along.set(xlabel=PATH_LABEL)
+        over_path(next(iter(family.values())), hertz, along)
     return drawn
 
 
@@ -220,8 +221,13 @@ def film_stiffness(results: xr.Dataset, *, style: Style | None = None) -> Figure
         rcParams that overrule the house's.
     """
     need(results, FILM, "film_rho1", "path_point_rho1")
-    with sheet(style, height=3.6) as (drawn, (axes,)):
-        curves(axes, travel(results, "film_rho1"), labelled(results, "film_stiffness_"))
+    family = {
+        label.replace("-", " ").replace("dowson", "Dowson"): curve
+        for label, curve in labelled(results, "film_stiffness_", per_face=True).items()
+    }
+    with sheet(style, height=3.6, legend=5) as (drawn, (axes,)):
+        curves(axes, travel(results, "film_rho1"), family, "film stiffness")
         axes.set(yscale="log")
+        plain_ticks(axes.yaxis)
         over_path(results, axes)
     return drawn

@@ -14,6 +14,7 @@ from flankfilm.figures.style import MARK, looks
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
 
 NARROW = 0.03
 """Part of the path within which the names of two points would overprint."""
@@ -88,6 +89,15 @@ def beside(axes: Axes, scale: float, label: str, way: str = "right") -> None:
     else:
         axes.secondary_yaxis("right", functions=conversions).set_ylabel(label)
         axes.spines["right"].set_visible(True)
+
+
+def plain_ticks(axis: Axis) -> None:
+    """Tick a logarithmic axis of one or two decades at 1, 2 and 5, in plain numbers."""
+    from matplotlib.ticker import LogLocator, NullLocator
+
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(lambda value, _: f"{value:.3g}" if value < 1000 else f"{value:.0f}")
 
 
 def over_path(results: xr.Dataset, *panels: Axes) -> None:
