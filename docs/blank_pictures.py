@@ -8,6 +8,7 @@ is the greatest tension of the wheel by a load at its outer point of single cont
 from __future__ import annotations
 
 import warnings
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,7 +16,7 @@ from runs import save
 
 import fem
 from base import Array
-from flankfilm.figures.style import colours, sheet
+from flankfilm.figures.style import MARK, colours, sheet
 from gears import Blank, Gear, GearPair
 from gears.closed_form.root_stress import rim_factor
 from gears.closed_form.tooth_stiffness import blank_factor
@@ -62,19 +63,22 @@ def root_stress(gear_pair: GearPair) -> float:
 def drawn(stiffer: dict[float, Array], stressed: dict[float, Array], at_bore: tuple[Array, Array]) -> Figure:
     """Factors of finite elements (marks) and of ISO 6336 (lines) over the rim."""
     fine = np.linspace(RIMS[0], RIMS[-1], 200)
-    with sheet(None, 1, 2, height=3.4, legend=5) as (figure, (left, right)):
-        for web, colour in zip(WEBS, colours(len(WEBS)), strict=True):
-            left.plot(RIMS, stiffer[web], "o-", color=colour, ms=4, lw=0.8, label=f"b_s/b = {web:g}")
-            right.plot(RIMS, stressed[web], "o-", color=colour, ms=4, lw=0.8)
+    with sheet(None, 1, 2, height=3.4, legend=3) as (figure, (left, right)):
+        for web, colour, mark in zip(WEBS, colours(len(WEBS)), "ov^D", strict=True):
+            look: dict[str, Any] = {"color": colour, "linestyle": "-", "marker": mark, "ms": 4, "lw": 0.8}
+            left.plot(RIMS, stiffer[web], label=f"b_s/b = {web:g}", **look)
+            right.plot(RIMS, stressed[web], **look)
             if web > 0.1:
                 iso = [blank_factor(on_web(rim, web).teeth_profiles[1]) for rim in fine]
                 left.plot(fine, iso, "--", color=colour)
         for axes, values in zip((left, right), at_bore, strict=True):
-            axes.plot(RIMS, values, "s:", color="#999999", ms=4, lw=0.8, label="disc held at its bore")
+            axes.plot(RIMS, values, "s:", color=MARK, ms=4, lw=0.8, label="disc held at its bore")
         right.plot(fine, [rim_factor(rim) for rim in fine], "k--", label="ISO 6336")
         left.plot([], [], "k--", label="ISO 6336")
-        left.set(xlabel="rim over tooth depth, s_R/h_t", ylabel="stiffness over that of a disc, C_R")
-        right.set(xlabel="rim over tooth depth, s_R/h_t", ylabel="root stress over that of a disc, Y_B")
+        left.set(xlabel="rim over tooth depth, s_R/h_t [-]", ylabel="stiffness over that of a disc,\nC_R [-]")
+        right.set(
+            xlabel="rim over tooth depth, s_R/h_t [-]", ylabel="root stress over that of a disc,\nY_B [-]"
+        )
     return figure
 
 

@@ -46,8 +46,11 @@ def diagram_figure(diagram: Diagram, met: MultiSweep, symbol: str) -> Figure:
         for kind, (mark, colour) in MARKS.items():
             at = [(point.parameter, point.state[0]) for point in points if point.kind == kind]
             if at:
-                edge = {} if mark == "x" else {"markeredgecolor": INK, "markeredgewidth": 0.4}
-                axes.plot(*np.transpose(at), mark, color=colour, markersize=4.0, label=kind, zorder=3, **edge)
+                line = colour if mark == "x" else INK
+                axes.plot(
+                    *np.transpose(at), mark, color=colour, markersize=4.0, label=kind, zorder=3,
+                    markeredgecolor=line, markeredgewidth=1.0 if mark == "x" else 0.4,
+                )  # fmt: skip
         axes.plot([], [], "-", color=INK, linewidth=1.1, label="stable")
         axes.plot([], [], "--", color=INK, linewidth=0.6, label="unstable")
         axes.set(xlabel=f"{symbol} [-]", ylabel=AT_ZERO[0], xlim=diagram.bounds, ylim=_span(met))
@@ -145,8 +148,8 @@ def basin_figure(
             axes.plot([], [], " ", label=f"and {len(unstable) - 10} more unstable")
         for k, manifold in enumerate(manifolds):
             for j, curve in enumerate(manifold.curves):
-                label = f"stable manifold of {manifold.orbit.label}" if j == 0 else None
-                line = axes.plot(*curve.T, LINES[k % len(LINES)], color=INK, linewidth=0.6, label=label)
+                name = f"stable manifold of {manifold.orbit.label}" if j == 0 else None
+                line = axes.plot(*curve.T, LINES[k % len(LINES)], color=INK, linewidth=0.6, label=name)
                 line[0].set_rasterized(len(curve) > 5000)
         axes.set(xlim=box[:2], ylim=box[2:], xlabel=AT_ZERO[0], ylabel=AT_ZERO[1])
         axes.set_title(title, fontsize=9)

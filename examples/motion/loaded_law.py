@@ -228,8 +228,8 @@ def figure(setup: MeshSetup, curves: Sequence[Curve], order: int) -> Figure:
                 swing = where_stable(response.stable, response.swing, wanted)
                 label = response.name if wanted else None
                 right.plot(response.rpm, swing, dash, color=LAWS[response.name], linewidth=1.2, label=label)
-            for speed, swing in response.jumps:
-                right.plot(speed, swing, "o", color=LAWS[response.name], markersize=4)
+            for speed, reached in response.jumps:
+                right.plot(speed, reached, "o", color=LAWS[response.name], markersize=4)
         harmonics = "one harmonic" if order == 1 else f"{order} harmonics"
         right.set(xlabel="pinion speed [rpm]", ylabel=f"peak to peak, {harmonics} [µm]", xlim=SPEEDS)
         right.set_ylim(bottom=0.0)

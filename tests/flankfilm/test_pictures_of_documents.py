@@ -13,6 +13,7 @@ from flankfilm.bench.measuring import measure
 from tests.example_scripts import example
 from tests.flankfilm.pictured import OSCILLATOR, RECORDS, faults_of, orbit, values
 from tests.flankfilm.test_bench import second_order
+from tests.flankfilm.test_gallery import QUICK
 
 
 @pytest.fixture(scope="module")
@@ -64,3 +65,8 @@ def test_a_title_without_a_unit_is_seen(drawing: ModuleType):
     figure = drawing.exponent_figure([("up", rows), ("down", rows)], "mesh frequency")
     figure.axes[0].set_xlabel("mesh frequency")
     assert faults_of(figure) == ["'mesh frequency' has no unit"]
+
+
+@pytest.mark.parametrize("name", sorted(QUICK))
+def test_quick_scripts_of_the_gallery(name: str):
+    assert faults_of(example(name, "gallery").draw()) == []
