@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 LONGEST = 40
 """Maximum number of stable ranges listed; the data files hold all."""
 
-
 PICTURES: Pictures = {"diagram": "diagram_branch"}
 
 

@@ -34,7 +34,6 @@ from flankfilm.stages.motion import FOURIER
 if TYPE_CHECKING:
     import xarray as xr
 
-
 PICTURES: Pictures = {
     "dynamic_map": "dynamic_map_factor",
     "drive_map": ("dynamic_map_bearings", "dynamic_map_shafts"),

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     from flankfilm.coupling import LoadedFields
 
-
 PICTURES: Pictures = {"tooth_stress": "field_von_mises"}
 
 

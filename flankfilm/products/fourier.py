@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from flankfilm.coupling import MeshSeries
 
-
 PICTURES: Pictures = {"fourier": "fourier_samples"}
 
 

@@ -41,7 +41,6 @@ LISTED = 12
 OF_ERROR = 6
 """Harmonics of the error that the table of the oscillator lists."""
 
-
 PICTURES: Pictures = {"excitation": "excitation_amplitude"}
 
 

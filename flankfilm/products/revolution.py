@@ -21,7 +21,6 @@ from flankfilm.stages.mesh import COMPLIANCE, FACE_GEARS, TEETH, loaded_teeth
 if TYPE_CHECKING:
     import xarray as xr
 
-
 PICTURES: Pictures = {"revolution": "revolution_transmission_error"}
 
 

@@ -49,7 +49,6 @@ OF_EACH_SECTION = {
 
 EVEN = "{}; nan where the load is even along the face"
 
-
 PICTURES: Pictures = {"root_stress": "root_pinion_tension", "root_face_map": "root_face_pinion_tension"}
 
 

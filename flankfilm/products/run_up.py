@@ -27,7 +27,6 @@ from flankfilm.stages.motion import SCALING
 if TYPE_CHECKING:
     import xarray as xr
 
-
 PICTURES: Pictures = {
     "run_up": "run_up_peak_up",
     "waterfall": "run_up_order_force_up",

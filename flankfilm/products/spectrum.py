@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 LISTED = 12
 """Lines that a table lists; the data files hold all."""
 
-
 PICTURES: Pictures = {"spectrum": "spectrum_force"}
 
 

@@ -42,7 +42,6 @@ RESONANCE = (
     *(f"{what}_{way}" for way in ("up", "down") for what in ("force_factor", "separated", "spread")),
 )
 
-
 PICTURES: Pictures = {
     "resonance": "sweep_force_factor_up",
     "sweep": "sweep_up",

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from flankfilm.coupling import TorqueCurves
 
-
 PICTURES: Pictures = {"over_torque": "torque_transmission_error"}
 
 

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 RPM = 1.0 / factor("rpm")
 
-
 SWEPT: Pictures = {"drive_sweep": "drive_sweep_force_factor_up"}
 MODES: Pictures = {"drive_modes": "drive_mode_shapes"}
 

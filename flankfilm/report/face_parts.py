@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 GREATEST = "maximum face-load factor"
 
-
 MODELS: Pictures = {"line_load_models": "face_models_line_load"}
 PICTURES: Pictures = {"flank_map": "dry_face_travel", "face_load_factor": "dry_face_travel", **MODELS}
 

@@ -28,7 +28,6 @@ LEAST, LEAST_WITH_HEAT = "minimum film on the path", "minimum film with heat"
 
 HELD = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}
 
-
 PICTURES: Pictures = {
     "film_along_path": "film_central_thickness",
     "film_map": "film_face_minimum_thickness",

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from flankfilm.coupling import MeshLosses
     from flankfilm.scene import Scene
 
-
 PICTURES: Pictures = {
     "losses_along_path": "losses_path_friction_coefficient",
     "temperatures_along_path": "losses_path_surface_temperature_rise",

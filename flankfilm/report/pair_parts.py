@@ -29,7 +29,6 @@ OF_BLANKS = ("pair_rim_thicknesses", "pair_web_thicknesses")
 HEADLINES = ("contact_ratio", "working_centre_distance", "working_pressure_angle", "backlash")
 """Figures of the pair for the head of a page without any others."""
 
-
 IN_MESH: Pictures = {"gears_in_mesh": "outline_pinion"}
 PATH: Pictures = {"kinematics": "path_rho2"}
 

@@ -27,7 +27,6 @@ EXPLAINED = {"body": "reference_body", "bore": "reference_bore", "teeth": "refer
 LISTED = 6
 """Harmonics in the table of a mesh cycle."""
 
-
 PICTURES: Pictures = {
     "mesh_stiffness": "dry_secant_stiffness",
     "load_share": "dry_load_share",
