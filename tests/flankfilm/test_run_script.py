@@ -37,6 +37,7 @@ case "$*" in
     *"-m pytest"*)
         [ ! -e /proc/self/fd/9 ] || exit 99
         [ -z "${PYTHONPATH:-}" ] || exit 98
+        [ -z "${PYTHONDONTWRITEBYTECODE:-}" ] || exit 97
         sleep "${JOB_SECONDS:-0}"; exit "${JOB_STATUS:-0}" ;;
     *"-m ruff"* | *"-m mypy"* | *"-m sphinx"*) exit "${JOB_STATUS:-0}" ;;
 esac
@@ -543,6 +544,10 @@ def test_through_a_symbolic_link(sandbox: Sandbox, tmp_path: Path) -> None:
     assert done.returncode == 0
     assert sandbox.stamp.exists()
     assert not (tmp_path / ".venv").exists()
+
+
+def test_processes_of_tests_keep_what_python_compiles(sandbox: Sandbox) -> None:
+    assert sandbox.run("test", PYTHONDONTWRITEBYTECODE="1").returncode == 0
 
 
 # ---------------------------------------------------------------- what it installs
