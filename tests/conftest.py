@@ -20,6 +20,7 @@ from tests.validation.article import PAIR
 
 __all__ = [
     "article_pair",
+    "no_gear_solved",
     "pytest_collection_modifyitems",
     "pytest_configure",
     "pytest_report_header",
@@ -50,3 +51,13 @@ def pytest_runtest_teardown() -> None:
 def article_pair() -> GearPair:
     """The article's pair, tests/validation/article.py."""
     return PAIR
+
+
+@pytest.fixture
+def no_gear_solved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A memory of gears for this test alone: it finds none of those that others solved, and leaves them theirs."""
+    from fem.influence import gear_store
+
+    for name in ("_RECORDS", "_RINGS", "_FACES"):
+        memory = getattr(gear_store, name)
+        monkeypatch.setattr(gear_store, name, type(memory)(memory.most))

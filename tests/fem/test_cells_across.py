@@ -15,7 +15,7 @@ from base import Array
 from fem.contact.cell_matrix import cell_matrix, cross_matrix
 from fem.contact.contact_sides import between
 from fem.contact.loaded_flanks import LoadedFlanks, loaded_flanks
-from fem.influence.gear_store import GearStore, forget_gears
+from fem.influence.gear_store import GearStore
 from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_across import (
@@ -240,13 +240,14 @@ def test_a_wheel_that_is_twice_as_wide(sides: _Sides) -> None:
     assert np.abs(added).max() > 1e-3 * np.abs(of_contact).max()
 
 
-def test_nothing_is_solved_before_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_solved_before_it_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch, no_gear_solved: None
+) -> None:
     def refused(*_: object) -> None:
         raise AssertionError
 
     for name in ("back_harmonics", "back_end_correction"):
         monkeypatch.setattr(fem.pair.face_across, name, refused)
-    forget_gears()
     pair = PAIR.with_backlash(60e-6)
     bodies = fem.compliance(pair, tolerance=0.05)
     cycle = fem.mesh_cycle(pair, 20.0, 2, bodies, alignment=Alignment(5e-6), cells=4, face_model="walls")

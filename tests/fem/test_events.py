@@ -195,8 +195,7 @@ def test_no_solution_between_the_positions_is_said(article_pair, article_bodies)
         assert "MeshCycle(torque 24000 N m, converged" in repr(one).replace(f", error {one.error:.1e}", "")
 
 
-def test_third_order_energies_wait_until_they_are_asked_for(article_pair):
-    fem.forget_gears()
+def test_third_order_energies_wait_until_they_are_asked_for(article_pair, no_gear_solved):
     bodies = fem.compliance(article_pair, tolerance=0.005)
     cycle = fem.mesh_cycle(article_pair, 600.0, 8, bodies)
     assert cycle.mean_stiffness > 0

@@ -29,13 +29,6 @@ def moves(cycle, other):
     return curves, [abs(getattr(other, n) / getattr(cycle, n) - 1.0) / cycle.errors[n] for n in FIGURES]
 
 
-@pytest.fixture
-def forgotten():
-    fem.forget_gears()
-    yield
-    fem.forget_gears()
-
-
 def motions(bodies, level, places, monkeypatch):
     """Flanks' motion by loads at so many places, on one of the meshes."""
     monkeypatch.setattr(flank_motion, "PLACES", places)
@@ -61,7 +54,7 @@ def test_errors_contain_what_the_motion_of_flanks_is_off_by(places, monkeypatch)
     assert max(curves) * cycles[0].error > 1.5 * bodies.error
 
 
-def test_errors_contain_what_back_flanks_are_off_by(monkeypatch, forgotten):
+def test_errors_contain_what_back_flanks_are_off_by(monkeypatch, no_gear_solved):
     """Against loads at four times as many places, on a much finer mesh."""
     cycles = []
     for samples, tolerance in ((10, 0.02), (40, 1e-5)):
@@ -83,7 +76,7 @@ def test_a_load_at_a_tip_corner_is_one_a_hundredth_of_a_module_before_it():
     assert ends[1] - ends[2] == pytest.approx(-gear.logarithm * np.log(2.0), rel=0.1)
 
 
-def test_the_distance_of_that_load_decides_the_compliance_there_alone(monkeypatch, forgotten):
+def test_the_distance_of_that_load_decides_the_compliance_there_alone(monkeypatch, no_gear_solved):
     """Farther from the corner, and in cycles, whose corners have laws of their own, it moves less than the errors."""
     near, cycles = [], []
     for clearance in (0.005, 0.01, 0.02):

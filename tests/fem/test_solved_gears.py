@@ -69,8 +69,7 @@ def same(first, second):
         np.testing.assert_array_equal(one, other)
 
 
-def test_a_kept_gear_is_that_solved_anew_to_the_last_bit():
-    fem.forget_gears()
+def test_a_kept_gear_is_that_solved_anew_to_the_last_bit(no_gear_solved):
     anew = solved(PAIR, tip_edges=True)
     fem.forget_gears()
     # the gears come from a pair of other size, modulus and mate
@@ -194,8 +193,7 @@ class Shelf:
         return pickle.loads(self.held[place])
 
 
-def test_a_study_solves_each_gear_once_and_tips_where_edges_are_free():
-    fem.forget_gears()
+def test_a_study_solves_each_gear_once_and_tips_where_edges_are_free(no_gear_solved):
     shelf = Shelf()
     for pinion in (Gear(18), Gear(21)):
         for wheel in (Gear(21), Gear(40)):
@@ -209,8 +207,7 @@ def test_a_study_solves_each_gear_once_and_tips_where_edges_are_free():
     assert shelf.computed == ["gear flanks"] * 3 + ["gear tips"] * 2 + ["gear coarse tips"] * 2
 
 
-def test_records_from_a_shelf_are_those_of_the_process():
-    fem.forget_gears()
+def test_records_from_a_shelf_are_those_of_the_process(no_gear_solved):
     shelf = Shelf()
     here = solved(PAIR, tip_edges=True, kept=shelf)
     fem.forget_gears()
@@ -248,8 +245,7 @@ def test_threads_get_one_record():
     assert len(memo) == 4
 
 
-def test_cost_is_of_what_was_solved_now():
-    fem.forget_gears()
+def test_cost_is_of_what_was_solved_now(no_gear_solved):
     first, again = solved(PAIR, tip_edges=True), solved(PAIR)
     assert {"mesh", "assemble", "factor", "condense", "solve", "tips"} == set(first.cost.parts)
     assert again.cost.parts == {}
@@ -257,8 +253,7 @@ def test_cost_is_of_what_was_solved_now():
     assert again.cost.unknowns == first.cost.unknowns
 
 
-def test_fillets_are_kept_by_gear_and_have_the_stress_of_the_gear_itself():
-    fem.forget_gears()
+def test_fillets_are_kept_by_gear_and_have_the_stress_of_the_gear_itself(no_gear_solved):
     shelf = Shelf()
     options = {"fillet_edge": 0.32, "kept": shelf}
     roots = fem.fillets(PAIR, **options)

@@ -280,7 +280,7 @@ def test_root_stress_over_the_face_from_scene_to_page(rooted):
     assert {name: OUTPUTS[name].value(rooted) for name in expected} == pytest.approx(expected, rel=1e-12)
 
 
-def test_gears_along_the_face_are_announced_once_and_kept(tmp_path: Path):
+def test_gears_along_the_face_are_announced_once_and_kept(tmp_path: Path, no_gear_solved: None):
     scene = parse_scene(QUICK)
 
     def told() -> list[str]:
