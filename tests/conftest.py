@@ -8,6 +8,7 @@ from flankfilm.files.cache import keep_compiled_code
 from gears import GearPair
 from tests.compiled import pytest_xdist_setupnodes
 from tests.processes import pytest_configure, pytest_sessionfinish
+from tests.recorded import pytest_runtest_protocol
 from tests.seeds import seed_header
 from tests.time_limit import (
     order_header,
@@ -24,6 +25,7 @@ __all__ = [
     "pytest_collection_modifyitems",
     "pytest_configure",
     "pytest_report_header",
+    "pytest_runtest_protocol",
     "pytest_runtest_setup",
     "pytest_sessionfinish",
     "pytest_sessionstart",
