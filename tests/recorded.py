@@ -14,7 +14,12 @@ from typing import Any
 
 import pytest
 
-UNRECORDED = ("tests/hard/", "tests/validation/")
+UNRECORDED = (
+    "tests/hard/",
+    "tests/validation/",
+    "tests/flankfilm/test_article_scene.py",
+    "tests/flankfilm/test_documents.py",
+)
 """Beginnings of the names of tests whose branches are not recorded."""
 
 PROCESSES = "COVERAGE_PROCESS_CONFIG"
