@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import warnings
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -21,6 +22,9 @@ THIN = Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)
 THICK = Lubricant(viscosity=90.0, pressure_viscosity=19.6e-9, density=910.0)
 LONG = LineContact.from_moes(200.0, 10.0)
 BRITTLE = LineContact.from_moes(20.0, 10.0, compressible=False)
+
+solved, lubricated = cache(solve), cache(lubricated_cycle)
+"""What several remedies begin or end with, computed once."""
 
 
 @pytest.mark.parametrize(
@@ -39,7 +43,7 @@ BRITTLE = LineContact.from_moes(20.0, 10.0, compressible=False)
 def test_films(contact, asked, words, follow):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        film = solve(contact, **asked)
+        film = solved(contact, **asked)
         assert film.converged == ("spike" not in asked)
         assert words in film.message
         better = solve(contact, **follow(film))
@@ -196,4 +200,4 @@ def test_films_softer_than_the_teeth(teeth, torque, oil, follow):
     pair = GearPair(Gear(36), Gear(40), 2e-3, 0.04).with_backlash(50e-6)
     with pytest.raises(SolverError, match="raise the torque, or lower speed and viscosity"):
         lubricated_cycle(pair, torque, 209.44, oil, tolerance=0.02, **teeth)
-    assert lubricated_cycle(pair, follow[0], 209.44, follow[1], tolerance=0.02, **teeth).converged
+    assert lubricated(pair, follow[0], 209.44, follow[1], tolerance=0.02, **teeth).converged
