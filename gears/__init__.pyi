@@ -1,4 +1,6 @@
 from . import closed_form as closed_form
+from .pair.contact_lines import ContactLines as ContactLines
+from .pair.contact_lines import contact_lines as contact_lines
 from .pair.gear_pair import GearPair as GearPair
 from .pair.hertz import half_width as half_width
 from .pair.hertz import peak_pressure as peak_pressure

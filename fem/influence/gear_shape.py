@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from fem.elasticity.plane_elasticity import PlaneElasticity
 from gears import BasicRack, Blank, Gear
+from gears.pair.spur_only import require_spur
 from gears.tooth.face import STRAIGHT
 
 if TYPE_CHECKING:
@@ -117,7 +118,13 @@ def shapes(
     profiles : (gears.ToothProfile, gears.ToothProfile)
         Whose bores are where the gears are held.
     plane : {"strain", "stress"}
+
+    Raises
+    ------
+    gears.GeometryError
+        Of helical pairs, whose section in twisted coordinates is another.
     """
+    require_spur(pair, "finite elements")
 
     def over(unit: float, length: float) -> float:
         return rounded(length / unit)

@@ -17,6 +17,7 @@ from fem.laws.tip_geometry import TipRound, chamfer_length, tip_round
 from fem.pair.face_setting import EVEN, FaceSetting
 from fem.pair.options import USUAL_OPTIONS, Options
 from gears import GearDeviations
+from gears.pair.spur_only import check_spur
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -113,6 +114,7 @@ class MeshSetup:
 
     def check(self, faults: Faults) -> None:
         """Note everything that is wrong."""
+        check_spur(faults, self.pair, "loaded contact")
         faults.number("positions", self.positions, COUNT)
         faults.number("pitches", self.pitches, COUNT)
         faults.number("friction", self.friction, FRICTION)

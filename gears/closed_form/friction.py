@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from base import Faults, Limit
 from gears.pair.gear_pair import GearPair
+from gears.pair.spur_only import check_spur
 from gears.tooth.errors import GeometryError
 
 _LIMITS = {
@@ -47,7 +48,7 @@ def schlenk_friction(
     Raises
     ------
     GeometryError
-        With every fault of the numbers.
+        With every fault of the numbers, and of helical pairs.
 
     References
     ----------
@@ -63,6 +64,7 @@ def schlenk_friction(
     """
     values = (torque, speed, viscosity, roughness, lubricant_factor)
     with Faults(GeometryError) as faults:
+        check_spur(faults, pair, "Schlenk's friction")
         faults.numbers(_LIMITS, values)
     at_pitch = pair.path_at(pair.points.C)
     load = 1e-3 * torque / pair.base_radii[0] / pair.face_width

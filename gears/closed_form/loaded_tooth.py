@@ -12,6 +12,7 @@ import numpy as np
 from base import Array, Faults, RangeWarning
 from gears.pair.gear_pair import GearPair
 from gears.pair.path import PathOfContact
+from gears.pair.spur_only import require_spur
 from gears.tooth.bisection import bisect
 from gears.tooth.errors import GeometryError
 from gears.tooth.material import Material
@@ -117,13 +118,14 @@ def loaded_teeth(pair: GearPair, path: PathOfContact) -> tuple[LoadedTooth, Load
     Raises
     ------
     GeometryError
-        If a point of the path is not on both involutes.
+        If a point of the path is not on both involutes, or the pair is helical.
 
     Warns
     -----
     RangeWarning
         For a gear on a web: the formulas know bodies as wide as the face.
     """
+    require_spur(pair, "closed forms of the deflection")
     webs = [
         f"the {name}'s body is taken as a disc, without its web of {profile.zones[1].thickness:.3g} face widths"
         for name, profile in zip(("pinion", "wheel"), pair.teeth_profiles, strict=True)

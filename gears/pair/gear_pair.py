@@ -1,4 +1,4 @@
-"""A pair of spur gears that is known to mesh."""
+"""A pair of spur or helical gears that is known to mesh."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from gears.pair.placement import Placement, place
 from gears.tooth.errors import GeometryError, GeometryWarning
 from gears.tooth.face import STRAIGHT
 from gears.tooth.gear import Gear
+from gears.tooth.helix import HELIX_ANGLE
 from gears.tooth.material import Material
 from gears.tooth.rack import BasicRack
 
@@ -22,6 +23,7 @@ LIMITS = {
     "module": Limit(1e-5, 1.0, "m", "give the module in metres (2 mm is 2e-3)"),
     "face_width": Limit(1e-6, 100.0, "m", "give the face width in metres (40 mm is 40e-3)"),
     "centre_distance": Limit.above(0.0, 1e4, "m", "give the distance of the axes in metres, or None"),
+    "helix_angle": HELIX_ANGLE,
 }
 """What the numbers of a pair itself may be."""
 
@@ -31,10 +33,14 @@ BACKLASH = Limit(0.0, 1.0, "m", "give the normal backlash in metres (50 um is 50
 
 @dataclass(frozen=True)
 class GearPair(PairGeometry):
-    """A pair of external spur gears cut by one basic rack.
+    """A pair of external spur or helical gears cut by one basic rack.
+
+    Module, pressure angle, rack, shifts and thickness allowances are those of the normal section (m_n, alpha_n, x_n,
+    A_sn), which is the only one of spur gears. Radii, `base_pitch`, `contact_ratio`, path of contact and tooth profiles
+    are those of the transverse section: m_t = m_n / cos beta, tan alpha_t = tan alpha_n / cos beta.
 
     Without `centre_distance` the gears mesh at the working pressure angle for which nominal teeth have no
-    backlash, inv alpha_w = 2 (x1 + x2) / (z1 + z2) tan alpha + inv alpha; with it, cos alpha_w =
+    backlash, inv alpha_wt = 2 (x1 + x2) / (z1 + z2) tan alpha_n + inv alpha_t; with it, cos alpha_wt =
     (r_b1 + r_b2) / a and the backlash follows. A centre distance that is short of that of no backlash by at most
     0.002 modules, as rounded data are, is taken for it. The path of contact ends where the involutes end (tip circle
     or start of the chamfer). Symbols of ISO 21771.
@@ -44,7 +50,7 @@ class GearPair(PairGeometry):
     pinion, wheel : Gear
         The gears; the pinion drives, anticlockwise.
     module : float
-        m [m].
+        m_n [m]; a drawing's m_t times cos beta.
     face_width : float
         b of the face in contact [m]; wider gears have a separate ``face_width``.
     rack : BasicRack
@@ -56,6 +62,11 @@ class GearPair(PairGeometry):
     tight : bool
         Whether teeth may be thicker than their gaps, by up to a tenth of the module: flanks on both sides then bear
         (``fem.mesh_cycle``). Otherwise such a pair is refused, since it jams.
+    helix_angle : float
+        beta on the reference cylinder [rad], at most 45 deg; positive where the pinion is right-handed, with a
+        left-handed wheel, negative where it is left-handed. A double helical gear is two such pairs, each half by
+        itself under half of the torque. 0 is a spur pair, to the last bit. Finite elements, films and motion refuse
+        helical pairs.
 
     Raises
     ------
@@ -68,7 +79,11 @@ class GearPair(PairGeometry):
     -----
     GeometryWarning
         Top land thinner than 0.2 modules; rim thinner than half the tooth depth; a centre distance that is short by
-        rounding, with the one that is used.
+        rounding, with the one that is used; a module that looks like the transverse one.
+
+    References
+    ----------
+    ISO 21771:2007, Gears - Cylindrical involute gears and gear pairs - Concepts and geometry.
 
     Examples
     --------
@@ -79,6 +94,11 @@ class GearPair(PairGeometry):
     5.904...
     >>> 1e6 * pair.with_backlash(50e-6).backlash
     50.0...
+    >>> helical = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3, helix_angle=math.radians(20.0))
+    >>> helical
+    GearPair(36:40 teeth, module 2 mm, helix angle 20 deg, ..., centre distance 80.87751 mm, contact ratio 1.56)
+    >>> round(helical.overlap_ratio, 5), round(1e3 * helical.base_pitch, 5)
+    (2.17737, 6.23506)
     """
 
     def __post_init__(self) -> None:
@@ -86,12 +106,12 @@ class GearPair(PairGeometry):
         findings = Findings()
         self._check_values(findings)
         wrong = [fault.where for fault in findings.found]
-        if not any(path == "module" or path.startswith("rack") for path in wrong):
+        if not any(path in ("module", "helix_angle") or path.startswith("rack") for path in wrong):
             width = None if "face_width" in wrong else self.face_width
             for name, gear in (("pinion", self.pinion), ("wheel", self.wheel)):
                 if not any(path.startswith(name) for path in wrong):
                     own = width if gear.face_width is None else gear.face_width
-                    check_gear(findings, name, gear, self.module, self.rack, own)
+                    check_gear(findings, name, gear, self.module, self.rack, own, self.helix_angle)
             faces = ("pinion", "wheel", "face_width", "face_offset")
             if width is not None and not any(path.endswith(faces) for path in wrong):
                 check_faces(findings, self)
@@ -125,8 +145,9 @@ class GearPair(PairGeometry):
 
     def __repr__(self) -> str:
         """One line: teeth, sizes and what follows from them."""
+        helix = f"helix angle {math.degrees(self.helix_angle):.6g} deg, " if self.helix_angle else ""
         return (
-            f"GearPair({self.pinion.teeth}:{self.wheel.teeth} teeth, module {1e3 * self.module:.6g} mm, "
+            f"GearPair({self.pinion.teeth}:{self.wheel.teeth} teeth, module {1e3 * self.module:.6g} mm, {helix}"
             f"face width {1e3 * self.face_width:.6g} mm, "
             f"centre distance {1e3 * self.working_centre_distance:.7g} mm, "
             f"contact ratio {self.contact_ratio:.4g})"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Faults, rounded_down, rounded_up
+from gears.pair.module_check import fitting_normal_module, transverse_module_warning
 from gears.tooth.errors import GeometryError
 from gears.tooth.gear import LIMITS, Gear
 from gears.tooth.involute import tangent_from_involute
@@ -49,7 +50,13 @@ class Findings(Faults):
 
 
 def check_gear(
-    findings: Findings, name: str, gear: Gear, module: float, rack: BasicRack, face_width: float | None = None
+    findings: Findings,
+    name: str,
+    gear: Gear,
+    module: float,
+    rack: BasicRack,
+    face_width: float | None = None,
+    helix_angle: float = 0.0,
 ) -> None:
     """Note faults and warnings of one generated gear.
 
@@ -66,12 +73,15 @@ def check_gear(
         Specification, free of value faults.
     face_width : float, optional
         Against which the web is checked [m]; it is not unless given.
+    helix_angle : float
+        On the reference cylinder [rad].
     """
     named = "profile_shift" if gear.generating_shift is None else "generating_shift"
     shift = f"{name}.{named}", f"{gear.cut_shift:g}"
-    root = module * (0.5 * gear.teeth - rack.h_fP + gear.cut_shift)
+    reference = 0.5 * gear.teeth / math.cos(helix_angle)  # in modules
+    root = module * (reference - rack.h_fP + gear.cut_shift)
     if root <= 0.0:
-        least = f"must be more than {rounded_up(rack.h_fP - 0.5 * gear.teeth, 4)}"
+        least = f"must be more than {rounded_up(rack.h_fP - reference, 4)}"
         findings.add(*shift, least, "the rack cuts through the axis: raise profile_shift or teeth")
         return
     depth = module * (rack.h_aP + rack.h_fP + gear.tip_alteration + gear.profile_shift - gear.cut_shift)
@@ -82,7 +92,7 @@ def check_gear(
     bore = 0.5 * root if gear.bore_radius is None else gear.bore_radius
     if gear.blank is not None:
         gear.blank.check(findings, f"{name}.blank", root, bore, module, face_width)
-    tooth = generate(gear, module, rack)
+    tooth = generate(gear, module, rack, helix_angle=helix_angle)
     if tooth is not None and tooth.flank_end_radius > tooth.form_radius * (1.0 + ROUNDING):
         _check_tooth(findings, name, gear, tooth, rack)
         _check_rim(findings, name, root, tooth.bore_radius, module, tooth.tip_radius - root)
@@ -103,7 +113,8 @@ def _neck(tooth: ToothProfile) -> float:
 def _check_tooth(findings: Findings, name: str, gear: Gear, tooth: ToothProfile, rack: BasicRack) -> None:
     """Neck, tip and relief of a tooth that has a flank."""
     if _neck(tooth) <= 0.0:
-        whole = generate(dataclasses.replace(gear, thickness_allowance=0.0), tooth.module, rack)
+        unthinned = dataclasses.replace(gear, thickness_allowance=0.0)
+        whole = generate(unthinned, tooth.module, rack, helix_angle=tooth.fillet_curve.helix_angle)
         thinned = gear.thickness_allowance > 0.0 and whole is not None and _neck(whole) > 0.0
         cause = "thickness_allowance" if thinned else "profile_shift"
         remedy = "the fillets of the two sides meet in the tooth: "
@@ -198,7 +209,7 @@ def check_mesh(findings: Findings, pair: PairGeometry) -> None:
     bases = sum(pair.base_radii)
     if pair.centre_distance is not None and pair.centre_distance <= bases:
         allowed = f"must be more than the sum of the base radii, {rounded_up(bases)} m"
-        remedy = "there is no line of action: move the axes apart"
+        remedy = "there is no line of action: move the axes apart" + fitting_normal_module(pair)
         findings.add("centre_distance", f"{pair.centre_distance:g}", allowed, remedy)
         return
     if pair.centre_distance is None and pair._working_involute <= 0.0:
@@ -206,14 +217,16 @@ def check_mesh(findings: Findings, pair: PairGeometry) -> None:
         remedy = "no working pressure angle exists: raise a profile shift, or give centre_distance"
         findings.add("pinion.profile_shift + wheel.profile_shift", value, "must be larger", remedy)
         return
+    if (remark := transverse_module_warning(pair)) is not None:
+        findings.warnings.append(remark)
     rounding = ROUNDING * pair.module
     if pair.backlash < (-TIGHTEST * pair.module if pair.tight else -rounding):
         _add_jam(findings, pair)
-    if not pair.contact_ratio >= 1.0:
+    if not pair.total_contact_ratio >= 1.0:
         remedy = (
             "the next pair comes too late: lengthen the teeth by tip_alteration, or bring the axes closer"
         )
-        findings.add("contact_ratio", f"{pair.contact_ratio:.6g}", "must be at least 1", remedy)
+        findings.add("contact_ratio", f"{pair.total_contact_ratio:.6g}", "must be at least 1", remedy)
     first, second = pair.teeth_profiles
     # each gear with its mate, and its curvature radius where contact comes nearest to its root
     meshing = (
@@ -244,6 +257,7 @@ def _add_jam(findings: Findings, pair: PairGeometry) -> None:
     remedy += "thickness_allowance in all"
     if not pair.tight and pair.backlash >= -TIGHTEST * pair.module:
         remedy += ", or let both sides of the teeth bear: tight = true"
+    remedy += fitting_normal_module(pair)
     allowed = f"must be at least {rounded_up(least)} m"
     findings.add("centre_distance", f"{pair.working_centre_distance:.6g}", allowed, remedy)
 

@@ -1,4 +1,4 @@
-"""What follows from the sizes of a pair of spur gears: radii, angles, path of contact, backlash, inertia."""
+"""What follows from the sizes of a pair of gears: radii, angles, path of contact, backlash, forces, inertia."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from base.results import EXACT
 from gears.pair.path import PathOfContact, PathPoints
 from gears.tooth.errors import GeometryError
 from gears.tooth.gear import Gear
+from gears.tooth.helix import Helix
 from gears.tooth.involute import involute_function, tangent_from_involute
 from gears.tooth.material import STEEL, Material, reduced_modulus
 from gears.tooth.profile import ToothProfile, generate
@@ -47,6 +48,12 @@ class PairGeometry:
     material: Material | tuple[Material, Material] = STEEL
     centre_distance: float | None = None  # a, m
     tight: bool = False
+    helix_angle: float = 0.0  # beta, rad
+
+    @cached_property
+    def helix(self) -> Helix:
+        """Helix angles and pressure angles of the normal and of the transverse section."""
+        return Helix(self.helix_angle, self.rack.alpha)
 
     @cached_property
     def materials(self) -> tuple[Material, Material]:
@@ -71,15 +78,15 @@ class PairGeometry:
     def teeth_profiles(self) -> tuple[ToothProfile, ToothProfile]:
         """Generated teeth of pinion and wheel."""
         first, second = (
-            generate(gear, self.module, self.rack, width)
+            generate(gear, self.module, self.rack, width, self.helix_angle)
             for gear, width in zip((self.pinion, self.wheel), self.face_widths, strict=True)
         )
         assert first is not None
         assert second is not None
         return first, second
 
-    reference_radii = _of_both("reference_radius", "Reference radius, r = m z / 2.")
-    base_radii = _of_both("base_radius", "Base radius, r_b = r cos alpha.")
+    reference_radii = _of_both("reference_radius", "Reference radius, r = m_n z / (2 cos beta).")
+    base_radii = _of_both("base_radius", "Base radius, r_b = r cos alpha_t.")
     root_radii = _of_both("root_radius", "Root radius, r_f = r - m (h_fP - x).")
     tip_radii = _of_both("tip_radius", "Tip radius, r_a = r + m (h_aP + x + k).")
     form_radii = _of_both("form_radius", "Form radius, at which the involute starts.")
@@ -116,9 +123,9 @@ class PairGeometry:
     def _working_involute(self) -> float:
         """Involute function of alpha_w of a pair whose nominal teeth have no backlash [rad]."""
         shifts = self.pinion.profile_shift + self.wheel.profile_shift
-        tangent = math.tan(self.rack.alpha)
         teeth = self.pinion.teeth + self.wheel.teeth
-        return 2.0 * shifts / teeth * tangent + float(involute_function(tangent))
+        transverse = float(involute_function(self.helix.transverse_tangent))
+        return 2.0 * shifts / teeth * math.tan(self.rack.alpha) + transverse
 
     @described("rad", shown="deg")
     def working_pressure_angle(self) -> float:
@@ -146,8 +153,23 @@ class PairGeometry:
 
     @described("m", shown="mm")
     def base_pitch(self) -> float:
-        """Base pitch, p_b = pi m cos alpha."""
-        return math.pi * self.module * math.cos(self.rack.alpha)
+        """Transverse base pitch, p_bt = pi m_n cos alpha_n / cos beta_b."""
+        return math.pi * self.module * math.cos(self.rack.alpha) / self.helix.base_cosine
+
+    @property
+    def transverse_module(self) -> float:
+        """Transverse module, m_t = m_n / cos beta [m]."""
+        return self.module / self.helix.cosine
+
+    @property
+    def transverse_pressure_angle(self) -> float:
+        """Transverse pressure angle, tan alpha_t = tan alpha_n / cos beta [rad]."""
+        return self.helix.transverse_pressure_angle
+
+    @property
+    def base_helix_angle(self) -> float:
+        """Helix angle on the base cylinder, sin beta_b = sin beta cos alpha_n [rad]; its sign is the hand."""
+        return self.helix.base_angle
 
     @cached_property
     def points(self) -> PathPoints:
@@ -163,14 +185,29 @@ class PairGeometry:
         """Transverse contact ratio, length of the path over the base pitch."""
         return (self.points.E - self.points.A) / self.base_pitch
 
+    @property
+    def overlap_ratio(self) -> float:
+        """Overlap ratio, eps_beta = b sin beta / (pi m_n) = b tan beta_b / p_bt."""
+        return self.face_width * abs(self.helix.base_tangent) / self.base_pitch
+
+    @property
+    def total_contact_ratio(self) -> float:
+        """Total contact ratio, eps_gamma = eps_alpha + eps_beta."""
+        return self.contact_ratio + self.overlap_ratio
+
     @described("m", shown="um", kept=True)
     def backlash(self) -> float:
         """Normal backlash, along the line of action.
 
-        j_bn = m cos alpha [(z1 + z2) (inv alpha_w - inv alpha) - 2 (x1 + x2) tan alpha] + (A1 + A2) cos alpha, with
-        the shifts at which the gears are cut. What rounding leaves of none is 0.
+        j_bn = m_n cos alpha_n [(z1 + z2) (inv alpha_wt - inv alpha_t) - 2 (x1 + x2) tan alpha_n]
+        + (A1 + A2) cos alpha_n, with the shifts at which the gears are cut. What rounding leaves of none is 0.
         """
         return self._rounded(self._least_backlash + self._allowed_backlash)
+
+    @property
+    def transverse_backlash(self) -> float:
+        """Backlash as an arc of the working pitch circles, j_wt = j_bn / (cos alpha_wt cos beta_b) [m]."""
+        return self.backlash * math.hypot(1.0, self._working_tangent) / self.helix.base_cosine
 
     def _rounded(self, backlash: float) -> float:
         """Backlash [m], 0 where it is what rounding leaves of none."""
@@ -198,19 +235,21 @@ class PairGeometry:
         """Normal backlash of nominal teeth at the given centre distance [m]."""
         if self.centre_distance is None:
             return 0.0
-        tangent = math.tan(self.rack.alpha)
-        spread = float(involute_function(self._working_tangent) - involute_function(tangent))
+        transverse = involute_function(self.helix.transverse_tangent)
+        spread = float(involute_function(self._working_tangent) - transverse)
         shifts = self.pinion.profile_shift + self.wheel.profile_shift
         teeth = self.pinion.teeth + self.wheel.teeth
-        return self.module * math.cos(self.rack.alpha) * (teeth * spread - 2.0 * shifts * tangent)
+        excess = teeth * spread - 2.0 * shifts * math.tan(self.rack.alpha)
+        return self.module * math.cos(self.rack.alpha) * excess
 
     def centre_distance_of_backlash(self, backlash: float) -> float:
         """Centre distance at which these teeth have a normal backlash [m], both in metres.
 
-        inv alpha_w grows by (j - j_0)/(2 (r_b1 + r_b2)) from that of no backlash.
+        inv alpha_wt grows by (j - j_0)/(2 (r_b1 + r_b2) cos beta_b) from that of no backlash.
         """
         bases = sum(self.base_radii)
         more = (backlash - self._allowed_backlash - self._cut_backlash) / (2.0 * bases)
+        more /= self.helix.base_cosine
         involute = max(self._working_involute + more, 1e-300)
         return bases * math.hypot(1.0, tangent_from_involute(involute))
 
@@ -220,8 +259,31 @@ class PairGeometry:
         return reduced_modulus(*self.materials)
 
     def normal_force(self, torque: float) -> float:
-        """Return the normal force T / r_b1 [N] of a pinion torque T [N m]."""
-        return torque / self.base_radii[0]
+        """Return the normal force F_bn = T / (r_b1 cos beta_b) [N] of a pinion torque T [N m]."""
+        return torque / self.base_radii[0] / self.helix.base_cosine
+
+    def tangential_force(self, torque: float) -> float:
+        """Return the tangential force F_t = T / r_1 [N] at the reference cylinders, of a pinion torque T [N m]."""
+        return torque / self.reference_radii[0]
+
+    def radial_force(self, torque: float) -> float:
+        """Return the radial force F_t tan alpha_t [N] at the reference cylinders, of a pinion torque T [N m]."""
+        return self.tangential_force(torque) * self.helix.transverse_tangent
+
+    def axial_force(self, torque: float) -> float:
+        """Axial force on the pinion, T tan beta_b / r_b1 = F_t tan beta; the wheel has the opposite.
+
+        Parameters
+        ----------
+        torque : float
+            T of the driving pinion [N m].
+
+        Returns
+        -------
+        float
+            [N], positive along the axis about which the pinion turns anticlockwise: that of a right-handed driver.
+        """
+        return torque / self.base_radii[0] * self.helix.base_tangent
 
     @property
     def moments_of_inertia(self) -> tuple[float, float]:

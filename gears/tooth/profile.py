@@ -10,6 +10,7 @@ import numpy as np
 from base import Array
 from gears.tooth.blank import Zone
 from gears.tooth.gear import Gear, TipRelief
+from gears.tooth.helix import Helix
 from gears.tooth.involute import involute_function
 from gears.tooth.rack import BasicRack
 from gears.tooth.rotation import polar
@@ -32,7 +33,7 @@ class ToothProfile:
     teeth : int
         z.
     module : float
-        m [m].
+        m_n, of the normal section [m]; all else belongs to the transverse section.
     reference_radius, base_radius, root_radius, form_radius, flank_end_radius, tip_radius, bore_radius : float
         Radii [m]. The involute runs from the form circle to the end of the flank, which is the tip circle or
         the start of the chamfer.
@@ -262,24 +263,28 @@ class ToothProfile:
 
 
 def generate(
-    gear: Gear, module: float, rack: BasicRack, face_width: float | None = None
+    gear: Gear, module: float, rack: BasicRack, face_width: float | None = None, helix_angle: float = 0.0
 ) -> ToothProfile | None:
-    """Generate the tooth that the rack cuts.
+    """Generate the tooth that the rack cuts, in the transverse section.
 
-    The thickness allowance displaces each generating flank sideways by half its amount: flank and fillet turn
-    towards the centre line of the tooth by A / (2 r), root and tip circles stay. A generating shift moves the rack,
-    so flank, fillet and root circle; the tip circle stays.
+    Module, rack, shifts and thickness allowance belong to the normal section: r = z m_n/(2 cos beta),
+    r_b = r cos alpha_t, psi_b = (pi/2 + 2 x tan alpha_n)/z + inv alpha_t; heights keep m_n. The thickness allowance
+    displaces each generating flank sideways by half its amount: flank and fillet turn towards the centre line of the
+    tooth by A / (2 r cos beta), root and tip circles stay. A generating shift moves the rack, so flank, fillet and root
+    circle; the tip circle stays.
 
     Parameters
     ----------
     gear : Gear
         The specification, free of value faults.
     module : float
-        m [m].
+        m_n [m].
     rack : BasicRack
         The generating profile.
     face_width : float, optional
         b, to which the web's thickness is referred [m]; the body is a disc unless given.
+    helix_angle : float
+        beta on the reference cylinder [rad].
 
     Returns
     -------
@@ -287,17 +292,18 @@ def generate(
         The tooth; None if undercut leaves no involute. A pointed tooth is returned with a `tip_half_angle`
         that is not positive.
     """
-    radius = 0.5 * gear.teeth * module
-    base = radius * math.cos(rack.alpha)
-    shift, tangent = gear.cut_shift, math.tan(rack.alpha)
-    thinning = 0.5 * gear.thickness_allowance / radius
-    half = (0.5 * math.pi + 2.0 * shift * tangent) / gear.teeth - thinning
-    base_half_angle = half + float(involute_function(tangent))
+    helix = Helix(helix_angle, rack.alpha)
+    radius = 0.5 * gear.teeth * module / helix.cosine
+    base = radius * helix.transverse_cosine
+    shift = gear.cut_shift
+    thinning = 0.5 * gear.thickness_allowance / radius / helix.cosine
+    half = (0.5 * math.pi + 2.0 * shift * math.tan(rack.alpha)) / gear.teeth - thinning
+    base_half_angle = half + float(involute_function(helix.transverse_tangent))
     depth = module * (rack.h_fP - rack.fillet_radius - shift)
     arc = module * rack.fillet_radius
-    foot = math.pi / gear.teeth - module * rack.tip_centre_offset / radius - thinning
-    trochoid = Trochoid(radius, depth, arc, foot, 0.5 * math.pi - rack.alpha)
-    meeting = form_point(trochoid, base, base_half_angle, rack.alpha)
+    foot = math.pi / gear.teeth - module * rack.tip_centre_offset / radius / helix.cosine - thinning
+    trochoid = Trochoid(radius, depth, arc, foot, 0.5 * math.pi - rack.alpha, helix_angle)
+    meeting = form_point(trochoid, base, base_half_angle, helix)
     if meeting is None:
         return None
     end, rho_form, undercut = meeting
@@ -315,7 +321,7 @@ def generate(
         tip_radius=tip,
         bore_radius=0.5 * root if gear.bore_radius is None else float(gear.bore_radius),
         base_half_angle=base_half_angle,
-        fillet_curve=Trochoid(radius, depth, arc, foot, end),
+        fillet_curve=Trochoid(radius, depth, arc, foot, end, helix_angle),
         tip_half_angle=_top_land(base, base_half_angle, flank_end, tip),
         undercut=undercut,
         tip_relief=gear.tip_relief,

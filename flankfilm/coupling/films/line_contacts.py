@@ -7,6 +7,7 @@ from dataclasses import replace
 import ehl
 import gears
 from base import Array
+from gears.pair.spur_only import require_spur
 
 __all__ = ["line_contacts", "with_sliding"]
 
@@ -26,7 +27,13 @@ def line_contacts(
     speed : float
         Of the pinion [rad/s].
     lubricant : ehl.Lubricant
+
+    Raises
+    ------
+    gears.GeometryError
+        Of helical pairs, whose radii are those of the section over cos(beta_b).
     """
+    require_spur(pair, "films")
     path = pair.path_at(rho1)
     columns = load, path.entrainment(speed), path.radius
     return tuple(

@@ -15,6 +15,7 @@ from flankfilm.coupling.mesh.references import MEANINGS
 from flankfilm.coupling.mesh.require_converged import believed
 from flankfilm.coupling.mesh.sharing_pairs import SharingPairs
 from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS, MODELS
+from gears.pair.spur_only import check_spur
 
 POSITIONS = 120
 """Positions of curves; figures follow from arcs, whatever the positions."""
@@ -77,7 +78,8 @@ class LoadedTeeth:
     def __post_init__(self) -> None:
         """Check what is given, and the names of the models."""
         with Faults() as faults:
-            faults.instance("pair", self.pair, gears.GearPair)
+            if faults.instance("pair", self.pair, gears.GearPair):
+                check_spur(faults, self.pair, "loaded teeth")
             faults.number("torque", self.torque, Limit(unit="N m", remedy="give the pinion's torque"))
             faults.instance(
                 "compliance", self.compliance, fem.PairCompliance, "as of fem.compliance", optional=True

@@ -18,6 +18,7 @@ from flankfilm.coupling.mesh.references import MEANINGS
 from flankfilm.coupling.vibration.excitation import peak_to_peak
 from flankfilm.coupling.vibration.part_loads import DriveOutput
 from flankfilm.coupling.vibration.series import MOST_HARMONICS, MeshSeries, mesh_series
+from gears.pair.spur_only import require_spur
 
 MEAN_FORCE = 0.1
 """Dimensionless mean force that the length scale is chosen for, unless that is given."""
@@ -319,6 +320,11 @@ def pair_scales(
 ) -> dynamics.Scaling:
     """Scales of a pair's oscillator for a mean stiffness [N/m]; arguments as of `pair_oscillator`.
 
+    Raises
+    ------
+    gears.GeometryError
+        Of helical pairs, which move along their axes too.
+
     Examples
     --------
     >>> from gears import Gear, GearPair
@@ -326,6 +332,7 @@ def pair_scales(
     >>> 6e3 < pair_scales(pair, 600.0, 8e8).natural_frequency < 8e3
     True
     """
+    require_spur(pair, "motion")
     return dynamics.Scaling.from_inertias(
         inertias=pair_inertias(pair, extra_inertia),
         base_radii=pair.base_radii,
