@@ -16,6 +16,8 @@ from .root_stress import iso6336_3 as iso6336_3
 from .sainsot import sainsot_body as sainsot_body
 from .tooth_stiffness import Iso6336Stiffness as Iso6336Stiffness
 from .tooth_stiffness import iso6336 as iso6336
+from .transverse_load import Iso6336TransverseLoad as Iso6336TransverseLoad
+from .transverse_load import iso6336_transverse_load as iso6336_transverse_load
 from .trapezoid import ishikawa as ishikawa
 from .wind_up import body_wind_up as body_wind_up
 from .wind_up import inertial_share as inertial_share

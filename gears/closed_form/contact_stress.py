@@ -20,7 +20,13 @@ LARGEST_RATIO = 4.0
 
 @record
 class Iso6336ContactStress:
-    """Nominal contact stress of both gears after ISO 6336-2."""
+    """Nominal contact stress of both gears after ISO 6336-2.
+
+    Attributes
+    ----------
+    Z_beta : float
+        Helix angle factor, 1 of spur gears.
+    """
 
     Z_H: float = quantity("1", "zone factor Z_H")
     Z_E: float = quantity("Pa^0.5", "elasticity factor Z_E", shown="MPa^0.5")
@@ -37,6 +43,8 @@ class Iso6336ContactStress:
         shown="MPa",
     )
 
+    Z_beta: float = 1.0
+
     no_error = STANDARD
     headline = ("stresses", "Z_H", "Z_E", "Z_eps", "Z_B", "Z_D")
 
@@ -52,26 +60,27 @@ class Iso6336ContactStress:
 
 
 def iso6336_2(pair: GearPair, force: float) -> Iso6336ContactStress:
-    """Nominal contact stress of a spur pair after ISO 6336-2, method B.
+    """Nominal contact stress of a pair after ISO 6336-2, method B.
 
-    sigma_H0 = Z_H Z_E Z_eps sqrt(F_t/(d_1 b) (u + 1)/u), F_t = F cos(alpha) at the reference circle (Z_beta = 1 for
-    spur gears; the factors K of part 1 are left to the user), with
+    sigma_H0 = Z_H Z_E Z_eps Z_beta sqrt(F_t/(d_1 b) (u + 1)/u), F_t = F cos(alpha_n) cos(beta) at the reference circle
+    (the factors K of part 1 are left to the user), with e = min(epsilon_beta, 1) and
 
-        Z_H = sqrt(2/(cos^2(alpha) tan(alpha_w)))
+        Z_H = sqrt(2 cos(beta_b)/(cos^2(alpha_t) tan(alpha_wt)))
         Z_E = sqrt(1/(pi [(1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2]))
-        Z_eps = sqrt((4 - epsilon_alpha)/3)
+        Z_eps = sqrt((4 - epsilon_alpha)/3 (1 - e) + e/epsilon_alpha),  Z_beta = 1/sqrt(cos(beta))
         M_1 = sqrt(rho_C1 rho_C2/(rho_B1 rho_B2)),  M_2 = sqrt(rho_C1 rho_C2/(rho_D1 rho_D2))
-        Z_B = max(1, M_1),  Z_D = max(1, M_2)
+        Z_B = max(1, M_1 (1 - e) + e),  Z_D = max(1, M_2 (1 - e) + e)
 
     Z_H Z_E sqrt(...) is the Hertz pressure of the whole force at C; M_1 and M_2, here by curvature radii, take it to
-    the inner points of single pair contact, and Z_eps lessens it for the second pair.
+    the inner points of single pair contact, and Z_eps lessens it for the second pair, or for the mean length of the
+    lines of contact. Editions before 2006 had Z_beta = sqrt(cos(beta)).
 
     Parameters
     ----------
     pair : GearPair
         The gears; u = z2/z1 and d_1 of either order give the same stress.
     force : float
-        Normal force F along the line of action [N].
+        Normal force F, `GearPair.normal_force` of the torque [N].
 
     Returns
     -------
@@ -109,14 +118,25 @@ def iso6336_2(pair: GearPair, force: float) -> Iso6336ContactStress:
     if ratio >= SHARED:
         said = f"ISO 6336-2: contact ratio {ratio:.3f} is not below {SHARED:g}: no pair bears alone"
         warnings.warn(said, RangeWarning, stacklevel=2)
-    alpha, points = pair.rack.alpha, pair.points
-    Z_H = math.sqrt(2.0 / (math.cos(alpha) ** 2 * math.tan(pair.working_pressure_angle)))
+    helix, points, overlap = pair.helix, pair.points, min(pair.overlap_ratio, 1.0)
+    working = math.tan(pair.working_pressure_angle)
+    Z_H = math.sqrt(2.0 * helix.base_cosine / (helix.transverse_cosine**2 * working))
     Z_E = math.sqrt(pair.reduced_modulus / (2.0 * math.pi))
-    Z_eps = math.sqrt((LARGEST_RATIO - ratio) / 3.0)
-    load = force * math.cos(alpha) / (2.0 * pair.reference_radii[0] * pair.face_width)
-    nominal = Z_H * Z_E * Z_eps * math.sqrt(load * (pair.ratio + 1.0) / pair.ratio)
-    Z_B, Z_D = (max(1.0, _over_pitch_point(pair, rho1)) for rho1 in (points.B, points.D))
-    return Iso6336ContactStress(Z_H, Z_E, Z_eps, Z_B, Z_D, (nominal, nominal), (Z_B * nominal, Z_D * nominal))
+    Z_eps = math.sqrt((LARGEST_RATIO - ratio) / 3.0 * (1.0 - overlap) + overlap / ratio)
+    tangential = force * math.cos(pair.rack.alpha) * helix.cosine
+    load = tangential / (2.0 * pair.reference_radii[0] * pair.face_width)
+    Z_beta = 1.0 / math.sqrt(helix.cosine)
+    nominal = Z_H * Z_E * Z_eps * Z_beta * math.sqrt(load * (pair.ratio + 1.0) / pair.ratio)
+    Z_B, Z_D = (_inner_factor(pair, rho1, overlap) for rho1 in (points.B, points.D))
+    single = Z_B * nominal, Z_D * nominal
+    return Iso6336ContactStress(Z_H, Z_E, Z_eps, Z_B, Z_D, (nominal, nominal), single, Z_beta)
+
+
+def _inner_factor(pair: GearPair, rho1: float, overlap: float) -> float:
+    """Z_B or Z_D at an inner point of single pair contact; 1 from an overlap ratio of 1 on, where none bears alone."""
+    if overlap >= 1.0:
+        return 1.0
+    return max(1.0, _over_pitch_point(pair, rho1) * (1.0 - overlap) + overlap)
 
 
 def _over_pitch_point(pair: GearPair, rho1: float) -> float:

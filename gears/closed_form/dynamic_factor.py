@@ -51,11 +51,12 @@ def iso6336_dynamic(
     profile_deviation: float = 0.0,
     relief: float = 0.0,
 ) -> Iso6336DynamicFactor:
-    r"""Dynamic factor of a spur pair of solid discs after ISO 6336-1, method B.
+    r"""Dynamic factor of a pair of solid discs after ISO 6336-1, method B.
 
     With :math:`N = z_1\Omega_1/\sqrt{c_\gamma b/m}` and the load per width w, B_p = c' f_pb/w, B_f = c' f_fa/w,
     B_k = \|1 - c' C_a/w\|: up to N_S K_v = N (C_v1 B_p + C_v2 B_f + C_v3 B_k) + 1; up to 1.15
-    C_v1 B_p + C_v2 B_f + C_v4 B_k + 1; from 1.5 C_v5 B_p + C_v6 B_f + C_v7; linear between.
+    C_v1 B_p + C_v2 B_f + C_v4 B_k + 1; from 1.5 C_v5 B_p + C_v6 B_f + C_v7; linear between. The C_v are those of the
+    total contact ratio.
 
     Parameters
     ----------
@@ -95,7 +96,7 @@ def iso6336_dynamic(
     array([..., ...])
     """
     omega = np.asarray(speed, dtype=np.float64)
-    ratio = pair.contact_ratio
+    ratio = pair.total_contact_ratio
     with Faults(GeometryError) as faults:
         faults.numbers(_LIMITS, (force, reduced_mass, pitch_deviation, profile_deviation, relief))
         if not (np.all(np.isfinite(omega)) and np.all(omega >= 0.0)):
@@ -103,7 +104,7 @@ def iso6336_dynamic(
         if not ratio > 1.0:
             faults.add("pair", f"{ratio:g}", "must have a contact ratio above 1", "method B requires it")
     stiffness = iso6336(pair, force)
-    tangential = force * math.cos(pair.rack.alpha) / pair.face_width  # N/m
+    tangential = force * math.cos(pair.rack.alpha) * pair.helix.cosine / pair.face_width  # N/m
     load = tangential / 1e3  # N/mm
     limit = 0.85 if load >= 100.0 else 0.5 + 0.35 * math.sqrt(load / 100.0)
     resonance = math.sqrt(stiffness.mesh_stiffness / reduced_mass) / pair.pinion.teeth

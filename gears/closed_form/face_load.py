@@ -11,9 +11,6 @@ from gears.closed_form.tooth_stiffness import iso6336
 from gears.pair.gear_pair import GearPair
 from gears.tooth.errors import GeometryError
 
-FACE_STIFFNESS = 0.85
-"""c_gamma_beta over c_gamma_alpha."""
-
 LEAST_DEPTHS = 3.0
 """Smallest face width over tooth depth that enters the exponent of the root stress."""
 
@@ -89,9 +86,8 @@ def iso6336_face_load(pair: GearPair, torque: float, misalignment: float) -> Iso
     with Faults(GeometryError) as faults:
         faults.number("torque", torque, _LIMITS["torque"])
         faults.number("misalignment", misalignment, _LIMITS["misalignment"])
-    radius = 0.5 * pair.module * pair.pinion.teeth
-    line_load = torque / radius / pair.face_width
-    stiffness = FACE_STIFFNESS * iso6336(pair).c_gamma
+    line_load = torque / pair.reference_radii[0] / pair.face_width
+    stiffness = iso6336(pair).c_gamma_beta
     opened = misalignment * stiffness * factor("N/(mm um)") / line_load
     K = 1.0 + 0.5 * opened if opened <= 2.0 else math.sqrt(2.0 * opened)
     bears = math.inf if opened == 0.0 else 0.5 + 1.0 / opened if opened <= 2.0 else math.sqrt(2.0 / opened)

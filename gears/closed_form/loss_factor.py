@@ -12,8 +12,8 @@ from gears.tooth.errors import GeometryError
 def ohlendorf_loss_factor(pair: GearPair) -> float:
     """Tooth loss factor H_V by which power in, friction and power lost by sliding go together, P_V = mu P H_V.
 
-    ``H_V = pi (1/z1 + 1/z2) (1 - eps_alpha + eps_1^2 + eps_2^2)``, eps_1 and eps_2 the parts of the contact ratio
-    after and before C: two pairs share the force evenly, one carries it alone, mu is the same everywhere.
+    ``H_V = pi (1/z1 + 1/z2)/cos(beta_b) (1 - eps_alpha + eps_1^2 + eps_2^2)``, eps_1 and eps_2 the parts of the
+    contact ratio after and before C: two pairs share the force evenly, one carries it alone, mu is the same everywhere.
 
     Range: contact ratio below 2, with C where one pair carries.
 
@@ -47,4 +47,5 @@ def ohlendorf_loss_factor(pair: GearPair) -> float:
             remedy = "take the loss factor of a computed load share"
             faults.add("contact ratio", parts, allowed, remedy)
     teeth = 1.0 / pair.pinion.teeth + 1.0 / pair.wheel.teeth
-    return math.pi * teeth * (1.0 - after - before + after**2 + before**2)
+    shared = 1.0 - after - before + after**2 + before**2
+    return math.pi * teeth * shared / pair.helix.base_cosine

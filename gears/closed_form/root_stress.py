@@ -7,6 +7,7 @@ import warnings
 
 from base import Faults, RangeWarning, described, part, quantity, record
 from gears.closed_form.record import STANDARD
+from gears.closed_form.virtual_gear import VirtualGear, virtual_gear
 from gears.pair.gear_pair import GearPair
 from gears.pair.hertz import NORMAL_FORCE
 from gears.tooth.errors import GeometryError
@@ -18,6 +19,9 @@ _SLOPE = math.pi / 3.0
 """The critical section touches the fillets at 30 degrees to the tooth's centre line: T = pi/2 - pi/6."""
 
 _ITERATIONS = 60
+
+STEEPEST = 30.0
+"""Helix angle up to which Y_beta falls [deg]."""
 
 THIN_RIM = 1.2
 """Rim thickness over tooth depth below which a rim's own bending raises the root stress."""
@@ -46,12 +50,19 @@ class RootSection:
 
 @record
 class Iso6336RootStress:
-    """Nominal tooth-root stress sigma_F0 of both gears after ISO 6336-3."""
+    """Nominal tooth-root stress sigma_F0 of both gears after ISO 6336-3.
+
+    Attributes
+    ----------
+    Y_beta : float
+        Helix angle factor, 1 of spur gears.
+    """
 
     sections: tuple[RootSection, RootSection] = part("tooth form of pinion and wheel, with Y_F and Y_S")
     Y_B: tuple[float, float] = quantity("1", "rim-thickness factors", "gear")
     stresses: tuple[float, float] = quantity("Pa", "tooth-root stress sigma_F0", "gear", shown="MPa")
     load_at: str = quantity("", "where the load was taken to act, D or tip")
+    Y_beta: float = 1.0
 
     no_error = STANDARD
 
@@ -68,31 +79,33 @@ class Iso6336RootStress:
 
 
 def iso6336_3(pair: GearPair, force: float, load_at: str = "D") -> Iso6336RootStress:
-    """Nominal tooth-root stress of a spur pair after ISO 6336-3, method B.
+    """Nominal tooth-root stress of a pair after ISO 6336-3:2006, method B.
 
-    sigma_F0 = F_t/(b m) Y_F Y_S Y_B with F_t = F cos(alpha) at the reference circle (Y_beta = 1 for spur
-    gears; the factors K of part 1 are left to the user). Lengths in modules, T = pi/3, rho the tip radius of
-    the rack:
+    sigma_F0 = F_t/(b m_n) Y_F Y_S Y_beta Y_B with F_t = F cos(alpha_n) cos(beta) at the reference circle (the factors K
+    of part 1 are left to the user). Lengths in normal modules, T = pi/3, rho the tip radius of the rack, z = z_n the
+    teeth of the virtual gear:
 
-        E = pi/4 - h_fP tan(alpha) - (1 - sin(alpha)) rho/cos(alpha)
+        E = pi/4 - h_fP tan(alpha_n) - (1 - sin(alpha_n)) rho/cos(alpha_n)
         G = rho - h_fP + x,  H = 2/z (pi/2 - E) - T,  theta = 2 G/z tan(theta) - H
         s_Fn = z sin(T - theta) + sqrt(3) (G/cos(theta) - rho)
         rho_F = rho + 2 G^2/[cos(theta) (z cos^2(theta) - 2 G)]
-        h_Fe = [(cos(gamma_e) - sin(gamma_e) tan(alpha_Fen)) d_e - z cos(T - theta) - G/cos(theta) + rho]/2
-        Y_F = 6 h_Fe cos(alpha_Fen)/(s_Fn^2 cos(alpha))
+        h_Fe = [(cos(gamma_e) - sin(gamma_e) tan(alpha_Fen)) d_en - z cos(T - theta) - G/cos(theta) + rho]/2
+        Y_F = 6 h_Fe cos(alpha_Fen)/(s_Fn^2 cos(alpha_n))
         Y_S = (1.2 + 0.13 L) q_s^(1/(1.21 + 2.3/L)),  L = s_Fn/h_Fe,  q_s = s_Fn/(2 rho_F)
+        Y_beta = 1 - min(epsilon_beta, 1) min(beta, 30 deg)/120 deg
         Y_B = 1.6 ln(2.242 h_t/s_R) for a rim s_R below 1.2 tooth depths h_t, else 1; s_R is that of the blank, and
         reaches from the root circle to the bore in a disc
 
-    A thickness allowance A is taken into the geometry: E + A/(2 m), and the tooth's half angle less A/(2 r). x is the
-    shift at which the gear is cut.
+    The virtual gear has d_n = d/cos^2(beta_b), d_an = d_n + d_a - d and the load at the outer point of single contact
+    of epsilon_alpha/cos^2(beta_b). A thickness allowance A is taken into the geometry: E + A/(2 m_n), and the tooth's
+    half angle less A/(2 r_n). x is the shift at which the gear is cut.
 
     Parameters
     ----------
     pair : GearPair
         The gears.
     force : float
-        Normal force F along the line of action [N].
+        Normal force F, `GearPair.normal_force` of the torque [N].
     load_at : {"D", "tip"}
         The outer point of single pair contact, as the standard has it, or the tip (Y_Fa and Y_Sa of tables).
 
@@ -129,46 +142,64 @@ def iso6336_3(pair: GearPair, force: float, load_at: str = "D") -> Iso6336RootSt
     with Faults(GeometryError) as faults:
         faults.number("force", force, NORMAL_FORCE)
         faults.choice("load_at", load_at, ("D", "tip"), "'D' is the standard's method B")
-    points = pair.points
-    ends = [profile.flank_rho[1] for profile in pair.teeth_profiles]
-    outer = ends if load_at == "tip" else [points.D, pair.line_of_action - points.B]
+    points, helix = pair.points, pair.helix
+    outer = points.D, pair.line_of_action - points.B
     sections, rims, outside = [], [], []
     for name, profile, gear, rho in zip(
         ("pinion", "wheel"), pair.teeth_profiles, (pair.pinion, pair.wheel), outer, strict=True
     ):
-        section = root_section(name, profile, pair.rack, gear.cut_shift, min(rho, profile.flank_rho[1]))
+        virtual = virtual_gear(profile, helix)
+        tip = virtual.tip_rho
+        load = tip if load_at == "tip" else min(virtual.load_rho(profile, rho, pair.base_pitch), tip)
+        section = root_section(name, profile, pair.rack, gear.cut_shift, load, virtual)
         sections.append(section)
         rims.append(_rim_factor(name, profile))
         outside += _outside(name, profile, section)
-    if load_at == "D" and pair.contact_ratio >= 2.0:
-        outside.append(f"contact ratio {pair.contact_ratio:.3f} is not below 2: no pair bears alone")
+    ratio = pair.contact_ratio / helix.base_cosine**2
+    if load_at == "D" and ratio >= 2.0:
+        outside.append(f"contact ratio {ratio:.3f} is not below 2: no pair bears alone")
     if outside:
         warnings.warn("ISO 6336-3: " + "; ".join(outside), RangeWarning, stacklevel=2)
-    nominal = force * math.cos(pair.rack.alpha) / (pair.face_width * pair.module)
+    Y_beta = helix_factor(helix.angle, pair.overlap_ratio)
+    nominal = force * math.cos(pair.rack.alpha) * helix.cosine / (pair.face_width * pair.module)
     first, second = (
-        nominal * section.Y_F * section.Y_S * rim for section, rim in zip(sections, rims, strict=True)
+        nominal * section.Y_F * section.Y_S * rim * Y_beta
+        for section, rim in zip(sections, rims, strict=True)
     )
-    return Iso6336RootStress((sections[0], sections[1]), (rims[0], rims[1]), (first, second), load_at)
+    return Iso6336RootStress((sections[0], sections[1]), (rims[0], rims[1]), (first, second), load_at, Y_beta)
+
+
+def helix_factor(helix_angle: float, overlap_ratio: float) -> float:
+    """Y_beta = 1 - epsilon_beta beta/120 deg, with epsilon_beta counted to 1 and beta to 30 deg.
+
+    Examples
+    --------
+    >>> helix_factor(math.radians(10.0), 1.4), helix_factor(0.0, 0.0)
+    (0.91666..., 1.0)
+    """
+    angle = min(abs(math.degrees(helix_angle)), STEEPEST)
+    return 1.0 - min(overlap_ratio, 1.0) * angle / 120.0
 
 
 def root_section(
-    name: str, profile: ToothProfile, rack: BasicRack, cut_shift: float, rho_load: float
+    name: str, profile: ToothProfile, rack: BasicRack, cut_shift: float, rho_load: float, virtual: VirtualGear
 ) -> RootSection:
-    """Critical section and factors of one gear for a load at curvature radius `rho_load` [m]."""
-    z, m = profile.teeth, profile.module
+    """Critical section and factors of one gear for a load at curvature radius `rho_load` of the virtual gear [m]."""
+    z, m = virtual.teeth, profile.module
     rho, x = rack.fillet_radius, cut_shift
-    nominal = (0.5 * math.pi + 2.0 * x * math.tan(rack.alpha)) / z + _inv(math.tan(rack.alpha))
-    thinning = nominal - profile.base_half_angle  # A/(2 r)
-    E = rack.tip_centre_offset + 0.5 * z * thinning
+    nominal = (0.5 * math.pi + 2.0 * x * math.tan(rack.alpha)) / profile.teeth
+    nominal += _inv(virtual.helix.transverse_tangent)
+    thinning = nominal - profile.base_half_angle  # A/(2 r cos(beta))
+    E = rack.tip_centre_offset + 0.5 * profile.teeth * thinning
     G = rho - rack.h_fP + x
     theta = _theta(name, z, G, 2.0 / z * (0.5 * math.pi - E) - _SLOPE)
     arm = G / math.cos(theta) - rho
     s_Fn = z * math.sin(_SLOPE - theta) + math.sqrt(3.0) * arm
     rho_F = rho + 2.0 * G**2 / (math.cos(theta) * (z * math.cos(theta) ** 2 - 2.0 * G))
-    roll = rho_load / profile.base_radius
-    gamma = profile.base_half_angle - _inv(roll)
+    roll = rho_load / virtual.base_radius
+    gamma = virtual.base_half_angle - _inv(roll)
     alpha_Fen = math.atan(roll) - gamma
-    d_e = 2.0 * math.hypot(profile.base_radius, rho_load) / m
+    d_e = 2.0 * math.hypot(virtual.base_radius, rho_load) / m
     height = (math.cos(gamma) - math.sin(gamma) * math.tan(alpha_Fen)) * d_e
     h_Fe = 0.5 * (height - z * math.cos(_SLOPE - theta) - arm)
     Y_F = 6.0 * h_Fe * math.cos(alpha_Fen) / (s_Fn**2 * math.cos(rack.alpha))
@@ -177,7 +208,7 @@ def root_section(
     return RootSection(theta, s_Fn, rho_F, h_Fe, alpha_Fen, Y_F, Y_S)
 
 
-def _theta(name: str, teeth: int, G: float, H: float) -> float:
+def _theta(name: str, teeth: float, G: float, H: float) -> float:
     """Solve theta = 2 G/z tan(theta) - H by Newton's method from the standard's start, 30 degrees."""
     theta = math.pi / 6.0
     for _ in range(_ITERATIONS):

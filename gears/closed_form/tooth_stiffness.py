@@ -25,6 +25,9 @@ THINNEST_RIM = 1.0
 LIGHT_LOAD = 100.0
 """Load per face width [N/mm] below which the stiffness falls with the fourth root of the load."""
 
+FACE_STIFFNESS = 0.85
+"""c_gamma_beta over c_gamma_alpha."""
+
 _STEEL = 206e9  # Pa, for which the polynomial holds
 
 
@@ -42,6 +45,11 @@ class Iso6336Stiffness:
     no_error = STANDARD
     headline = ("c_th", "c_prime", "c_gamma", "C_R", "C_B")
 
+    @property
+    def c_gamma_beta(self) -> float:
+        """Mesh stiffness along the face, 0.85 c_gamma_alpha [N/(mm um)]."""
+        return FACE_STIFFNESS * self.c_gamma
+
     @described("N/m")
     def single_stiffness(self) -> float:
         """Single stiffness c' b."""
@@ -56,18 +64,19 @@ class Iso6336Stiffness:
 def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
     """Single and mesh stiffness of a pair after ISO 6336-1.
 
-    q' = 0.04723 + 0.15551/z1 + 0.25791/z2 - 0.00635 x1 - 0.11654 x1/z1 - 0.00193 x2 - 0.24188 x2/z2
-    + 0.00529 x1^2 + 0.00182 x2^2 [um mm/N]; c'_th = 1/q'; c' = 0.8 c'_th C_R C_B E/E_steel with C_R of the
-    weaker blank (`blank_factor`) and C_B = [1 + 0.5 (1.2 - h_fP)] [1 - 0.02 (20 deg - alpha)];
-    c_gamma = c' (0.75 epsilon_alpha + 0.25). A gear that is cut at a generating shift x_E has the dedendum
-    h_fP + x - x_E, and C_B is the mean of both gears'.
+    q' = 0.04723 + 0.15551/z_n1 + 0.25791/z_n2 - 0.00635 x1 - 0.11654 x1/z_n1 - 0.00193 x2 - 0.24188 x2/z_n2
+    + 0.00529 x1^2 + 0.00182 x2^2 [um mm/N]; c'_th = 1/q'; c' = 0.8 c'_th C_R C_B cos(beta) E/E_steel with C_R of the
+    weaker blank (`blank_factor`) and C_B = [1 + 0.5 (1.2 - h_fP)] [1 - 0.02 (20 deg - alpha_n)];
+    c_gamma_alpha = c' (0.75 epsilon_alpha + 0.25), c_gamma_beta = 0.85 c_gamma_alpha, z_n = z/(cos^2(beta_b)
+    cos(beta)). A gear that is cut at a generating shift x_E has the dedendum h_fP + x - x_E, and C_B is the mean of
+    both gears'.
 
     Parameters
     ----------
     pair : GearPair
         The gears; the one with fewer teeth is gear 1 of the standard.
     force : float or None
-        Normal force with the application factor in it [N]: where the tangential load F cos(alpha) / b is
+        Normal force with the application factor in it [N]: where the tangential load F cos(alpha_n) cos(beta) / b is
         below 100 N/mm, c' is multiplied by its ratio to that to the power 0.25. None is no reduction.
 
     Returns
@@ -93,7 +102,8 @@ def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
     20.54
     """
     first, second = sorted((pair.pinion, pair.wheel), key=lambda gear: (gear.teeth, -gear.profile_shift))
-    z1, z2, x1, x2 = first.teeth, second.teeth, first.profile_shift, second.profile_shift
+    helix, x1, x2 = pair.helix, first.profile_shift, second.profile_shift
+    z1, z2 = helix.virtual_teeth(first.teeth), helix.virtual_teeth(second.teeth)
     _warn_outside(x1, x2, pair)
     q = 0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1
     q += -0.00193 * x2 - 0.24188 * x2 / z2 + 0.00529 * x1**2 + 0.00182 * x2**2
@@ -102,11 +112,11 @@ def iso6336(pair: GearPair, force: float | None = None) -> Iso6336Stiffness:
     deeper = 0.5 * sum(gear.profile_shift - gear.cut_shift for gear in (first, second))
     C_B = (1.0 + 0.5 * (1.2 - pair.rack.h_fP - deeper)) * (1.0 - 0.02 * (20.0 - angle))
     E1, E2 = (material.youngs_modulus for material in pair.materials)
-    c_prime = CORRECTION * C_R * C_B / q * (2.0 * E1 * E2 / (E1 + E2) / _STEEL)
+    c_prime = CORRECTION * C_R * C_B / q * (2.0 * E1 * E2 / (E1 + E2) / _STEEL) * helix.cosine
     if force is not None:
         if faults := NORMAL_FORCE.faults("force", force):
             raise GeometryError(faults)
-        load = force * math.cos(pair.rack.alpha) / (pair.face_width * 1e3)
+        load = force * math.cos(pair.rack.alpha) * helix.cosine / (pair.face_width * 1e3)
         c_prime *= min(load / LIGHT_LOAD, 1.0) ** 0.25
     c_gamma = c_prime * (0.75 * pair.contact_ratio + 0.25)
     return Iso6336Stiffness(1.0 / q, c_prime, c_gamma, C_R, C_B, pair.face_width)
