@@ -15,6 +15,7 @@ from flankfilm.exchange import rexs_attributes as rexs
 from flankfilm.exchange.rexs_archive import packed
 from flankfilm.exchange.rexs_attributes import Attribute
 from flankfilm.exchange.rexs_json import json_text
+from gears.pair.spur_only import require_spur
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -57,7 +58,13 @@ def rexs_text(pair: GearPair, title: str) -> tuple[str, tuple[str, ...]]:
     -------
     (str, tuple of str)
         The file's text; what REXS has no place for or is left out here.
+
+    Raises
+    ------
+    GeometryError
+        Of helical pairs, which scenes do not have.
     """
+    require_spur(pair, "export as REXS")
     writer = _Writer(title)
     size = {
         rexs.CENTRE_DISTANCE: 1e3 * pair.working_centre_distance,
