@@ -144,7 +144,7 @@ class CellContact:
             first = apart if rise is None else apart - _flat(rise)[torques]
             # the turn is counted from the first touch, so that small ones keep their digits beside gaps
             least = first[..., sign > 0.0].min(axis=-1)
-            contacts = StayingContacts(stiff, own, film, first - sign * least[..., None], levers, sign)
+            contacts = StayingContacts(stiff, own, film, first - sign * least[..., None], sign, sign * levers)
             load_share = _settled(contacts, stiff, self.whole[torques], start[torques])
             load_share = replace(load_share, transmission_error=load_share.transmission_error + least)
             return _unique(load_share, alone, own, film)

@@ -25,15 +25,16 @@ def share_between(
     sides: ArrayLike,
     film: DeflectionLaw | None = None,
     levers: ArrayLike | None = None,
+    reach: ArrayLike | None = None,
 ) -> LoadShare:
     """Share a force among tooth pairs that bear on either side of the teeth.
 
     Find F_i >= 0 and D with sum s_i l_i F_i = F and, for every pair, s_i = 1 where D closes its gap and -1 where D
     opens it,
 
-        g_i = sum_j bulk_ij F_j + local(F)_i - film_i(F_i) + gap_i - s_i D >= 0,   F_i g_i = 0.
+        g_i = sum_j bulk_ij F_j + local(F)_i - film_i(F_i) + gap_i - s_i c_i D >= 0,   F_i g_i = 0.
 
-    With l_i = 1 this is the minimum of a convex energy under a unilateral constraint for each pair, and D the
+    With l_i = c_i this is the minimum of a convex energy under a unilateral constraint for each pair, and D the
     multiplier of the torque: the forces are unique. With gaps that overlap they exist without a force, and the
     solution is unique for either sign of F. An interior-point method follows the central path F_i g_i = mu down to
     where it shows which pairs bear; Newton's method ends on these. Leading dimensions as for `share_load`.
@@ -53,7 +54,9 @@ def share_between(
     film : DeflectionLaw or None
         As for `share_load`.
     levers : (..., pairs) array or None
-        l_i > 0; 1 unless friction tilts the forces.
+        l_i > 0; c_i unless friction tilts the forces.
+    reach : (..., pairs) array or None
+        c_i > 0, as for `share_load`.
 
     Returns
     -------
@@ -82,10 +85,11 @@ def share_between(
     """
     stiff, clear, side = np.asarray(bulk, float), np.asarray(gaps, float), np.asarray(sides, float)
     whole = np.asarray(force, dtype=float)
-    arms = np.ones(clear.shape[-1:]) if levers is None else np.asarray(levers, dtype=float)
+    closes = np.ones(clear.shape[-1:]) if reach is None else np.asarray(reach, dtype=float)
+    arms = closes if levers is None else np.asarray(levers, dtype=float)
     _check(whole, stiff, clear, side)
     clear = clear + np.zeros_like(whole[..., None] + arms)
-    contacts = StayingContacts(DenseCoupling(stiff), local, film, clear, arms, side)
+    contacts = StayingContacts(DenseCoupling(stiff), local, film, clear, side * closes, side * arms)
     play, size, length = _sizes(contacts, whole, stiff)
     if np.any((whole == 0.0) & (play >= 0.0)):
         allowed = "must not be 0 where the gaps leave backlash: no flank bears there"
@@ -105,10 +109,13 @@ def _sizes(contacts: StayingContacts, whole: Array, bulk: Array) -> tuple[Array,
 
     Of what is asked for, and of what closes the gaps' overlap.
     """
-    touchable, gaps, side = contacts.touchable, contacts.at_zero, contacts.side
+    touchable, gaps, reach = contacts.touchable, contacts.at_zero, contacts.reach
     diagonal = np.diagonal(bulk, axis1=-2, axis2=-1)
     bent = np.where(touchable, diagonal + np.zeros_like(gaps), np.nan)
-    first = (np.min(np.where(touchable & (side == sign), gaps, np.inf), axis=-1) for sign in (1.0, -1.0))
+    touches = gaps / np.abs(reach)
+    first = (
+        np.min(touches, axis=-1, where=touchable & (sign * reach > 0.0), initial=np.inf) for sign in (1, -1)
+    )
     play = np.asarray(sum(first))
     force = np.abs(whole) + np.maximum(-play, 0.0) / np.nanmin(bent, axis=-1)
     force = np.where(force > 0.0, force, 1.0)

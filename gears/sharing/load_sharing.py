@@ -21,14 +21,15 @@ def share_load(
     gaps: ArrayLike,
     film: DeflectionLaw | None = None,
     levers: ArrayLike | None = None,
+    reach: ArrayLike | None = None,
 ) -> LoadShare:
     """Share a force among coupled tooth pairs.
 
     Find F_i >= 0 and D with sum l_i F_i = F and, for every pair,
 
-        g_i = sum_j bulk_ij F_j + hertz(F)_i - s_i(F_i) + gap_i - D >= 0,   F_i g_i = 0.
+        g_i = sum_j bulk_ij F_j + hertz(F)_i - s_i(F_i) + gap_i - c_i D >= 0,   F_i g_i = 0.
 
-    With l_i = 1 this is the minimum of a convex energy, so the solution is unique. Newton's method
+    With l_i = c_i this is the minimum of a convex energy, so the solution is unique. Newton's method
     (``gears.sharing.active_set``) begins with the pair that has the smallest gap. Leading
     dimensions are torques, mesh positions and so on, all solved together; arguments need only have those that they
     depend on.
@@ -47,7 +48,10 @@ def share_load(
         s_i(F_i) >= 0, what an oil film props the flanks apart, finite at zero force, with slope <= 0; None is
         dry.
     levers : (..., pairs) array or None
-        l_i > 0, lever arms of the forces over that for which F is given; 1 unless friction tilts them.
+        l_i > 0, lever arms of the forces over that for which F is given; c_i unless friction tilts them.
+    reach : (..., pairs) array or None
+        c_i > 0, lever arms of the flanks' normals over the same, by which a turn closes their gaps; 1 on the line of
+        action.
 
     Returns
     -------
@@ -61,8 +65,8 @@ def share_load(
 
     Notes
     -----
-    Differentiating g_i = 0 over the pairs in contact gives J dF/dD = 1 with J = bulk + diag(hertz' - s'), so
-    the tangent is l^T J^-1 1.
+    Differentiating g_i = 0 over the pairs in contact gives J dF/dD = c with J = bulk + diag(hertz' - s'), so
+    the tangent is l^T J^-1 c.
 
     Examples
     --------
@@ -80,16 +84,17 @@ def share_load(
     stiff = np.asarray(bulk, dtype=float)
     clear = np.asarray(gaps, dtype=float)
     whole = np.asarray(force, dtype=float)
-    arms = np.ones(clear.shape[-1:]) if levers is None else np.asarray(levers, dtype=float)
-    _check(whole, stiff, clear, arms)
+    closes = np.ones(clear.shape[-1:]) if reach is None else np.asarray(reach, dtype=float)
+    arms = closes if levers is None else np.asarray(levers, dtype=float)
+    _check(whole, stiff, clear, arms, closes)
     each = whole[..., None]
     clear = clear + np.zeros_like(each + arms)
-    problem = StayingContacts(DenseCoupling(stiff), hertz, film, clear, arms)
-    at_zero = _finite(problem.at_zero)
+    problem = StayingContacts(DenseCoupling(stiff), hertz, film, clear, closes, arms)
+    touches = _finite(problem.at_zero) / closes
     if not whole.any():
         return _first_touch(problem, stiff)
-    first = np.arange(clear.shape[-1]) == at_zero.argmin(axis=-1)[..., None]
-    loads, approach = np.where(first, each / arms, 0.0), at_zero.min(axis=-1)
+    first = np.arange(clear.shape[-1]) == touches.argmin(axis=-1)[..., None]
+    loads, approach = np.where(first, each / arms, 0.0), touches.min(axis=-1)
     share = share_forces(problem, whole + np.zeros_like(approach), loads, approach)
     if share is None:
         remedy = "check that bulk is positive semidefinite, hertz has a positive and film a negative slope"
@@ -100,12 +105,12 @@ def share_load(
 
 def _first_touch(problem: StayingContacts, bulk: Array) -> LoadShare:
     """Share at zero force: the approach at which the first pair touches, and the stiffness there."""
-    at_zero, levers = problem.at_zero, problem.lever_ratios
-    nothing = np.zeros_like(at_zero)
+    touches = problem.at_zero / problem.reach
+    nothing = np.zeros_like(touches)
     compliance = np.diagonal(bulk, axis1=-2, axis2=-1) + problem.laws(nothing)[1]
-    first = np.arange(at_zero.shape[-1]) == at_zero.argmin(axis=-1)[..., None]
-    slopes = np.where(first, 1.0 / (compliance + nothing), 0.0)
-    return LoadShare(nothing, at_zero.min(axis=-1), (levers * slopes).sum(axis=-1), slopes, 0)
+    first = np.arange(touches.shape[-1]) == touches.argmin(axis=-1)[..., None]
+    slopes = np.where(first, problem.reach / (compliance + nothing), 0.0)
+    return LoadShare(nothing, touches.min(axis=-1), (problem.lever_ratios * slopes).sum(axis=-1), slopes, 0)
 
 
 def _finite(at_zero: Array) -> Array:
@@ -125,7 +130,7 @@ def _fit(*shapes: tuple[int, ...]) -> bool:
     return True
 
 
-def _check(force: Array, bulk: Array, gaps: Array, levers: Array) -> None:
+def _check(force: Array, bulk: Array, gaps: Array, levers: Array, reach: Array) -> None:
     """Refuse malformed input, all faults at once."""
     pairs = gaps.shape[-1:]
     with Faults(LoadSharingError) as faults:
@@ -133,8 +138,11 @@ def _check(force: Array, bulk: Array, gaps: Array, levers: Array) -> None:
             allowed = "must be finite, all above 0 N or all 0 N"
             faults.add("force", str(force), allowed, "give the forces' sizes")
         if not (
-            gaps.ndim >= 1 and pairs > (0,) and bulk.shape[-2:] == 2 * pairs and levers.shape[-1:] == pairs
-        ) or not _fit(force.shape, bulk.shape[:-2], gaps.shape[:-1], levers.shape[:-1]):
+            gaps.ndim >= 1
+            and pairs > (0,)
+            and bulk.shape[-2:] == 2 * pairs
+            and levers.shape[-1:] == reach.shape[-1:] == pairs
+        ) or not _fit(force.shape, bulk.shape[:-2], gaps.shape[:-1], levers.shape[:-1], reach.shape[:-1]):
             shapes = f"bulk {bulk.shape}, gaps {gaps.shape}"
             allowed = "must be (..., pairs, pairs) and (..., pairs)"
             faults.add("bulk, gaps", shapes, allowed, "give one row for each pair")
@@ -146,5 +154,8 @@ def _check(force: Array, bulk: Array, gaps: Array, levers: Array) -> None:
         if not np.all((levers > 0.0) & np.isfinite(levers)):
             remedy = "reduce the friction, which tilts a force past the axis"
             faults.add("levers", "not above 0", "must be finite and more than 0", remedy)
+        if not np.all((reach > 0.0) & np.isfinite(reach)):
+            remedy = "leave out pairs whose gap no turn closes"
+            faults.add("reach", "not above 0", "must be finite and more than 0", remedy)
         if not np.all(np.isfinite(bulk)):
             faults.add("bulk", "not finite", "must be finite", "check the compliance matrix")

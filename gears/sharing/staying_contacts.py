@@ -42,7 +42,7 @@ class JointLaw(DeflectionLaw, Protocol):
 
 @record
 class StayingContacts:
-    """Overlap = compliance F + law(F) - film(F) + gap - side D (``gears.sharing.active_set.ContactForces``).
+    """Overlap = compliance F + law(F) - film(F) + gap - reach D (``gears.sharing.active_set.ContactForces``).
 
     Attributes
     ----------
@@ -51,18 +51,18 @@ class StayingContacts:
     film : DeflectionLaw or None
     gaps : (..., n) array
         At D = 0, inf where nothing can touch [m].
+    reach : (..., n) array
+        By how much D closes the gap; below 0 where D opens it.
     lever_ratios : (..., n) array
-        l_i > 0.
-    side : (n,) array or 1.0
-        1 where D closes the gap, -1 where D opens it.
+        l_i of the forces, with the same signs.
     """
 
     coupling: Coupling
     local: DeflectionLaw
     film: DeflectionLaw | None
     gaps: Array
+    reach: Array
     lever_ratios: Array
-    side: Array | float = 1.0
 
     @cached_property
     def touchable(self) -> Booleans:
@@ -100,20 +100,20 @@ class StayingContacts:
         """As of ``ContactForces``."""
         value, slope = self.laws(loads)
         gaps = np.where(self.touchable, self.gaps, 0.0)
-        reach, levers = self.side + np.zeros_like(loads), self.side * self.lever_ratios
+        nothing = np.zeros_like(loads)
         # an idle contact may have an infinite slope; its row is left out of the Newton step
         return Linearised(
-            bent + value + gaps - self.side * approach[..., None],
-            reach,
-            levers,
-            np.sum(levers * loads, axis=-1),
+            bent + value + gaps - self.reach * approach[..., None],
+            self.reach + nothing,
+            self.lever_ratios + nothing,
+            np.sum(self.lever_ratios * loads, axis=-1),
             np.where(loads > 0.0, slope, 1.0),
             self.coupling,
         )
 
     def unloaded(self, loads: Array, approach: Array, bent: Array) -> Array:
         """As of ``ContactForces``."""
-        return np.asarray(bent + self.at_zero - self.side * approach[..., None])
+        return np.asarray(bent + self.at_zero - self.reach * approach[..., None])
 
 
 def _asked(law: DeflectionLaw, loads: Array) -> tuple[Array, Array]:

@@ -56,10 +56,13 @@ def test_equal_springs_share_the_overlap(overlap):
     np.testing.assert_allclose(free.forces, [2 * k * overlap, 0.0], rtol=1e-12)
 
 
+@pytest.mark.parametrize("leaning", [False, True])
 @pytest.mark.parametrize("seed", range(40))
-def test_conditions_of_the_minimum_hold(seed):
+def test_conditions_of_the_minimum_hold(seed, leaning):
     force, bulk, gaps, sides = random_problem(seed)
-    found = share_between(force, bulk, Hertz(), gaps, sides)
+    reach = np.random.default_rng(seed).uniform(0.9, 1.0, len(sides)) if leaning else None
+    found = share_between(force, bulk, Hertz(), gaps, sides, reach=reach)
+    sides = sides * reach if leaning else sides
     left = bulk @ found.forces + Hertz().approach(found.forces) + gaps - sides * found.transmission_error
     size = np.abs(gaps).max()
     assert found.forces.min() >= 0.0

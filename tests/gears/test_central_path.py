@@ -38,7 +38,7 @@ def pressed(seed, tilt=TILT):
 
 
 def contacts_of(compliance, gaps):
-    return StayingContacts(DenseCoupling(compliance), Springs(), None, gaps, np.ones(2 * CELLS), SIDE)
+    return StayingContacts(DenseCoupling(compliance), Springs(), None, gaps, SIDE, SIDE)
 
 
 def minimum(compliance, gaps, force):

@@ -208,6 +208,31 @@ def test_levers_balance_the_moment_and_tilt_the_tangent():
     assert at_rest.stiffness == pytest.approx(0.5 / 3e-9)
 
 
+def test_normals_that_lean_are_other_coordinates_of_the_same_forces():
+    """In forces kappa F gaps are gap/kappa, laws kappa F -> law(F)/kappa, compliances bulk/(kappa kappa')."""
+    bulk, gaps, force = random_bulk(7, 3), np.array([0.5e-6, 1e-6, 0.2e-6]), 5e3
+    kappa, tilted = np.array([0.9, 1.0, 0.97]), np.array([0.95, 1.02, 0.9])
+
+    class Turned:
+        def approach(self, force):
+            return Hertz().approach(force / kappa) / kappa
+
+        def slope(self, force):
+            return Hertz().slope(force / kappa) / kappa**2
+
+    turned = share_load(force, bulk / np.outer(kappa, kappa), Turned(), gaps / kappa, levers=tilted / kappa)
+    share = share_load(force, bulk, Hertz(), gaps, levers=tilted, reach=kappa)
+    np.testing.assert_allclose(share.forces, turned.forces / kappa, rtol=1e-12)
+    np.testing.assert_allclose(share.pair_stiffness, turned.pair_stiffness / kappa, rtol=1e-12)
+    assert share.transmission_error == pytest.approx(float(turned.transmission_error), rel=1e-12)
+    assert share.stiffness == pytest.approx(float(turned.stiffness), rel=1e-12)
+    plain = share_load(force, bulk, Hertz(), gaps, reach=kappa)
+    assert kappa @ plain.forces == pytest.approx(force, rel=1e-12)
+    at_rest = share_load(0.0, bulk, Spring(1e-9), [1e-6, 0.99e-6, 2e-6], levers=tilted, reach=[1.0, 0.9, 1.0])
+    assert at_rest.transmission_error == pytest.approx(1e-6)
+    assert at_rest.stiffness == pytest.approx(0.95 / (bulk[0, 0] + 1e-9))
+
+
 def test_film_in_series_equals_a_softer_spring():
     """A film whose approach falls linearly with the force is a spring in series and a preload of the gap."""
 
@@ -234,6 +259,8 @@ def test_all_faults_of_the_input_at_once():
         share_load(1.0, np.eye(3), Hertz(), [0.0, 0.0])
     with pytest.raises(LoadSharingError, match="levers"):
         share_load(1.0, np.eye(2), Hertz(), [0.0, 0.0], levers=[1.0, -0.1])
+    with pytest.raises(LoadSharingError, match="reach"):
+        share_load(1.0, np.eye(2), Hertz(), [0.0, 0.0], reach=[1.0, 0.0])
     with pytest.raises(LoadSharingError, match="all above 0"):
         share_load(np.array([[1.0], [0.0]]), np.eye(2), Hertz(), [0.0, 0.0])
     with pytest.raises(LoadSharingError, match="bulk, gaps"):
