@@ -91,16 +91,13 @@ class CellContact:
 
     def coupling(self, face: FaceSetting) -> CellCoupling:
         """Compliance of the bodies between cells of all pairs."""
-        parts = [
-            cell_coupling(face, self.bodies, side.candidates, side.lever_ratios, side.matrix)
-            for side in self.sides.flanks
-        ]
+        parts = [cell_coupling(face, self.bodies, side.candidates, side.matrix) for side in self.sides.flanks]
         if len(parts) == 1:
             return parts[0]
         cross = self.sides.matrix[:, : self.sides.count, self.sides.count :]
-        return parts[0].beside(
-            parts[1], cross_coupling(face, self.bodies, self.sides.setups[0].back, self.sides.flanks, cross)
-        )
+        loaded, other = (side.candidates for side in self.sides.flanks)
+        back = self.sides.setups[0].back
+        return parts[0].beside(parts[1], cross_coupling(face, self.bodies, back, (loaded, other), cross))
 
     def shared(
         self, face: FaceSetting, near: Array, rise: Array | None = None, *, held: bool = True
@@ -122,7 +119,8 @@ class CellContact:
         cells, unit = face.cells, self.pair.face_width / face.cells
         apart, oil = self._apart(face), self.sides.oil
         film = None if oil is None else CellLaws(oil, cells)
-        sign, levers = np.repeat(self.sides.sign, cells), self._levers(cells)
+        ahead, reach = np.repeat(self.sides.sign > 0.0, cells), np.repeat(self.sides.reach, cells, axis=-1)
+        levers = np.repeat(self.sides.sign * self.sides.tilted_lever_ratios, cells, axis=-1)
         start = _flat(between_middles(near, cells) * (near.shape[-1] / cells))
         laws, shafts = CellLaws(self.sides.laws, cells), shafts_under_face(face, self.pair)
 
@@ -143,8 +141,8 @@ class CellContact:
             own = law(strip, tuple(torques.tolist()))
             first = apart if rise is None else apart - _flat(rise)[torques]
             # the turn is counted from the first touch, so that small ones keep their digits beside gaps
-            least = first[..., sign > 0.0].min(axis=-1)
-            contacts = StayingContacts(stiff, own, film, first - sign * least[..., None], sign, sign * levers)
+            least = (first / reach)[..., ahead].min(axis=-1)
+            contacts = StayingContacts(stiff, own, film, first - reach * least[..., None], reach, levers)
             load_share = _settled(contacts, stiff, self.whole[torques], start[torques])
             load_share = replace(load_share, transmission_error=load_share.transmission_error + least)
             return _unique(load_share, alone, own, film)
@@ -165,18 +163,18 @@ class CellContact:
             if held and shafts is not None:
                 slope = law(strip, tuple(torques.tolist())).slope(forces)
                 slope = slope if film is None else slope - film.slope(forces)
-                by_tilt = nothing + shafts.levers(self.sides.lever_ratios, self.sides.count)
+                by_tilt = nothing + shafts.levers(len(self.sides.sign), self.sides.count)
                 slopes[0][torques], slopes[1][torques] = alone.solved(
-                    slope, sign + nothing, by_tilt, forces > 0.0, wanted
+                    slope, reach + nothing, by_tilt, forces > 0.0, wanted
                 )
-        remaining_gaps = bends + apart - sign * load_share.transmission_error[..., None]
+        remaining_gaps = bends + apart - reach * load_share.transmission_error[..., None]
         if film is not None:
             remaining_gaps = remaining_gaps - film.approach(np.zeros_like(load_share.forces))
         bends, remaining_gaps = _by_cells(bends, cells), _by_cells(remaining_gaps, cells)
         reached = None
         if held and shafts is not None:
             load_share, reached = shafts.held(
-                load_share, self.sides.lever_ratios, self.sides.gaps, slopes, sign * levers, self.sides.count
+                load_share, self.sides.lever_ratios, self.sides.gaps, slopes, levers, self.sides.count
             )
         return CellShare(
             load_share,
@@ -206,11 +204,11 @@ class CellContact:
         approach : (torques, pitches, positions) array
             D, with what shafts give way [m].
         """
-        loads, sign = _flat(forces), np.repeat(self.sides.sign, face.cells)
+        loads, reach = _flat(forces), np.repeat(self.sides.reach, face.cells, axis=-1)
         wanted, shafts = np.ones(loads.shape[:-1], dtype=bool), shafts_under_face(face, self.pair)
         coupling = self._on_shafts(self.coupling(face), shafts)
         bends = coupling.applied(loads, wanted, np.zeros_like(loads))
-        gaps, oil = bends + self._apart(face) - sign * approach[..., None], self.sides.oil
+        gaps, oil = bends + self._apart(face) - reach * approach[..., None], self.sides.oil
         if oil is not None:
             gaps = gaps - CellLaws(oil, face.cells).approach(np.zeros_like(loads))
         drops = gap_drops(self._over_sides(face, _gaps_within), _by_cells(bends, face.cells))
@@ -220,12 +218,7 @@ class CellContact:
         """A compliance of the bodies with that of the shafts."""
         if shafts is None:
             return coupling
-        return coupling.plus(shafts.compliance, self.sides.lever_ratios, self.sides.count)
-
-    def _levers(self, cells: int) -> Array:
-        """Levers of the cells' forces (positions, pairs cells)."""
-        tilted = self.sides.tilted_lever_ratios
-        return np.repeat(np.ones_like(self.sides.lever_ratios) if tilted is None else tilted, cells, axis=-1)
+        return coupling.plus(shafts.compliance, self.sides.count)
 
     def _apart(self, face: FaceSetting) -> Array:
         """Gaps without load, beyond where the first place of the face touches (pitches, positions, pairs cells) [m]."""
@@ -235,15 +228,16 @@ class CellContact:
     def _over_sides(
         self, face: FaceSetting, along: Callable[[FaceSetting, GearPair, ContactCandidates], Array]
     ) -> Array:
-        """What gaps along the face are, of all pairs (positions, pairs, places)."""
+        """What gaps along the face are, along the normals of all pairs (positions, pairs, places)."""
         sides = zip(self.faces(face), self.sides.flanks, strict=True)
-        return np.concatenate([along(each, self.pair, side.candidates) for each, side in sides], axis=1)
+        gaps = np.concatenate([along(each, self.pair, side.candidates) for each, side in sides], axis=1)
+        return np.asarray(self.sides.lever_ratios[..., None] * gaps)
 
     def _half_widths(self, line_load: Array) -> Array:
         """Largest half-widths of contacts of two flanks (torques,) [m] by line loads (torques, ..., pairs)."""
         flanks, modulus = self.sides.on_flank, self.bodies.pinion.law.plane_modulus
         other = self.bodies.wheel.law.plane_modulus
-        load = np.where(flanks, line_load / self.sides.lever_ratios, 0.0)
+        load = np.where(flanks, line_load, 0.0)
         radius = np.where(flanks, self.sides.radius, 1.0)
         wide = hertz_half_width(load, radius, 2.0 / (1.0 / modulus + 1.0 / other))
         return np.asarray(wide.max(axis=(1, 2, 3)))

@@ -94,24 +94,21 @@ class CellCoupling(CellJacobian, Coupling):
         """As of ``gears.sharing.load_coupling.Coupling``."""
         return ChangedCells(self, change, turn, blocks)
 
-    def plus(self, more: Array, lever_ratios: Array, count: int) -> CellCoupling:
+    def plus(self, more: Array, count: int) -> CellCoupling:
         """With a further compliance that couples cells by their place on the face and side, whatever their pair.
 
         Parameters
         ----------
         more : (2, 2, cells, cells) array
             Displacement along the line of action of either side by forces on either [m/N].
-        lever_ratios : (positions, pairs) array
-            kappa of the forces kappa F that are asked for.
         count : int
             Pairs on the loaded side; others follow them.
         """
         n, blocks = more.shape[-1], []
-        for chosen, block, ratios in zip(self.cells, self.blocks, lever_ratios, strict=True):
-            pairs = chosen[::n] // n
-            each, side, k = ratios[pairs], (pairs >= count).astype(int), len(pairs)
-            added = more[side[:, None], side] / (each[:, None] * each)[..., None, None]
-            coupled = block.reshape(k, n, k, n) + np.swapaxes(added, 1, 2)
+        for chosen, block in zip(self.cells, self.blocks, strict=True):
+            side = (chosen[::n] // n >= count).astype(int)
+            k = len(side)
+            coupled = block.reshape(k, n, k, n) + np.swapaxes(more[side[:, None], side], 1, 2)
             blocks.append(coupled.reshape(k * n, k * n))
         return CellCoupling(self.cells, tuple(blocks), self.unknowns)
 

@@ -16,7 +16,6 @@ from fem.pair.face_setting import FREE_ENDS, SLICES, FaceSetting
 from fem.pair.unequal_widths import cosines, overhang, overhang_across
 
 if TYPE_CHECKING:
-    from fem.contact.loaded_flanks import LoadedFlanks
     from fem.laws.contact_candidates import ContactCandidates
     from fem.pair.pair_compliance import PairCompliance
 
@@ -43,7 +42,6 @@ def cell_coupling(
     face: FaceSetting,
     bodies: PairCompliance,
     candidates: ContactCandidates,
-    lever_ratios: Array,
     matrix: Array,
 ) -> CellCoupling:
     """Compliance of the bodies between cells of pairs that may touch, arguments as of ``cell_matrix``."""
@@ -51,16 +49,20 @@ def cell_coupling(
 
     def cut() -> CellCoupling:
         def matrices(of: slice) -> Array:
-            return cell_matrix(face, bodies, candidates.rho[:, of], lever_ratios[of], matrix[of])
+            return cell_matrix(face, bodies, candidates.rho[:, of], matrix[of])
 
         return in_blocks(matrices, candidates.touchable, face.cells)
 
-    key = coupled_by(bodies, face, candidates.rho, candidates.touchable, lever_ratios, matrix)
+    key = coupled_by(bodies, face, candidates.rho, candidates.touchable, matrix)
     return kept_unless_large("cells", key, size, cut)
 
 
 def cross_coupling(
-    face: FaceSetting, bodies: PairCompliance, back: bool, flanks: Sequence[LoadedFlanks], matrix: Array
+    face: FaceSetting,
+    bodies: PairCompliance,
+    back: bool,
+    candidates: tuple[ContactCandidates, ContactCandidates],
+    matrix: Array,
 ) -> tuple[Array, ...]:
     """Compliance between cells that may touch on the loaded side and on the other, of each position [m/N].
 
@@ -70,12 +72,12 @@ def cross_coupling(
     bodies : PairCompliance
     back : bool
         Whether back flanks are the loaded ones.
-    flanks : (LoadedFlanks, LoadedFlanks)
+    candidates : (ContactCandidates, ContactCandidates)
         Of both sides, the loaded one first.
     matrix : (positions, pairs, others) array
         The plane's (``fem.contact.contact_sides.between``) [m/N].
     """
-    loaded, other = flanks
+    loaded, other = candidates
     front, rear = (other, loaded) if back else (loaded, other)
     plane = np.swapaxes(matrix, 1, 2) if back else matrix
     cells = face.cells
@@ -85,20 +87,15 @@ def cross_coupling(
         step = max(1, MOST_AT_ONCE // (plane[0].size * cells**2))
         for first in range(0, len(plane), step):
             of = slice(first, first + step)
-            levers = front.lever_ratios[of], rear.lever_ratios[of]
-            sides = front.candidates.at(of), rear.candidates.at(of)
-            between = cross_matrix(face, bodies, *sides, levers, plane[of])
+            sides = front.at(of), rear.at(of)
+            between = cross_matrix(face, bodies, *sides, plane[of])
             rows, columns = (_touching(side.touchable, cells) for side in sides)
             chosen = zip(between, rows, columns, strict=True)
             blocks += (each.take(row, axis=0).take(column, axis=1) for each, row, column in chosen)
         return tuple(block.T for block in blocks) if back else tuple(blocks)
 
-    touching = [side.candidates.touchable.sum(axis=-1) * cells for side in (front, rear)]
-    arrays = (
-        array
-        for side in (front, rear)
-        for array in (side.candidates.rho, side.candidates.touchable, side.lever_ratios)
-    )
+    touching = [side.touchable.sum(axis=-1) * cells for side in (front, rear)]
+    arrays = (array for side in (front, rear) for array in (side.rho, side.touchable))
     key = back, *coupled_by(bodies, face, plane, *arrays)
     return kept_unless_large("cells across", key, int(np.sum(touching[0] * touching[1])), cut)
 
@@ -147,7 +144,6 @@ def cell_matrix(
     face: FaceSetting,
     bodies: PairCompliance,
     rho: Array,
-    lever_ratios: Array,
     matrix: Array,
     gears: Sequence[int] = (0, 1),
 ) -> Array:
@@ -159,30 +155,24 @@ def cell_matrix(
     bodies : PairCompliance
     rho : (2, positions, pairs) array
         Curvature radii [m].
-    lever_ratios : (positions, pairs) array
-        kappa: levers of the normals about the pinion's axis over its base radius.
     matrix : (positions, pairs, pairs) array
-        The plane's compliance of forces kappa F [m/N].
+        The plane's compliance [m/N].
     gears : sequence of int
         That yield beside that: 0 is the pinion, 1 the wheel.
     """
-    cells, (positions, pairs), pair = face.cells, lever_ratios.shape, bodies.pair
-    modes, ratio_products = cosines(cells), lever_ratios[..., :, None] * lever_ratios[..., None, :]
+    cells, (positions, pairs), pair, modes = face.cells, matrix.shape[:2], bodies.pair, cosines(face.cells)
     by_mode = np.repeat(matrix[..., None], cells, axis=-1)
     if face.model != SLICES:
-        by_mode[..., 1:] += pair_waves(bodies, rho, cells, face.strip, gears) / ratio_products[..., None]
+        by_mode[..., 1:] += pair_waves(bodies, rho, cells, face.strip, gears)
     compliance = np.einsum("mc,pijm,md->picjd", modes, cells * by_mode, modes, optimize=True)
     if face.model != SLICES:
         for gear in gears:
             if pair.face_widths[gear] != pair.face_width:
-                compliance += overhang(bodies, gear, rho[gear], face) / ratio_products[:, :, None, :, None]
+                compliance += overhang(bodies, gear, rho[gear], face)
     if face.model == FREE_ENDS:
         edges = face.edges(pair)
         first, second = (edges - offset for offset in pair.face_offsets)
-        compliance += (
-            pair_ends(bodies, rho, (first, second), pair.face_widths, gears)
-            / ratio_products[:, :, None, :, None]
-        )
+        compliance += pair_ends(bodies, rho, (first, second), pair.face_widths, gears)
     size = pairs * cells
     return np.asarray(compliance.reshape(positions, size, size))
 
@@ -192,7 +182,6 @@ def cross_matrix(
     bodies: PairCompliance,
     front: ContactCandidates,
     back: ContactCandidates,
-    lever_ratios: tuple[Array, Array],
     matrix: Array,
     gears: Sequence[int] = (0, 1),
 ) -> Array:
@@ -207,30 +196,26 @@ def cross_matrix(
     bodies : PairCompliance
     front, back : ContactCandidates
         Of the pair, and of the mirrored gears.
-    lever_ratios : (positions, pairs) and (positions, others) arrays
-        kappa of both.
     matrix : (positions, pairs, others) array
-        The plane's compliance of forces kappa F [m/N], as of ``fem.contact.opposite_flanks.between``.
+        The plane's compliance (``fem.contact.contact_sides.across``) [m/N].
     gears : sequence of int
         As of ``cell_matrix``.
     """
     cells, (positions, pairs, others), pair = face.cells, matrix.shape, bodies.pair
     model = SLICES if "coupling" in bodies.left_out else face.model
-    modes, ratio_products = cosines(cells), lever_ratios[0][:, :, None] * lever_ratios[1][:, None, :]
+    modes = cosines(cells)
     by_mode = np.repeat(matrix[..., None], cells, axis=-1)
     teeth = (side.teeth[:, :positions] for side in (front, back))
     places = places_across(pair, front.rho, back.rho, *teeth)
     if model != SLICES:
-        by_mode[..., 1:] += pair_waves_across(bodies, places, cells, gears) / ratio_products[..., None]
+        by_mode[..., 1:] += pair_waves_across(bodies, places, cells, gears)
     compliance = np.einsum("mc,pijm,md->picjd", modes, cells * by_mode, modes, optimize=True)
-    beyond: list[Array] = []
     if model != SLICES:
-        wider = (gear for gear in gears if pair.face_widths[gear] != pair.face_width)
-        beyond += (overhang_across(bodies, gear, places, face) for gear in wider)
+        for gear in gears:
+            if pair.face_widths[gear] != pair.face_width:
+                compliance += overhang_across(bodies, gear, places, face)
     if model == FREE_ENDS:
         edges = face.edges(pair)
         first, second = (edges - offset for offset in pair.face_offsets)
-        beyond.append(pair_ends_across(bodies, places, (first, second), pair.face_widths, gears))
-    for added in beyond:
-        compliance += added / ratio_products[:, :, None, :, None]
+        compliance += pair_ends_across(bodies, places, (first, second), pair.face_widths, gears)
     return np.asarray(compliance.reshape(positions, pairs * cells, others * cells))

@@ -59,10 +59,12 @@ def stays_clear(
     """
     other = flanks_in_place(setup.opposite, film, reach)
     touch = flanks.candidates.gap.min(axis=-1, keepdims=True)
-    behind = _less_film(setup.pair.backlash + other.candidates.gap + touch, other)
-    if np.any(_less_film(flanks.candidates.gap - touch, flanks).min(axis=-1) + behind.min(axis=-1) < 0.0):
+    backlash = setup.pair.backlash + other.candidates.gap + touch
+    behind = _less_film(other.lever_ratios * backlash, other)
+    first = _less_film(flanks.gaps, flanks) / flanks.lever_ratios
+    if np.any(first.min(axis=-1) + (behind / other.lever_ratios).min(axis=-1) < 0.0):
         return None  # both sides are pressed without a torque
-    matrix = np.swapaxes(between(setup, bodies, flanks, other, COARSE), 1, 2)
+    matrix = np.swapaxes(between(setup, bodies, flanks.candidates, other.candidates, COARSE), 1, 2)
     cells, deflection = alone.contacts.forces, alone.share.transmission_error
     # closed by no more than the heaviest cell's line load on the whole face, opened by no less than the lightest one
     heaviest, lightest = (
@@ -74,7 +76,8 @@ def stays_clear(
     if setup.moving_contact:  # both sides roll on, by D and by D + j
         turn = deflection + max(setup.pair.backlash, 0.0)
         doubt += (ROLLED / setup.pair.module * turn)[..., None]
-    clearance = behind + deflection[..., None] + moved - doubt * sizes + _given_way(alone, other)
+    opened = other.lever_ratios * deflection[..., None]
+    clearance = behind + opened + moved - doubt * sizes + _given_way(alone, other)
     if setup.face.model == FREE_ENDS:
         clearance = clearance - DOUBT_OF_ENDS * deflection[..., None]
     if not np.all((clearance > 0.0) | apart[:, None, None, None]):
@@ -91,10 +94,10 @@ def _given_way(alone: ContactState, other: FlanksInPlace) -> Array | float:
     shafts = shafts_under_face(alone.setup.face, alone.setup.pair)
     if shafts is None:
         return 0.0
-    count = alone.lever_ratios.shape[-1]
-    give = shafts.bent(alone.contacts.forces, alone.lever_ratios, count, 1).sum(axis=-2).min(axis=-1)
+    forces = alone.contacts.forces
+    give = shafts.bent(forces, forces.shape[-2], 1).sum(axis=-2).min(axis=-1)
     turn = alone.contacts.turn - alone.share.transmission_error
-    return np.asarray(turn[..., None] + give[..., None] / other.lever_ratios)
+    return np.asarray(other.lever_ratios * turn[..., None] + give[..., None])
 
 
 def _less_film(gap: Array, flanks: FlanksInPlace) -> Array:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, record
-from fem.contact.loaded_flanks import FlanksInPlace, LoadedFlanks, hub_lever
+from fem.contact.loaded_flanks import LoadedFlanks, hub_lever
 from fem.influence.gear_shape import FINE, MeshLevel
 from fem.laws.contact_candidates import ContactCandidates
 from fem.laws.local_law import FilmLaw, PairLaws
@@ -58,9 +58,9 @@ class ContactSides:
         Of the loaded side, and of the other.
     flanks : tuple of LoadedFlanks
     matrix : (positions, pairs, pairs) array
-        Compliance of the forces kappa F [m/N].
+        Compliance of the bodies along the normals [m/N].
     gaps : (pitches, positions, pairs) array
-        At D = 0; inf where nothing can touch [m].
+        Along them, at D = 0; inf where nothing can touch [m].
     """
 
     setups: tuple[MeshSetup, ...]
@@ -80,14 +80,17 @@ class ContactSides:
 
     @property
     def lever_ratios(self) -> Array:
-        """Kappa of the forces (positions, pairs)."""
+        """Of the normals (positions, pairs)."""
         return np.concatenate([side.lever_ratios for side in self.flanks], axis=-1)
 
     @property
-    def tilted_lever_ratios(self) -> Array | None:
-        """Levers that friction tilts (positions, pairs); None without friction."""
-        if not self.setups[0].friction:
-            return None
+    def reach(self) -> Array:
+        """By how much D closes the gaps; below 0 where it opens them (positions, pairs)."""
+        return self.sign * self.lever_ratios
+
+    @property
+    def tilted_lever_ratios(self) -> Array:
+        """Of the forces, which friction tilts (positions, pairs)."""
         return np.concatenate([side.tilted_lever_ratios for side in self.flanks], axis=-1)
 
     @property
@@ -129,7 +132,7 @@ class ContactSides:
 
     def share(self, force: Array) -> LoadShare:
         """Share forces (torques, 1 or pitches, 1 or positions) [N]."""
-        arguments = self.oil, self.tilted_lever_ratios
+        arguments = self.oil, self.tilted_lever_ratios, self.lever_ratios
         if len(self.flanks) == 1:
             return share_load(force, self.matrix, self.laws, self.gaps, *arguments)
         return share_between(force, self.matrix, self.laws, self.gaps, self.sign, *arguments)
@@ -138,15 +141,18 @@ class ContactSides:
         """Gaps that a share leaves to pairs that do not bear (torques, pitches, positions, pairs) [m]."""
         bent = (self.matrix @ share.forces[..., None])[..., 0] + self.gaps
         propped = 0.0 if self.oil is None else self.oil.approach(np.zeros_like(share.forces))
-        return np.asarray(bent - propped - self.sign * share.transmission_error[..., None])
+        return np.asarray(bent - propped - self.reach * share.transmission_error[..., None])
 
     def pressed(self) -> Array:
         """Where teeth overlap without a torque (pitches, positions).
 
         Films alone float them within their backlash, of any size: they thicken without bound as they bear less.
         """
-        clear = self.gaps
-        return np.asarray(clear[..., : self.count].min(axis=-1) + clear[..., self.count :].min(axis=-1) < 0.0)
+        touches = self.gaps / self.lever_ratios
+        first, behind = (
+            touches[..., pairs].min(axis=-1) for pairs in (slice(self.count), slice(self.count, None))
+        )
+        return np.asarray(first + behind < 0.0)
 
     def at(self, pitch: int, position: int) -> ContactSides:
         """The same at a single position."""
@@ -161,8 +167,7 @@ class ContactSides:
 
 def one_side(setup: MeshSetup, flanks: LoadedFlanks) -> ContactSides:
     """Contacts of the loaded side alone."""
-    gaps = flanks.candidates.gap - flanks.candidates.gap.min(axis=-1, keepdims=True)
-    return ContactSides((setup,), (flanks,), flanks.matrix, gaps)
+    return ContactSides((setup,), (flanks,), flanks.matrix, flanks.gaps)
 
 
 def both_sides(
@@ -172,26 +177,23 @@ def both_sides(
     count, more = len(flanks.candidates.offset), len(other.candidates.offset)
     matrix = np.zeros((setup.positions, count + more, count + more))
     matrix[:, :count, :count], matrix[:, count:, count:] = flanks.matrix, other.matrix
-    cross = between(setup, bodies, flanks, other)
+    cross = between(setup, bodies, flanks.candidates, other.candidates)
     matrix[:, :count, count:], matrix[:, count:, :count] = cross, np.swapaxes(cross, 1, 2)
     touch = flanks.candidates.gap.min(axis=-1, keepdims=True)
-    behind = setup.pair.backlash + other.candidates.gap + touch
-    gaps = np.concatenate([flanks.candidates.gap - touch, behind], axis=-1)
+    behind = other.lever_ratios * (setup.pair.backlash + other.candidates.gap + touch)
+    gaps = np.concatenate([flanks.gaps, behind], axis=-1)
     return ContactSides((setup, setup.opposite), (flanks, other), matrix, gaps)
 
 
 def between(
     setup: MeshSetup,
     bodies: PairCompliance,
-    flanks: FlanksInPlace,
-    other: FlanksInPlace,
+    loaded: ContactCandidates,
+    other: ContactCandidates,
     level: MeshLevel = FINE,
 ) -> Array:
-    """Compliance between the loaded flanks and the others, for F' = kappa F (positions, pairs, others) [m/N]."""
-    front, back = (other, flanks) if setup.back else (flanks, other)
-    compliance = across(bodies, front.candidates, back.candidates, level) / (
-        front.lever_ratios[:, :, None] * back.lever_ratios[:, None, :]
-    )
+    """Compliance between the loaded flanks and the others (positions, pairs, others) [m/N]."""
+    compliance = across(bodies, *((other, loaded) if setup.back else (loaded, other)), level)
     return np.swapaxes(compliance, 1, 2) if setup.back else compliance
 
 

@@ -57,8 +57,7 @@ class ContactState:
     side : MovedSide or None
         What moving contacts are solved with; None where contacts stay.
     contacts : SharedContacts
-        Forces, times ``lever_ratios``, and the turn that closes gaps on this side; of contacts that stay where moving
-        ones did not settle.
+        Forces, and the turn that closes gaps on this side; of contacts that stay where moving ones did not settle.
     closing : (torques, pitches, positions) array
         That turn without the wind-up of the hubs [m].
     settled : bool
@@ -93,16 +92,6 @@ class ContactState:
         return self.contacts.share
 
     @property
-    def lever_ratios(self) -> Array:
-        """Kappa of the normal forces (positions, pairs)."""
-        return self.flanks.lever_ratios if self.side is None else self.side.lever_ratios
-
-    @property
-    def tilted_lever_ratios(self) -> Array:
-        """Levers of the forces that friction tilts, over kappa r_b1 (positions, pairs)."""
-        return self.flanks.tilted_lever_ratios if self.side is None else self.side.tilted_lever_ratios
-
-    @property
     def bears(self) -> bool:
         """Whether a flank on this side bears anywhere."""
         return bool(np.any(self.share.forces > 0.0))
@@ -127,10 +116,10 @@ class ContactState:
 
     def cell_forces(self, number: int) -> Array:
         """Normal forces on cells under a torque (pitches, positions, pairs, cells) [N]."""
-        return np.asarray(self.contacts.forces[number] / self.lever_ratios[..., None])
+        return np.asarray(self.contacts.forces[number])
 
     def moments(self, number: int) -> tuple[Array, Array]:
-        """Sums of forces kappa F, and of their slopes by D, by their levers about both gears (2, positions).
+        """Sums of forces, and of their slopes by D, by their levers about both gears (2, positions).
 
         In the first pitch; flanks on the other side turn the gears the other way.
         """
@@ -148,9 +137,7 @@ class ContactState:
             strict=True,
         )
         first, second = (
-            np.sum(
-                (np.where(each != 0.0, self.candidates.lever, 0.0) / self.lever_ratios - lost) * each, axis=-1
-            )
+            np.sum((np.where(each != 0.0, self.candidates.lever, 0.0) - lost) * each, axis=-1)
             for each, lost in parts
         )
         return first, second
@@ -165,9 +152,8 @@ class ContactState:
 
     def torques(self, number: int) -> Array:
         """Torque of each pair over the pinion's base radius (pitches, positions, pairs) [N]."""
-        return np.asarray(
-            self.share.forces[number] * (self.tilted_lever_ratios - self.lever_loss(number)[0, 0])
-        )
+        levers = self.flanks.tilted_lever_ratios - self.lever_loss(number)[0, 0]
+        return np.asarray(self.share.forces[number] * levers)
 
     def flank_rho(self, number: int) -> Array:
         """Curvature radii where pinion and wheel are touched (2, pitches, positions, pairs) [m], untouched ones too."""
@@ -216,13 +202,13 @@ class ContactState:
 
     def _beyond(self, number: int, limits: tuple[str, str, str]) -> str:
         """Which limit of the laws or of the candidates is passed, empty if none is."""
-        candidates, turned = self.candidates, self.share.forces[number]
+        candidates, forces = self.candidates, self.share.forces[number]
         if np.max(self.closing[number] + self.touch) > candidates.reach_gap:
             return limits[1]
         largest = self.flanks.largest if isinstance(self.flanks, LoadedFlanks) else 0.0
-        if candidates.edge.any() and np.any(turned[..., candidates.edge] > largest):
+        if candidates.edge.any() and np.any(forces[..., candidates.edge] > largest):
             return limits[0]
-        return limits[2] if np.any(turned[..., candidates.chamfered] > 0.0) else ""
+        return limits[2] if np.any(forces[..., candidates.chamfered] > 0.0) else ""
 
 
 def contact_state(

@@ -75,24 +75,19 @@ class CellCross:
                 row[at, count + columns] = blocks[position].T @ loads[0][at, rows]
         return seen
 
-    def plus(self, more: Array, lever_ratios: tuple[Array, Array]) -> CellCross:
+    def plus(self, more: Array) -> CellCross:
         """With a further compliance by places on the face, whatever the pairs.
 
         Parameters
         ----------
         more : (cells, cells) array
             Displacement along the line of action of one side by forces on the other [m/N].
-        lever_ratios : (positions, pairs) and (positions, others) arrays
-            kappa of the forces of either side.
         """
-        n, blocks = len(more), []
-        for rows, columns, block, *ratios in zip(*self.cells, self.blocks[0], *lever_ratios, strict=True):
-            first, second = (
-                each[chosen[::n] // n] for each, chosen in zip(ratios, (rows, columns), strict=True)
-            )
-            added = more[:, None] / (first[:, None] * second)[:, None, :, None]
-            blocks.append(block + added.reshape(block.shape))
-        return replace(self, blocks=(tuple(blocks), *self.blocks[1:]))
+        sizes = ((len(block) // len(more), block.shape[1] // len(more)) for block in self.blocks[0])
+        blocks = tuple(
+            block + np.tile(more, pairs) for block, pairs in zip(self.blocks[0], sizes, strict=True)
+        )
+        return replace(self, blocks=(blocks, *self.blocks[1:]))
 
     def beside(self, here: Jacobian, there: Jacobian, turn: Array, behind: Array) -> Jacobian:
         """As of ``CrossCoupling``."""

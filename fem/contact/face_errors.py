@@ -173,9 +173,8 @@ def _load_errors(
 ) -> tuple[float, float, float]:
     """Errors of the maximum factor and line load, and that of stiffness and deflection by free ends."""
     count = over.sides.count
-    lever_ratios = over.sides.lever_ratios[:, :count, None]
     loads, fewer = (
-        cell_share.remaining_gaps.shape[-1] * cell_share.forces[torque][..., :count, :] / lever_ratios
+        cell_share.remaining_gaps.shape[-1] * cell_share.forces[torque][..., :count, :]
         for cell_share in (fine, coarse)
     )
     factors, half = face_load_factors(loads), face_load_factors(fewer)
@@ -186,7 +185,7 @@ def _load_errors(
         error = greatest_error(_most_loaded(loads[at], over_mean), _most_loaded(fewer[few_at], over_mean))
         if face.model == FREE_ENDS:
             free, held = coarse.share, _between_walls(over, face, coarse, torque, at)
-            without = held.remaining_gaps.shape[-1] * held.forces[0][..., :count, :] / lever_ratios[at[1]]
+            without = held.remaining_gaps.shape[-1] * held.forces[0][..., :count, :]
             value = face_load_factors(without) if over_mean else without.max(axis=(-2, -1))
             error += ENDS_ERROR * abs(float(few_values[at]) - float(value[0, 0])) / float(values[at])
             for name in ("stiffness", "transmission_error") if over_mean else ():

@@ -23,16 +23,15 @@ __all__ = ["FlanksInPlace", "LoadedFlanks", "flanks_in_place", "hub_lever", "loa
 class FlanksInPlace:
     """Contacts on one side, and what stands between them, before anything yields.
 
-    A force along another normal than the line of action has the lever kappa r_b1 about the pinion's axis.
-
     Attributes
     ----------
     candidates : ContactCandidates
     lever_ratios : (positions, pairs) array
-        kappa.
+        Levers of the normals about the pinion's axis, over its base radius: by how much a turn closes the gaps along
+        them.
     oil : FilmLaw or None
     tilted_lever_ratios : (positions, pairs) array
-        Of the tilted forces about the pinion's axis, over kappa r_b1.
+        The same of forces that friction tilts.
     """
 
     candidates: ContactCandidates
@@ -40,18 +39,21 @@ class FlanksInPlace:
     oil: FilmLaw | None
     tilted_lever_ratios: Array
 
+    @property
+    def gaps(self) -> Array:
+        """Gaps along the normals where the first pair touches (pitches, positions, pairs) [m]."""
+        gap = self.candidates.gap
+        return np.asarray(self.lever_ratios * (gap - gap.min(axis=-1, keepdims=True)))
+
 
 @record
 class LoadedFlanks(FlanksInPlace):
     """What the contacts on one side yield, as ``share_load`` asks for it.
 
-    In F' = kappa F the equations keep their form, with gap/kappa and bulk_ij/(kappa_i kappa_j); the edges' laws are in
-    F' already.
-
     Attributes
     ----------
     matrix : (positions, pairs, pairs) array
-        bulk_ij/(kappa_i kappa_j) [m/N].
+        Compliance of the bodies along the normals [m/N].
     laws : PairLaws
     largest : (edges,) array
         Forces that the tip edges' laws cover [N].
@@ -82,9 +84,7 @@ def flanks_in_place(setup: MeshSetup, film: Film | None, reach: float) -> Flanks
     ends = float(setup.pair.points.A), float(setup.pair.points.E)
     on_path = candidates.touchable & ~candidates.edge
     oil = None if film is None else FilmLaw(film, np.where(on_path, np.clip(candidates.place, *ends), np.nan))
-    return FlanksInPlace(
-        candidates, lever_ratios, oil, _tilted_lever_ratios(setup, candidates) / lever_ratios
-    )
+    return FlanksInPlace(candidates, lever_ratios, oil, _tilted_lever_ratios(setup, candidates))
 
 
 def loaded_flanks(
@@ -107,14 +107,13 @@ def loaded_flanks(
         Laws of the tip edges.
     """
     placed = flanks_in_place(setup, film, reach)
-    candidates, lever_ratios = placed.candidates, placed.lever_ratios
-    laws, largest = corner_laws.at(candidates, lever_ratios, setup.moving_contact)
+    candidates = placed.candidates
+    laws, largest = corner_laws.at(candidates, setup.moving_contact)
     rho1, rho2 = candidates.rho
     matrix = bodies.bulk(rho1, rho2, candidates.leaning)
     _leave_out_corner(bodies, matrix, candidates)
-    matrix /= lever_ratios[..., :, None] * lever_ratios[..., None, :]
     return LoadedFlanks(
-        candidates, lever_ratios, placed.oil, placed.tilted_lever_ratios, matrix, laws, largest
+        candidates, placed.lever_ratios, placed.oil, placed.tilted_lever_ratios, matrix, laws, largest
     )
 
 

@@ -30,8 +30,8 @@ class Rolling(ContactForces, Protocol):
     def bent_by(self, give: Array) -> Rolling:
         """The same where shafts have given way at the cells (..., n) [m]."""
 
-    def plus(self, more: Array, lever_ratios: Array) -> Rolling:
-        """With a further compliance (2, 2, cells, cells) [m/N] of forces by these levers (positions, pairs)."""
+    def plus(self, more: Array) -> Rolling:
+        """With a further compliance (2, 2, cells, cells) [m/N]."""
 
     def lever_losses(self, share: LoadShare) -> tuple[Array, Array]:
         """Parts of base radii (2, ..., pairs) by which levers of pairs' forces, and of further ones, are shorter."""
@@ -43,10 +43,6 @@ class Moving(Protocol):
     @property
     def sides(self) -> tuple[MovedSide, ...]:
         """Those of each side, the loaded one first."""
-
-    @property
-    def lever_ratios(self) -> Array:
-        """Kappa of the forces that are solved for (positions, pairs)."""
 
     def contacts(self, bodies: PairCompliance, rise: Array, strip: float = 0.0) -> Rolling:
         """Put contacts together."""
@@ -133,26 +129,25 @@ def _on_rigid_shafts(contacts: Rolling, whole: Array, near: Array, approach: Arr
 
 def _on_shafts(flanks: Moving, contacts: Rolling, whole: Array, near: Array) -> _Solved | None:
     """Solve on shafts that give way, held where the load brings them."""
-    first, lever_ratios = flanks.sides[0], flanks.lever_ratios
+    first = flanks.sides[0]
     count, shafts = first.lever_ratios.shape[-1], shafts_under_face(first.setup.face, first.setup.pair)
     assert shafts is not None
     # corners touch at the approach of the flanks, to which shafts do not contribute
-    staying = np.concatenate([side.flanks.lever_ratios for side in flanks.sides], axis=-1)
-    give = shafts.give(near, staying, count) / lever_ratios[..., None]
+    give = shafts.give(near, count)
     contacts = contacts.bent_by(give.reshape(*give.shape[:-2], -1))
-    yielding = contacts.plus(shafts.compliance, lever_ratios)
+    yielding = contacts.plus(shafts.compliance)
     share = _solved(yielding, whole, near, None)
     if share is None:
         return None
     turn = share.transmission_error
     open_ = open_gaps(yielding, share)
     at = contacts.linearised(share.forces, turn, contacts.all_bent(share.forces))
-    by_tilt = np.zeros_like(share.forces) + shafts.levers(lever_ratios, count)
+    by_tilt = np.zeros_like(share.forces) + shafts.levers(near.shape[-2], count)
     bears, wanted = share.forces > 0.0, np.ones(turn.shape, dtype=bool)
     slopes = at.jacobian.solved(at.own, at.reach, by_tilt, bears, wanted)
-    clear = (side.flanks.candidates.gap for side in flanks.sides)
-    gap = np.concatenate([gap - gap.min(axis=-1, keepdims=True) for gap in clear], axis=-1)
-    share, brought = shafts.held(share, lever_ratios, gap, slopes, at.further_lever_ratios, count)
+    lever_ratios = np.concatenate([side.flanks.lever_ratios for side in flanks.sides], axis=-1)
+    gaps = np.concatenate([side.flanks.gaps for side in flanks.sides], axis=-1)
+    share, brought = shafts.held(share, lever_ratios, gaps, slopes, at.further_lever_ratios, count)
     share = replace(share, stiffness=share.stiffness - at.stiff)
     lost = yielding.lever_losses(replace(share, transmission_error=turn))
     return _Solved(share, open_, lost, brought)

@@ -50,14 +50,13 @@ class MovedSide:
 
     @property
     def lever_ratios(self) -> Array:
-        """Kappa of the forces that are solved for (positions, pairs): 1 where corners move."""
-        ratios = self.flanks.lever_ratios
-        return np.ones_like(ratios) if self.own is not None and self.own.surfaces else ratios
+        """Of the normals at D = 0 (positions, pairs), where what corners add by D is not counted yet."""
+        return self.flanks.lever_ratios if self.own is None else self.own.lever_ratios
 
     @property
     def tilted_lever_ratios(self) -> Array:
-        """Of the tilted forces about the pinion's axis, over kappa r_b1 (positions, pairs)."""
-        return np.asarray(self.flanks.tilted_lever_ratios * self.flanks.lever_ratios / self.lever_ratios)
+        """The same of the forces."""
+        return np.asarray(self.flanks.tilted_lever_ratios - self.turned_levers())
 
     @property
     def matrix(self) -> Array:
@@ -72,13 +71,7 @@ class MovedSide:
     @property
     def gaps(self) -> Array:
         """Beyond the first touch (pitches, positions, pairs), without those of corners that move [m]."""
-        gap = self.flanks.candidates.gap
-        return gap - gap.min(axis=-1, keepdims=True) if self.own is None else self.own.gaps
-
-    @property
-    def held_levers(self) -> Array:
-        """Levers over kappa r_b1 (positions, pairs) at D = 0, where what corners add by D is not counted yet."""
-        return self.flanks.tilted_lever_ratios if self.own is None else self.own.tilted_lever_ratios
+        return self.flanks.gaps if self.own is None else self.own.gaps
 
     def contacts(self, bodies: PairCompliance, rise: Array, strip: float = 0.0) -> MovingContacts:
         """Put the contacts together; cells that touch over a part of their length do as those that stay.
@@ -95,15 +88,14 @@ class MovedSide:
         gaps, along = self.gaps, along_cells(face, self.setup.pair, candidates)
         touchable = np.repeat(candidates.touchable & np.isfinite(candidates.gap), face.cells, axis=-1)
         short = rise.reshape(*rise.shape[:-2], -1)
-        clear = np.where(np.isfinite(gaps), gaps, 0.0)[..., None] + along
+        clear = np.where(np.isfinite(gaps), gaps, 0.0)[..., None] + self.lever_ratios[..., None] * along
         laws: JointLaw = CellLaws(self.laws, face.cells)
         # those of all positions are solved together where they are few
         coupling: Coupling = DenseCoupling(self.matrix)
         roll: Coupling = DenseCoupling(self.moves.roll)
         if not face.even_load:
-            stiff = cell_coupling(face, bodies, candidates, flanks.lever_ratios, flanks.matrix)
-            turned = flanks.lever_ratios / self.lever_ratios
-            coupling = other_pairs(stiff, candidates.touchable, turned, flanks.matrix, self.matrix)
+            stiff = cell_coupling(face, bodies, candidates, flanks.matrix)
+            coupling = other_pairs(stiff, candidates.touchable, self.matrix - flanks.matrix)
             roll = cell_roll(face, bodies, candidates, self.moves)
             stays = partial_cells(CellLaws(flanks.laws, face.cells), stiff, short)
             laws = PartialCells(CellLaws(self.laws, face.cells), short, stays.whole)
@@ -117,7 +109,8 @@ class MovedSide:
             along.reshape(*along.shape[:-2], -1),
             face.least_gap(self.setup.pair),
             touchable,
-            self.held_levers,
+            self.lever_ratios,
+            self.tilted_lever_ratios,
             self.moves,
             tooth_smoothing(face, bodies, candidates),
             self.own,
@@ -130,9 +123,7 @@ class MovedSide:
 
     def turned_levers(self) -> Array:
         """Part of the pinion's base radius by which levers about the wheel's axis are longer (positions, pairs)."""
-        if self.own is None:
-            return np.zeros_like(self.lever_ratios)
-        return np.asarray(self.flanks.candidates.lever[0, : self.setup.positions] / self.lever_ratios - 1.0)
+        return np.asarray(self.flanks.lever_ratios - self.lever_ratios)
 
     def rho(self, force: Array, approach: Array) -> Array:
         """Curvature radii where pinion and wheel are touched (2, pitches, positions, pairs) [m].

@@ -48,13 +48,15 @@ class MovingContacts:
     laws, film
         Of the cells.
     clear : (..., pitches, positions, n) array
-        Gaps at the first touch of each cell [m], without those of corners that move; 0 where there is no contact.
+        Gaps along the normals where the first pair touches [m], without those of corners that move; 0 where there is no
+        contact.
     along : (..., positions, n) array
         By how much less than D each cell has closed beside its pair's own gap [m].
     least : float
         Turn at which the first cell touches, from where straight, aligned gears do [m].
     touchable : (pitches, positions, n) boolean array
-    tilted_lever_ratios : (positions, pairs) array
+    lever_ratios, tilted_lever_ratios : (positions, pairs) arrays
+        Of normals and of forces at D = 0, where what corners add by D is not counted yet.
     moves : ContactMoves
         Of the pairs.
     smoothing : (positions, pairs, cells, cells) array
@@ -71,6 +73,7 @@ class MovingContacts:
     along: Array
     least: float
     touchable: Booleans
+    lever_ratios: Array
     tilted_lever_ratios: Array
     moves: ContactMoves
     smoothing: Array
@@ -111,10 +114,19 @@ class MovingContacts:
         """The same where shafts have given way at the cells (..., n) [m]."""
         return replace(self, along=self.along + give)
 
-    def plus(self, more: Array, lever_ratios: Array) -> MovingContacts:
+    def plus(self, more: Array) -> MovingContacts:
         """With a further compliance between cells, as of ``fem.contact.cell_coupling.CellCoupling.plus``."""
         assert isinstance(self.coupling, CellCoupling)
-        return replace(self, coupling=self.coupling.plus(more, lever_ratios, lever_ratios.shape[-1]))
+        return replace(self, coupling=self.coupling.plus(more, self.lever_ratios.shape[-1]))
+
+    @cached_property
+    def _held_reach(self) -> Array:
+        """By how much a turn closes the gaps at D = 0 (positions, n)."""
+        return self.everywhere(self.lever_ratios)
+
+    def _closed(self, approach: Array) -> Array:
+        """By how much turns (...) close the gaps (..., n) [m], but for what corners add."""
+        return np.asarray(self._held_reach * approach[..., None])
 
     @cached_property
     def _propped(self) -> Array | float:
@@ -199,11 +211,12 @@ class MovingContacts:
         (bends, rolled), (thrust, blocks) = bent, self.thrust(loads)
         turn, levers = self.turn(approach), self.everywhere(self.tilted_lever_ratios)
         approached, slope = self.laws.value_and_slope(loads)
-        residual = bends + approached + self.clear - thrust + turn[..., None] * rolled - approach[..., None]
+        closed, rolled_on = self._closed(approach), turn[..., None] * rolled
+        residual = bends + approached + self.clear - thrust + rolled_on - closed
         if self.film is not None:
             props, falls = self.film.value_and_slope(loads)
             residual, slope = residual - props, slope - falls
-        slope, reach = np.where(loads > 0, slope, 1.0), 1 - rolled
+        slope, reach = np.where(loads > 0, slope, 1.0), self._held_reach - rolled
         carried, stiff = np.sum((levers - 0.5 * rolled) * loads, axis=-1), np.zeros_like(approach)
         if self.own is not None:
             for more in self._pushed(loads, approach):
@@ -211,12 +224,13 @@ class MovingContacts:
                 reach = reach - more.less
                 carried, stiff = carried - more.push.sum(axis=-1), stiff + more.stiff.sum(axis=-1)
         jacobian = self.coupling.changed(self.roll, turn, -blocks)
-        return Linearised(residual, reach, levers - (1 - reach), carried, slope, jacobian, stiff)
+        further = levers - (self._held_reach - reach)
+        return Linearised(residual, reach, further, carried, slope, jacobian, stiff)
 
     def unloaded(self, loads: Array, approach: Array, bent: Array) -> Array:
         """As of ``ContactForces``."""
         (bends, rolled), turn = bent, self.turn(approach)
-        gaps = bends + self.clear - self.tooth(loads) + turn[..., None] * rolled - approach[..., None]
+        gaps = bends + self.clear - self.tooth(loads) + turn[..., None] * rolled - self._closed(approach)
         gaps = gaps - self._propped
         if self.own is not None:
             gaps = gaps + self._last(self.own.opened(self._first(approach[..., None] - self.along)))

@@ -42,7 +42,7 @@ DEEPEST = 0.25
 
 @record
 class MovedFlanks:
-    """What contacts that move yield, in place of ``loaded_flanks``: forces at the pinion's edges are not turned.
+    """What contacts that move yield, in place of ``loaded_flanks``.
 
     Attributes
     ----------
@@ -51,9 +51,9 @@ class MovedFlanks:
     laws : PairLaws
         Without what depends on D.
     gaps : (pitches, positions, pairs) array
-        [m], without those that the surface has.
-    tilted_lever_ratios : (positions, pairs) array
-        Without D.
+        Along the normals [m], without those that the surface has.
+    lever_ratios : (positions, pairs) array
+        Of the normals without D: 1 where corners have surfaces, which hold what they close.
     surfaces : tuple of CornerSurface
         Of the corners of pinion and wheel; none where relief has laws of the corners at held places.
     beside : tuple of (positions, pairs) boolean arrays
@@ -63,7 +63,7 @@ class MovedFlanks:
     base : (pitches, positions, pairs) array
         Curvature radii of the pinion's flank without D [m].
     share : (positions, pairs) array
-        1/(width kappa^2) where the pinion's flank yields by itself [1/m].
+        1/width where the pinion's flank yields by itself [1/m].
     flank : GearCompliance
         Of the pinion.
     """
@@ -71,7 +71,7 @@ class MovedFlanks:
     matrix: Array
     laws: PairLaws
     gaps: Array
-    tilted_lever_ratios: Array
+    lever_ratios: Array
     surfaces: tuple[CornerSurface, ...]
     beside: tuple[Booleans, ...]
     beyond: Array
@@ -155,21 +155,16 @@ def moved_flanks(
     if surfaces:
         clear = clear - np.where(candidates.edge, candidates.lacking, 0.0)
     held = np.where(np.isfinite(clear), clear, 0.0)
-    ratio = flanks.lever_ratios / lever_ratios
-    matrix = flanks.matrix * ratio[..., :, None] * ratio[..., None, :]
-    share = np.where(candidates.touchable & (bool(surfaces) | ~after), 1 / (width * lever_ratios**2), 0.0)
+    matrix = flanks.matrix.copy()
+    share = np.where(candidates.touchable & (bool(surfaces) | ~after), 1 / width, 0.0)
     diagonal = np.arange(matrix.shape[-1])
     own = (bodies.pinion.own(candidates.rho[0]) - bodies.pinion.hub_windup) * share
     matrix[..., diagonal, diagonal] -= np.where(after, 0.0, own)
     middle = 0.5 * (pair.points.A + pair.points.E)
     place = np.where(candidates.touchable, np.clip(candidates.place, *setup.ends), middle)
-    tilted_lever_ratios = flanks.tilted_lever_ratios * ratio
     beyond = np.zeros((2, *clear.shape))
     beside: tuple[Booleans, ...] = ()
     if surfaces:
-        tilted_lever_ratios = np.where(
-            after, tilted_lever_ratios - flanks.lever_ratios + 1.0, tilted_lever_ratios
-        )
         laws = PairLaws(bodies.hertz(place, candidates.curvature))
         wheel, other = bodies.wheel, pair.line_of_action - candidates.place
         rounded = up_to(other, wheel.rho_range[1], wheel.module)[0]
@@ -186,11 +181,20 @@ def moved_flanks(
             )
         )
     else:
-        laws, _ = corner_laws.at(candidates, lever_ratios, moving=True)
+        laws, _ = corner_laws.at(candidates, moving=True)
     base = np.where(after, candidates.place, candidates.rho[0]) - held
     base = np.where(
         before & bool(surfaces), candidates.rho[0] - held - np.where(before, candidates.lacking, 0.0), base
     )
     return MovedFlanks(
-        matrix, laws, clear, tilted_lever_ratios, surfaces, beside, beyond, base, share, bodies.pinion
+        matrix,
+        laws,
+        lever_ratios * clear,
+        lever_ratios,
+        surfaces,
+        beside,
+        beyond,
+        base,
+        share,
+        bodies.pinion,
     )

@@ -36,9 +36,9 @@ def cell_roll(
     def differ(of: slice) -> Array:
         rho, roll, step = candidates.rho[:, of], moves.roll[of], STEP * bodies.pair.module
         (count, pairs), n = roll.shape[:2], face.cells
-        ones, still = np.ones((count, pairs)), np.zeros_like(roll)
+        still = np.zeros_like(roll)
         ahead, behind = (
-            cell_matrix(held, bodies, rho + np.array([by, 0.0])[:, None, None], ones, still, (0,))
+            cell_matrix(held, bodies, rho + np.array([by, 0.0])[:, None, None], still, (0,))
             for by in (step, -step)
         )
         derivative = ((ahead - behind) / (2 * step)).reshape(count, pairs, n, pairs, n)
@@ -55,30 +55,24 @@ def cell_roll(
     return kept_unless_large("roll", key, numbers, cut)
 
 
-def other_pairs(
-    held: CellCoupling, touchable: Booleans, lever_ratios: Array, before: Array, bulk: Array
-) -> CellCoupling:
-    """Compliance between cells that has another one of the plane, and forces by other levers.
+def other_pairs(held: CellCoupling, touchable: Booleans, more: Array) -> CellCoupling:
+    """Compliance between cells that has another one of the plane.
 
     Parameters
     ----------
     held : CellCoupling
-        With the plane's compliance ``before``.
     touchable : (positions, pairs) boolean array
-    lever_ratios : (positions, pairs) array
-        Of its forces, over those of the forces that are asked for.
-    before, bulk : (positions, pairs, pairs) arrays
-        [m/N]
+    more : (positions, pairs, pairs) array
+        By which that of the plane is more [m/N].
     """
     pairs = touchable.shape[-1]
     n, blocks = held.unknowns // pairs, []
-    cell, ratio_products = np.arange(n), lever_ratios[..., :, None] * lever_ratios[..., None, :]
-    more = n * (bulk - before * ratio_products)
+    cell = np.arange(n)
     for row, block in enumerate(held.blocks):
         at = np.flatnonzero(touchable[row])
-        k, between = len(at), np.ix_(at, at)
-        coupled = block.reshape(k, n, k, n) * ratio_products[row][between][:, None, :, None]
-        coupled[:, cell, :, cell] += more[row][between]
+        k = len(at)
+        coupled = block.reshape(k, n, k, n).copy()
+        coupled[:, cell, :, cell] += n * more[row][np.ix_(at, at)]
         blocks.append(coupled.reshape(k * n, k * n))
     return CellCoupling(held.cells, tuple(blocks), held.unknowns)
 

@@ -25,7 +25,6 @@ from fem.contact.cell_coupling import CellCoupling
 from fem.contact.cell_matrix import cross_coupling
 from fem.contact.contact_sides import between
 from fem.contact.cross_coupling import CellCross, CrossCoupling, DenseCross
-from fem.contact.loaded_flanks import LoadedFlanks
 from fem.contact.moved_share import open_gaps
 from fem.contact.moved_side import MovedSide
 from fem.contact.moving_contacts import MovingContacts
@@ -33,6 +32,7 @@ from fem.contact.shared_contacts import SharedContacts
 from gears.sharing.active_set import Linearised, LoadShare
 
 if TYPE_CHECKING:
+    from fem.laws.contact_candidates import ContactCandidates
     from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["MovedSides", "MovingSides"]
@@ -138,17 +138,11 @@ class MovingSides:
         front, back = self.split(give)
         return replace(self, front=self.front.bent_by(front), back=self.back.bent_by(back))
 
-    def plus(self, more: Array, lever_ratios: Array) -> MovingSides:
+    def plus(self, more: Array) -> MovingSides:
         """As of ``MovingContacts``, with what loads on one side do to the other."""
-        pairs = self.count // self.front.cells
-        ratios = lever_ratios[:, :pairs], lever_ratios[:, pairs:]
         assert isinstance(self.cross, CellCross)
-        return replace(
-            self,
-            front=self.front.plus(more, ratios[0]),
-            back=self.back.plus(more, ratios[1]),
-            cross=self.cross.plus(more[0, 1], ratios),
-        )
+        front, back, cross = self.front.plus(more), self.back.plus(more), self.cross.plus(more[0, 1])
+        return replace(self, front=front, back=back, cross=cross)
 
     def of_sides(self, share: LoadShare) -> tuple[LoadShare, LoadShare]:
         """Share of either side, by the turn that closes its gaps."""
@@ -182,26 +176,22 @@ class MovedSides:
         parts = rise[..., :count, :], rise[..., count:, :]
         here, there = (side.contacts(bodies, part, strip) for side, part in zip(sides, parts, strict=True))
 
-        def rolled(by: tuple[float, float]) -> tuple[LoadedFlanks, LoadedFlanks]:
+        def rolled(by: tuple[float, float]) -> tuple[ContactCandidates, ContactCandidates]:
+            placed = (side.flanks.candidates for side in sides)
             first, second = (
-                replace(
-                    side.flanks,
-                    lever_ratios=side.lever_ratios,
-                    candidates=replace(side.flanks.candidates, rho=side.flanks.candidates.rho + way * turn),
-                )
-                for side, way in zip(sides, by, strict=True)
+                replace(each, rho=each.rho + way * turn) for each, way in zip(placed, by, strict=True)
             )
             return first, second
 
         ways = ((0.0, 0.0), (step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step))
         places = [rolled(by) for by in ways]
-        still, *others = (between(setup, bodies, *flanks) for flanks in places)
+        still, *others = (between(setup, bodies, *placed) for placed in places)
         cross: CrossCoupling = DenseCross(np.stack([still, *_derivatives(others, step)]))
         if isinstance(here.coupling, CellCoupling) and isinstance(there.coupling, CellCoupling):
             face = replace(setup.face, strip=strip)
             still_cells, *other_cells = (
-                cross_coupling(face, bodies, setup.back, flanks, matrix)
-                for flanks, matrix in zip(places, (still, *others), strict=True)
+                cross_coupling(face, bodies, setup.back, placed, matrix)
+                for placed, matrix in zip(places, (still, *others), strict=True)
             )
             by_position = (_derivatives(blocks, step) for blocks in zip(*other_cells, strict=True))
             slopes = zip(*by_position, strict=True)
@@ -219,11 +209,6 @@ class MovedSides:
     def turned_levers(self) -> Array:
         """As of ``MovedSide``."""
         return np.concatenate([side.turned_levers() for side in (self.front, self.back)], axis=-1)
-
-    @property
-    def lever_ratios(self) -> Array:
-        """As of ``MovedSide``, with those of the other side after them."""
-        return np.concatenate([self.front.lever_ratios, self.back.lever_ratios], axis=-1)
 
     @property
     def sides(self) -> tuple[MovedSide, MovedSide]:

@@ -3,7 +3,8 @@
 The gap of a flank on the other side is the backlash, its own gap and the transmission error D, less what loads on both
 sides bend it by:
 
-    g_k = j + gap_k + D + sum_i X_ki F_i + sum_l B_kl G_l + local(G_k) >= 0,   sum l_i F_i - sum l_k G_k = T/r_b1,
+    g_k = kappa_k (j + gap_k + D) + sum_i X_ki F_i + sum_l B_kl G_l + local(G_k) >= 0,
+    sum kappa_i F_i - sum kappa_k G_k = T/r_b1,
 
 with B of the mirrored gears and X of loads on one side seen from the other (``fem.influence.back_compliance``).
 """
@@ -54,7 +55,9 @@ class OppositeFlanks:
     lever: Array = quantity(
         "1", "lever of the normal about the axes, over the base radii", "gear position pair"
     )
-    gap: Array = quantity("m", "gap that is left where no force is", "position pair", shown="um")
+    gap: Array = quantity(
+        "m", "gap that is left along the normal where no force is", "position pair", shown="um"
+    )
     lever_loss: Array = part("as of the cycle, where contacts move")
     further_lever_loss: Array = part("the same of further forces")
 

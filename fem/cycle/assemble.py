@@ -42,7 +42,6 @@ def cycle_of(
     candidates, pairs = contact.candidates, len(contact.candidates.offset)
     force = torque / setup.pair.base_radii[0]
     opposite = contact.opposite
-    turned = contact.share.forces[number]  # kappa F
     deflection = contact.deflection(number).ravel()
     moved = contact.turn(number).ravel()
     stiffness = contact.share.stiffness[number].ravel()
@@ -50,12 +49,11 @@ def cycle_of(
     bad = np.nan if refusal else 0.0
     errors = contact.contacts.errors
     by_cells = float(errors.relative[number] + errors.ends[number])
-    forces = (turned / contact.lever_ratios).reshape(-1, pairs) + bad
+    forces = contact.share.forces[number].reshape(-1, pairs) + bad
     edge = np.tile(candidates.edge, (setup.pitches, 1))
     on_path = candidates.touchable & ~candidates.edge
     rho = contact.flank_rho(number).reshape(2, -1, pairs)
-    # of the normal forces themselves, where the solution has kappa F
-    lost = (contact.lever_ratios * contact.lever_loss(number)).reshape(2, 2, -1, pairs)
+    lost = contact.lever_loss(number).reshape(2, 2, -1, pairs)
     large = [] if refusal else _large(setup, contact, number, forces, bodies.plane)
     if large:
         warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
@@ -86,7 +84,7 @@ def cycle_of(
         transmission_error=(-(setup.pair.backlash + moved) if setup.back else moved) + bad,
         stiffness=stiffness + bad,
         secant_stiffness=(abs(force) / deflection if force else stiffness) + bad,
-        pair_stiffness=(contact.share.pair_stiffness[number] / contact.lever_ratios).reshape(-1, pairs) + bad,
+        pair_stiffness=contact.share.pair_stiffness[number].reshape(-1, pairs) + bad,
         plane=bodies.plane,
         beyond_path=setup.beyond_path,
         error=bodies.error + by_cells + by_fits,
@@ -127,13 +125,13 @@ def cycle_of(
 def _opposite(contact: ContactState, number: int) -> OppositeFlanks:
     """Flanks on the other side under one torque, where they bear; slopes by D, which opens their gaps."""
     candidates, forces = contact.candidates, contact.share.forces[number]
-    (pitches, positions, pairs), ratios = forces.shape, contact.lever_ratios
+    pitches, positions, pairs = forces.shape
     rows = pitches * positions
-    lost = (ratios * contact.lever_loss(number)).reshape(2, 2, rows, pairs)
+    lost = contact.lever_loss(number).reshape(2, 2, rows, pairs)
     places = np.where(candidates.touchable, contact.flank_rho(number), np.nan)
     return OppositeFlanks(
-        (forces / ratios).reshape(rows, pairs),
-        (-contact.share.pair_stiffness[number] / ratios).reshape(rows, pairs),
+        forces.reshape(rows, pairs),
+        -contact.share.pair_stiffness[number].reshape(rows, pairs),
         places.reshape(2, rows, pairs),
         np.tile(candidates.edge, (pitches, 1)),
         candidates.teeth,
@@ -145,7 +143,7 @@ def _opposite(contact: ContactState, number: int) -> OppositeFlanks:
 
 
 def _on_faces(contact: ContactState, number: int) -> Array:
-    """Forces kappa F of whole faces at the cells' line loads (cells, ..., pairs) [N]."""
+    """Forces of whole faces at the cells' line loads (cells, ..., pairs) [N]."""
     forces = contact.contacts.forces[number]
     return np.asarray(forces.shape[-1] * np.moveaxis(forces, -1, 0))
 

@@ -158,15 +158,14 @@ class ContactProblem:
         """
         if not self.force:
             return None
-        forces = state.share.forces[0, 0] / state.lever_ratios
         rho = state.flank_rho(0)[:, 0]
-        whole = np.stack([state.torques(0)[0] / abs(self.force), forces, *rho], axis=-1)
+        whole = np.stack([state.torques(0)[0] / abs(self.force), state.share.forces[0, 0], *rho], axis=-1)
         cells = state.cell_forces(0)[0]
         return np.concatenate([whole, cells * cells.shape[-1] / self.setup.pair.face_width], axis=-1)
 
     def _curves(self, state: ContactState) -> Array:
         """Transmission error, tangent and secant stiffness, moments and their slopes (7, positions)."""
-        share, candidates, turned = state.share, state.candidates, state.share.forces[0, 0]
+        share, candidates = state.share, state.candidates
         size, deflection = abs(self.force), state.deflection(0)[0]
         moved, tangent = state.turn(0)[0], share.stiffness[0, 0]
         secant = size / deflection if size else tangent
@@ -174,11 +173,8 @@ class ContactProblem:
             rho1 = np.where(
                 candidates.touchable & ~candidates.edge, np.clip(candidates.place, *self.setup.ends), np.nan
             )
-            shares = (
-                turned * state.tilted_lever_ratios / size
-                if size
-                else turned / turned.sum(axis=-1, keepdims=True)
-            )
+            torques = share.forces[0, 0] * state.flanks.tilted_lever_ratios
+            shares = torques / (size or torques.sum(axis=-1, keepdims=True))
             added = yielding_over_face(self.film, rho1, state.cell_forces(0)[0], shares)
             secant = size / (size / secant + added) if size else secant
         if self.setup.back:

@@ -25,7 +25,7 @@ def fit_error(
     number : int
         Of the torque.
     force : (cells, ..., pairs) array
-        Forces times their levers over the base radius, of whole faces at the line loads of the cells [N].
+        Of whole faces at the line loads of the cells [N].
     moving, behind : bool
         Whether contacts move, and whether flanks on the other side bear.
     """

@@ -33,7 +33,7 @@ class LoadedContacts:
     bodies : PairCompliance
     candidates : ContactCandidates
     force : (cells, ..., pairs) array
-        Forces times their levers over the base radius, of whole faces at the line loads of the cells [N].
+        Of whole faces at the line loads of the cells [N].
     approach : (...) array
         Deflection [m].
     load : float

@@ -46,10 +46,8 @@ class CornerLaws:
             self._other = CornerLaws(self.setup, bodies)
         return self._other
 
-    def at(
-        self, candidates: ContactCandidates, lever_ratios: Array, moving: bool = False
-    ) -> tuple[PairLaws, Array]:
-        """Laws of all contacts, for kappa F, and the largest of these forces that they cover at tip edges [N].
+    def at(self, candidates: ContactCandidates, moving: bool = False) -> tuple[PairLaws, Array]:
+        """Laws of all contacts, and the largest forces that they cover at tip edges [N].
 
         What strips slide is given back to contacts that are ``moving`` (``fem.laws.cut_off``).
         """
@@ -67,7 +65,7 @@ class CornerLaws:
             inside, outside = self._surfaces(corner, moving)
             near = candidates.touchable & ~edge & (nominal - end > inside.first)
             rounded = up_to(candidates.rho[corner][near], gear.rho_range[1], pair.module)[0]
-            more = (gear.own(rounded) - gear.own(candidates.rho[corner][near])) / lever_ratios[near] ** 2
+            more = gear.own(rounded) - gear.own(candidates.rho[corner][near])
             held = gear.own(up_to(nominal[edges], gear.rho_range[1], pair.module)[0]) - gear.hub_windup
             corners += [
                 inside.held(near, nominal[near] - end, more / pair.face_width),
@@ -75,8 +73,7 @@ class CornerLaws:
             ]
             largest[edges] = outside.covered(nominal[edges] - end)
             place[edges] = end if corner == 0 else line - end
-        hertz = bodies.hertz(place, candidates.curvature, np.where(edge, 1.0, lever_ratios))
-        return PairLaws(hertz, tuple(corners)), largest[edge]
+        return PairLaws(bodies.hertz(place, candidates.curvature), tuple(corners)), largest[edge]
 
     @cached_property
     def slid(self) -> tuple[float, float]:

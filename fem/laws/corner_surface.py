@@ -14,7 +14,7 @@ from fem.laws.corner_law import CornerSurface
 from fem.laws.cut_off import FAR, FIRST, along, cut_off
 from fem.laws.local_law import Table
 from fem.laws.relieved_flanks import ends_of_flanks, gentle, plain_touch, touch
-from fem.laws.tip_contact import edge_laws, nearest_gap, rounded_law
+from fem.laws.tip_contact import edge_laws, edge_lever, nearest_gap, rounded_law
 
 if TYPE_CHECKING:
     from fem.laws.mesh_setup import MeshSetup
@@ -98,7 +98,7 @@ class _Corner:
             self.bodies, corner, near, place, force, setup.rounds[corner], removed, self.slid, self.turned
         )
         own = (gear.own(near.rho[corner]) - gear.hub_windup) / setup.pair.face_width
-        return np.asarray(more + ((own - self.own(near.rho[corner])) / near.lever[0] ** 2)[:, None])
+        return np.asarray(more + (own - self.own(near.rho[corner]))[:, None])
 
     def open(self, z: Array) -> Array:
         """Gaps between the corner and the other flank at places [m]."""
@@ -113,7 +113,8 @@ class _Corner:
         shape = setup.removed, self.turned
         asked = np.repeat(force[None], len(z), axis=0)
         if rounding.radius > 0.0:
-            points, approach = rounded_law(*tips, rounding, *shape)
+            lever = edge_lever(setup.pair, corner, place, rounding, self.turned)
+            points, approach = rounded_law(*tips, lever, rounding, *shape)
             gap = np.where(np.isnan(approach), np.inf, approach).min(axis=1)
             # where strips farther in recede, those that bear go on bearing
             largest = np.where(np.isfinite(points[:, -1]), points[:, -1], np.inf)

@@ -89,21 +89,22 @@ def cut_off(
     """
     pair, width, line = bodies.pair, bodies.pair.face_width, bodies.pair.line_of_action
     gear, other = (bodies.pinion, bodies.wheel)[corner], (bodies.wheel, bodies.pinion)[corner]
-    rho, lever_ratios = touched.rho[corner], touched.lever[0]
+    rho, lever = touched.rho[corner], touched.lever[0]
     round_end = gear.rho_end if rounding is None else rounding.rho
     distance = np.maximum(round_end**2 - rho**2, 0.0) / (2 * gear.base_radius)
     radius = rho1 * (line - rho1) / (line * touched.curvature)
-    of_one = hertz_half_width(1 / (width * lever_ratios), radius, _reduced(bodies))
+    of_one = hertz_half_width(1 / width, radius, _reduced(bodies))
+    gap = lever * touched.gap
     law: Callable[[Array], tuple[Array, Array]]
-    tips = pair, bodies.tips[corner], corner, rho1, other.law
+    tips = pair, bodies.tips[corner], corner, rho1, other.law, lever
     rounded = rounding is not None and rounding.radius > 0.0
     if rounding is None or not rounded:
         points, approach = strip_law(*tips, removed, turned)
-        least, law = points[:, FIRST], partial(_between, points, approach - touched.gap[:, None])
+        least, law = points[:, FIRST], partial(_between, points, approach - gap[:, None])
     else:
         points, approach = rounded_law(*tips, rounding, removed, turned)
         least = np.where(points > 0.0, points, np.inf).min(axis=1)
-        law = partial(along, points, approach - touched.gap[:, None])
+        law = partial(along, points, approach - gap[:, None])
     if removed is not None:
         # whose gap may have its minimum a little inside the corner, where few strips would pull
         least = np.maximum(least, (0.4 * tips[1].distance[FIRST] / of_one) ** 2)
@@ -112,9 +113,9 @@ def cut_off(
     least = np.where(reached, least, LAST)
     last = np.where(reached, np.where(np.isnan(points), 0.0, points).max(axis=1), 1.0)
     comes = np.clip((JOIN * distance / of_one) ** 2, least, LAST * last)[:, None]
-    flank = bodies.hertz(rho1, touched.curvature, lever_ratios)
-    own = (gear.own(rho) - gear.hub_windup) / (width * lever_ratios**2)
-    further = _leaning(bodies, corner, distance, rho, touched.leaning[corner]) / (width * lever_ratios**2)
+    flank = bodies.hertz(rho1, touched.curvature)
+    own = (gear.own(rho) - gear.hub_windup) / width
+    further = _leaning(bodies, corner, distance, rho, touched.leaning[corner]) / width
     per_log, constant = np.reshape(flank.per_log + 0.0 * rho1, (-1, 1)), flank.constant + own + further
     # over a rounding the law goes on straight beyond its last strip
     asked = np.clip(force, comes, (np.full_like(last, np.inf) if rounded else last)[:, None])

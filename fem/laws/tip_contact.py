@@ -37,7 +37,16 @@ from fem.laws.tip_geometry import TipRound, lever_ratio, opening, tip_round, unl
 if TYPE_CHECKING:
     from gears import GearPair, ToothProfile
 
-__all__ = ["EdgeLaw", "StripsOfContact", "edge_laws", "nearest_gap", "rounded_law", "strip_law", "strips_of"]
+__all__ = [
+    "EdgeLaw",
+    "StripsOfContact",
+    "edge_laws",
+    "edge_lever",
+    "nearest_gap",
+    "rounded_law",
+    "strip_law",
+    "strips_of",
+]
 
 ARC_STRIP, ARC_FINE, ARC_REACH = 0.02, 0.25, 0.7
 """On a rounding: width of the strips, the length that is covered by them, and the length covered at all (in
@@ -88,10 +97,11 @@ class EdgeLaw:
     Attributes
     ----------
     force : (n, k) array
-        Growing forces on the line of action that turn the pinion as the contact's do [N], the first one zero.
+        Growing forces along the normal of the touched flank where the tip touches first, with the torque of all strips
+        [N]; the first one zero.
     approach : (n, k) array
-        Turn of the pinion times its base radius [m] without the touched flank's ``own`` part, without the rotation of
-        the tip's own body on its hub, and without other teeth; at zero force that at which the tip touches.
+        By how much a turn brings the flanks nearer along that normal [m], without the touched flank's ``own`` part,
+        without the rotation of the tip's own body on its hub, and without other teeth; at zero force the gap.
     largest : (n,) array
         Force [N] up to which the law holds: over all strips, or until strips farther in would let it fall.
         Beyond it goes on straight.
@@ -123,8 +133,8 @@ def _gaps(
     return gaps + missing[1 - corner](touched), touched
 
 
-def _lever_ratios(pair: GearPair, corner: int, touched_rho: Array, rho1: Array, turned: int = 0) -> Array:
-    """Levers of forces on the flank at ``touched_rho`` (n, k) about the turned gear's axis, over its base radius."""
+def _lever_ratios(pair: GearPair, corner: int, touched_rho: Array, rho1: Array, turned: int) -> Array:
+    """Levers of normals of the flank at ``touched_rho`` (n, k) about the turned gear's axis, over its base radius."""
     return (
         lever_ratio(pair, touched_rho, rho1[:, None], corner)
         if corner == turned
@@ -156,11 +166,17 @@ def nearest_gap(
 
 
 def _touching(
-    pair: GearPair, corner: int, rho1: Array, tip: _Tip, missing: tuple[Removed, Removed], turned: int = 0
+    pair: GearPair,
+    corner: int,
+    rho1: Array,
+    tip: _Tip,
+    missing: tuple[Removed, Removed],
+    lever: Array,
+    turned: int = 0,
 ) -> Array:
-    """Approach at which each strip by itself would touch (contacts, strips) [m]."""
+    """Approach at which each strip by itself would touch (contacts, strips) [m]; ``lever`` as of ``strip_law``."""
     gaps, touched = _gaps(pair, corner, rho1, tip, missing)
-    return np.asarray(gaps / _lever_ratios(pair, corner, touched, rho1, turned))
+    return np.asarray(gaps / (_lever_ratios(pair, corner, touched, rho1, turned) / lever[:, None]))
 
 
 def edge_laws(
@@ -188,26 +204,36 @@ def edge_laws(
     removed : (function, function), optional
         Material missing from the flanks of pinion and wheel; none unless given.
     turned : {0, 1}
-        Whose turn the approach is: of the pinion, or of the wheel with the pinion where it is.
+        Which gear turns: the pinion, or the wheel with the pinion where it is.
     """
     profile = pair.teeth_profiles[corner]
     sharp, missing = tip_round(profile, 0.0), removed or (_nothing, _nothing)
     at_corner = _at_corner(profile, sharp)
     _, touched_rho = _gaps(pair, corner, rho1, at_corner, missing)
+    lever = _lever_ratios(pair, corner, touched_rho, rho1, turned)[:, 0]
     if removed is None:
-        force, approach = begun(*strip_law(pair, strips, corner, rho1, other, turned=turned))
+        force, approach = begun(*strip_law(pair, strips, corner, rho1, other, lever, turned=turned))
         smooth = np.ones(len(rho1), dtype=bool)
     else:
         tip = _surface(profile, strips.distance, strips.width, sharp)
-        force, approach, order = closings(*_strips(pair, strips, corner, rho1, other, tip, missing, turned))
+        force, approach, order = closings(
+            *_strips(pair, strips, corner, rho1, other, tip, missing, lever, turned)
+        )
         force = force * pair.face_width
         # the corner is nearer than the middle of its strip
-        first = _touching(pair, corner, rho1, at_corner, missing, turned)[:, 0]
+        first = _touching(pair, corner, rho1, at_corner, missing, lever, turned)[:, 0]
         approach[:, 0] = np.minimum(approach[:, 0], first)
         smooth = np.all(order == np.arange(order.shape[1]), axis=1)
         force[smooth], approach[smooth] = begun(force[smooth], smoothed(force, approach)[smooth])
     force, approach, largest = _growing(force, approach)
     return EdgeLaw(force, approach, touched_rho[:, 0], largest, smooth)
+
+
+def edge_lever(pair: GearPair, corner: int, rho1: Array, rounding: TipRound, turned: int = 0) -> Array:
+    """Lever of the touched flank's normal about the turned gear's axis, over its base radius, at tip edges (n,)."""
+    tip = _at_corner(pair.teeth_profiles[corner], rounding)
+    _, touched = _gaps(pair, corner, rho1, tip, (_nothing, _nothing))
+    return _lever_ratios(pair, corner, touched, rho1, turned)[:, 0]
 
 
 def strip_law(
@@ -216,19 +242,21 @@ def strip_law(
     corner: int,
     rho1: Array,
     other: PlaneElasticity,
+    lever: Array,
     removed: tuple[Removed, Removed] | None = None,
     turned: int = 0,
 ) -> tuple[Array, Array]:
     """Force [N] and approach [m] (n, k) of contacts that spread from a sharp corner inwards, strip by strip.
 
-    Arguments as for ``edge_laws``. On the path it is the law of contacts that bear at the corner; the first points,
-    whose strips would have to pull there, mean nothing.
+    Both along the contact's normal, whose lever about the turned gear's axis over its base radius is ``lever`` (n,);
+    other arguments as for ``edge_laws``. On the path it is the law of contacts that bear at the corner; the first
+    points, whose strips would have to pull there, mean nothing.
     """
     profile = pair.teeth_profiles[corner]
     sharp, missing = tip_round(profile, 0.0), removed or (_nothing, _nothing)
-    first = _touching(pair, corner, rho1, _at_corner(profile, sharp), missing, turned)[:, 0]
+    first = _touching(pair, corner, rho1, _at_corner(profile, sharp), missing, lever, turned)[:, 0]
     tip = _surface(profile, strips.distance, strips.width, sharp)
-    kernel, gaps, lever_ratios = _strips(pair, strips, corner, rho1, other, tip, missing, turned)
+    kernel, gaps, lever_ratios = _strips(pair, strips, corner, rho1, other, tip, missing, lever, turned)
     force, approach = from_the_corner(kernel, gaps, first, lever_ratios)
     return force * pair.face_width, smoothed(force, approach)
 
@@ -239,6 +267,7 @@ def rounded_law(
     corner: int,
     rho1: Array,
     other: PlaneElasticity,
+    lever: Array,
     rounding: TipRound,
     removed: tuple[Removed, Removed] | None = None,
     turned: int = 0,
@@ -250,7 +279,7 @@ def rounded_law(
     tip = _surface(pair.teeth_profiles[corner], *round_layout(pair.module, rounding), rounding)
     answer = strips.on(tip.distance, tip.width)
     missing = removed or (_nothing, _nothing)
-    kernel, gaps, lever_ratios = _strips(pair, answer, corner, rho1, other, tip, missing, turned)
+    kernel, gaps, lever_ratios = _strips(pair, answer, corner, rho1, other, tip, missing, lever, turned)
     force, approach = by_the_far_end(kernel, gaps, lever_ratios)
     lower = smoothed(force, approach)
     return force * pair.face_width, np.where(np.isfinite(lower), lower, approach)
@@ -264,15 +293,16 @@ def _strips(
     other: PlaneElasticity,
     tip: _Tip,
     missing: tuple[Removed, Removed],
+    lever: Array,
     turned: int = 0,
 ) -> tuple[Array, Array, Array]:
-    """Kernel (n, k, k) of both bodies [m per N/m], gaps [m] and levers (n, k) of strips at a tip."""
+    """Kernel (n, k, k) of both bodies [m per N/m], gaps [m], levers over the contact's (n, k) of strips at a tip."""
     gaps, touched = _gaps(pair, corner, rho1, tip, missing)
     angle = _lean(pair, corner, rho1, tip, touched)
     own = strips.lever(angle)
     hub = strips.hub_windup * own[:, :, None] * own[:, None, :]
     kernel = strips.leaning(angle) - hub + flat_kernel(tip.distance, tip.width, other, pair.module)
-    return kernel, gaps, _lever_ratios(pair, corner, touched, rho1, turned)
+    return kernel, gaps, _lever_ratios(pair, corner, touched, rho1, turned) / lever[:, None]
 
 
 def _lean(pair: GearPair, corner: int, rho1: Array, tip: _Tip, touched: Array) -> Array:
@@ -295,7 +325,7 @@ class StripsOfContact:
     lean : (k,) array
         Angles of the forces from the inward normals of the corner's flank, away from the tip [rad].
     gaps, lever_ratios : (k,) arrays
-        [m], -
+        Gaps [m], and levers about the pinion's axis over its base radius.
     kernel : (k, k) array
         Of both bodies, without the turn on the hub [m per N/m].
     """
@@ -326,7 +356,7 @@ def strips_of(
     rounding = rounding or tip_round(profile, 0.0)
     tip = _surface(profile, *(layout or round_layout(pair.module, rounding)), rounding)
     answer, missing = strips.on(tip.distance, tip.width), (_nothing, _nothing)
-    kernel, gaps, lever_ratios = _strips(pair, answer, corner, at, other, tip, missing)
+    kernel, gaps, lever_ratios = _strips(pair, answer, corner, at, other, tip, missing, np.ones(1))
     _, touched = _gaps(pair, corner, at, tip, missing)
     lean = _lean(pair, corner, at, tip, touched)[0]
     return StripsOfContact(tip.distance, tip.width, touched[0], lean, gaps[0], lever_ratios[0], kernel[0])

@@ -133,41 +133,39 @@ class ShaftsUnderFace:
         """S of both shafts between the cells of either side (2, 2, cells, cells) [m/N]."""
         return np.asarray(self.between.sum(axis=2))
 
-    def levers(self, kappa: Array, count: int) -> Array:
-        """S z/kappa (positions, pairs cells) [m]: what a tilt closes, and the moment of forces kappa F."""
-        sign = np.where(np.arange(kappa.shape[-1]) < count, 1.0, -1.0)
-        return np.asarray((sign[:, None] * self.middles / kappa[..., None]).reshape(len(kappa), -1))
+    def levers(self, pairs: int, count: int) -> Array:
+        """S z of the cells of all pairs (pairs cells,) [m]: what a tilt closes, and the moment of forces."""
+        sign = np.where(np.arange(pairs) < count, 1.0, -1.0)
+        return np.asarray(sign[:, None] * self.middles).ravel()
 
-    def bent(self, forces: Array, kappa: Array, count: int, side: int = 0) -> Array:
+    def bent(self, forces: Array, count: int, side: int = 0) -> Array:
         """What either shaft gives way at the cells (..., 2, cells) [m] along the line of action of a side.
 
         Parameters
         ----------
         forces : (..., pairs, cells) array
-            kappa F [N].
-        kappa : (positions, pairs) array
+            [N]
         count : int
             Pairs on the loaded side.
         side : {0, 1}
             The loaded one, or the other.
         """
-        loads = forces / kappa[..., None]
-        own, other = (loads[..., pairs, :].sum(axis=-2) for pairs in (slice(count), slice(count, None)))
+        own, other = (forces[..., pairs, :].sum(axis=-2) for pairs in (slice(count), slice(count, None)))
         return np.asarray(
             np.einsum(BY_LOADS, self.between[side, 0], own, optimize=True)
             + np.einsum(BY_LOADS, self.between[side, 1], other, optimize=True)
         )
 
-    def give(self, forces: Array, kappa: Array, count: int) -> Array:
+    def give(self, forces: Array, count: int) -> Array:
         """What both give way by at the cells of each pair, along the line of action of its side (..., pairs, cells)."""
-        sides = (self.bent(forces, kappa, count, side).sum(axis=-2)[..., None, :] for side in (0, 1))
+        sides = (self.bent(forces, count, side).sum(axis=-2)[..., None, :] for side in (0, 1))
         first, second = sides
-        return np.asarray(np.where(np.arange(kappa.shape[-1])[:, None] < count, first, second))
+        return np.asarray(np.where(np.arange(forces.shape[-2])[:, None] < count, first, second))
 
     def held(
         self,
         share: LoadShare,
-        kappa: Array,
+        lever_ratios: Array,
         gaps: Array,
         slopes: tuple[Array, Array],
         levers: Array,
@@ -179,28 +177,28 @@ class ShaftsUnderFace:
         ----------
         share : LoadShare
             Of cells (..., pairs cells), its deflection counted with the shafts.
-        kappa : (positions, pairs) array
-            Levers of the normals in whose forces it is.
+        lever_ratios : (positions, pairs) array
+            Of the normals.
         gaps : (..., pairs) array
-            Of pairs, beyond that of the pair that touches first [m].
+            Of pairs along them, where the first pair touches [m].
         slopes : two (..., pairs cells) arrays
-            J^-1 s and J^-1 s z of its cells, with the shafts held [N/m, N].
+            J^-1 s kappa and J^-1 s z of its cells, kappa the lever ratios, with the shafts held [N/m, N].
         levers : (..., pairs cells) array
             Levers of further forces over those for which F is given, below 0 on the other side.
         count : int
             Pairs on the loaded side.
         """
-        rows = levers, self.levers(kappa, count)
+        rows = levers, self.levers(lever_ratios.shape[-1], count)
         mesh = [[np.sum(row * slope, axis=-1) for slope in slopes] for row in rows]
         forces = share.forces.reshape(*share.forces.shape[:-1], -1, len(self.middles))
-        bent = self.bent(forces, kappa, count)
-        touch, behind = self.touches(forces, kappa, gaps, count)
+        bent = self.bent(forces, count)
+        touch, behind = self.touches(forces, lever_ratios, gaps, count)
         held_shafts = HeldShafts(
             bent.mean(axis=-1),
             bent @ self.middles / (self.middles @ self.middles),
             touch,
             np.moveaxis(np.array(mesh), (0, 1), (-2, -1)),
-            self._most(forces, kappa, count),
+            self._most(forces, count),
             behind,
         )
         return (
@@ -213,34 +211,34 @@ class ShaftsUnderFace:
             held_shafts,
         )
 
-    def _most(self, forces: Array, kappa: Array, count: int) -> Array:
+    def _most(self, forces: Array, count: int) -> Array:
         """Largest on the face of what both give way together, along either line of action, over the module."""
-        sides = range(1 if count == kappa.shape[-1] else 2)
-        bent = [self.bent(forces, kappa, count, side).sum(axis=-2) for side in sides]
+        sides = range(1 if count == forces.shape[-2] else 2)
+        bent = [self.bent(forces, count, side).sum(axis=-2) for side in sides]
         return np.asarray(np.max([np.abs(along).max(axis=-1) for along in bent], axis=0) / self.module)
 
-    def touches(self, forces: Array, kappa: Array, gaps: Array, count: int) -> tuple[Array, Array]:
+    def touches(self, forces: Array, lever_ratios: Array, gaps: Array, count: int) -> tuple[Array, Array]:
         """Turns at which the flanks on either side touch without load on shafts that forces have bent (...) [m].
 
         Beyond those on straight ones, each by the turn that closes the gaps of its side; arguments as of ``held``, with
         forces on cells (..., pairs, cells).
         """
         touches = [np.zeros(forces.shape[:-2]) for _ in range(2)]
-        for side, pairs in enumerate((slice(count), slice(count, kappa.shape[-1]))):
+        for side, pairs in enumerate((slice(count), slice(count, forces.shape[-2]))):
             if pairs.start != pairs.stop:
-                own = gaps[..., pairs]
-                bent = self.bent(forces, kappa, count, side).sum(axis=-2)
+                own = gaps[..., pairs] / lever_ratios[:, pairs]
+                bent = self.bent(forces, count, side).sum(axis=-2)
                 clear = own - own.min(axis=-1, keepdims=True) if side else own
-                touches[side] = self._touch(bent, kappa[:, pairs], clear, self.gaps[side])
+                touches[side] = self._touch(bent, lever_ratios[:, pairs], clear, self.gaps[side])
         return touches[0], touches[1]
 
-    def _touch(self, bent: Array, kappa: Array, gaps: Array, face_gaps: Array) -> Array:
-        """Minimum gap along the face of all pairs (...), less the give of the shafts at the cells (..., cells) [m]."""
+    def _touch(self, bent: Array, lever_ratios: Array, gaps: Array, face_gaps: Array) -> Array:
+        """Turn that closes the smallest gap along the face of all pairs (...), beside the give at the cells [m]."""
         straight = not face_gaps.any()  # then it is at a middle or at an end of the face
         along = bent @ (_ends(bent.shape[-1]) if straight else _between_middles(bent.shape[-1]))
         least, beyond = np.full(bent.shape[:-1], np.inf), 0.0 if straight else face_gaps
         on_path = np.min(along + beyond, axis=-1)
-        for lever, gap in zip(kappa.T, np.moveaxis(gaps, -1, 0), strict=True):
+        for lever, gap in zip(lever_ratios.T, np.moveaxis(gaps, -1, 0), strict=True):
             if np.isfinite(gap).any():
                 here = np.flatnonzero(lever != 1.0)
                 first = on_path.copy()

@@ -230,7 +230,7 @@ class PairCompliance(SolvedPair):
             compliance[..., load, point] = compliance[..., point, load] = moved
         return compliance
 
-    def hertz(self, rho1: Array, curvature: Array | float = 1.0, lever: Array | float = 1.0) -> HertzApproach:
+    def hertz(self, rho1: Array, curvature: Array | float = 1.0) -> HertzApproach:
         """Local indentation of pairs at rho1 [m] as a function of their forces.
 
         Parameters
@@ -239,20 +239,15 @@ class PairCompliance(SolvedPair):
             [m]
         curvature : array or float
             Of relieved flanks over that of the involutes.
-        lever : array or float
-            Lever kappa of the normal about the pinion's axis over its base radius, where forces are kappa F and
-            the indentation is what turns the pinion.
         """
         path = self.pair.path_at(np.clip(rho1, 0.0, self.pair.line_of_action))
         width = self.pair.face_width
         first, second = self.pinion.law, self.wheel.law
         reduced = 2 / (1 / first.plane_modulus + 1 / second.plane_modulus)
-        half_width = hertz_half_width(
-            1.0 / (width * lever), path.radius / curvature, reduced
-        )  # of kappa F = 1 N
+        half_width = hertz_half_width(1.0 / width, path.radius / curvature, reduced)  # of 1 N
         length = self.pair.module
         constant = (
             hertz_indentation(half_width, first, length) + hertz_indentation(half_width, second, length)
         ) / width
         per_log = (1 / first.plane_modulus + 1 / second.plane_modulus) / (np.pi * width)
-        return HertzApproach(constant / lever**2, per_log / np.square(lever))
+        return HertzApproach(constant, per_log)

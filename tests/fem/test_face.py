@@ -115,9 +115,9 @@ def test_free_ends_of_a_narrow_face_yield_more_and_alike_at_both_ends(bodies):
     pair = replace(PAIR, face_width=PAIR.module)
     own, cells = replace(bodies, pair=pair), 8
     rho1 = np.array([[pair.points.A + 0.2 * pair.base_pitch, pair.points.A + 1.2 * pair.base_pitch]])
-    rho, kappa = np.stack([rho1, pair.line_of_action - rho1]), np.ones((1, 2))
+    rho = np.stack([rho1, pair.line_of_action - rho1])
     walls, free = (
-        cell_matrix(FaceSetting(cells, model=model), own, rho, kappa, own.bulk(rho1))[0]
+        cell_matrix(FaceSetting(cells, model=model), own, rho, own.bulk(rho1))[0]
         for model in ("walls", "free-ends")
     )
     more = free - walls
@@ -129,7 +129,7 @@ def test_free_ends_of_a_narrow_face_yield_more_and_alike_at_both_ends(bodies):
     assert 1.05 < (even @ free @ even) / (even @ walls @ even) < 1.0 / (1.0 - 0.3**2)  # nearly plane stress
     stress = compliance(PAIR, tolerance=0.05, plane="stress")
     for gear, (load, point) in enumerate((rho[0, 0], rho[1, 0, ::-1])):
-        ends = cell_matrix(FaceSetting(cells), own, rho, kappa, np.zeros((1, 2, 2)), (gear,))[0]
+        ends = cell_matrix(FaceSetting(cells), own, rho, np.zeros((1, 2, 2)), (gear,))[0]
         flat, thick = ((one.pinion, one.wheel)[gear].cross(1, load, point) for one in (stress, own))
         change = (flat - thick).item() / pair.face_width  # less on the one gear, more on the other
         assert even @ ends @ even[::-1] == pytest.approx(change, rel=0.25)

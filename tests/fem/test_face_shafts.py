@@ -170,7 +170,7 @@ def test_the_torque_works_what_bodies_contacts_and_shafts_store(bodies, shafts, 
     assert np.all((forces > 0.0).sum(axis=-1) == cells * found.candidates.touchable.sum())
     assert np.abs(found.contacts.shafts.tilt_touch).min() > 1e-7
     flanks = loaded_flanks(given, bodies, None, 0.6, CornerLaws(given, bodies))
-    coupling = cell_coupling(face, bodies, flanks.candidates, flanks.lever_ratios, flanks.matrix)
+    coupling = cell_coupling(face, bodies, flanks.candidates, flanks.matrix)
     every, nothing = np.ones((2, 1), dtype=bool), np.zeros_like(forces)
     stored = 0.5 * np.sum(forces * coupling.applied(forces, every, nothing), axis=-1)[:, 0]
     loads = found.contacts.forces[:, 0, 0].sum(axis=1)

@@ -38,7 +38,7 @@ def _matrix(bodies, pair, cells, model):
     own = replace(bodies, pair=pair)
     rho1 = np.array([[pair.points.A + 0.2 * pair.base_pitch, pair.points.A + 1.2 * pair.base_pitch]])
     rho = np.stack([rho1, pair.line_of_action - rho1])
-    found = cell_matrix(FaceSetting(cells, model=model), own, rho, np.ones((1, 2)), own.bulk(rho1))
+    found = cell_matrix(FaceSetting(cells, model=model), own, rho, own.bulk(rho1))
     return found.reshape(2, cells, 2, cells)
 
 

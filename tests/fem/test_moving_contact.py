@@ -55,6 +55,7 @@ def alone(bodies, position, torque, staying=False):
         0.0,
         yes,
         np.ones((1, 1)),
+        np.ones((1, 1)),
         moves,
         np.ones((1, 1, 1, 1)),
         None,

@@ -90,6 +90,27 @@ def test_the_force_stands_on_the_flank_without_relief():
     assert near.lever[0, 1] == pytest.approx(lever_ratio(pair, near.rho[1, 1], end - 0.3e-3, 0), abs=1e-4)
 
 
+def test_forces_deflections_and_gaps_are_those_along_the_common_normals(bodies_of):
+    """A turn D closes kappa D along a normal whose lever about the pinion's axis is kappa r_b1."""
+    pair = relieved(20e-6, 3e-3, "parabolic")
+    bodies, force = bodies_of(pair), 300.0 / pair.base_radii[0]
+    found = solve_contact(MeshSetup(pair, 16, beyond_path=False), bodies, np.array([force]), None)
+    candidates, leaning = found.candidates, 0
+    for row, forces in enumerate(found.share.forces[0, 0]):
+        on = np.flatnonzero(forces)
+        rho, kappa = candidates.rho[:, row, on], candidates.lever[0, row, on]
+        yielding = bodies.bulk(*rho, candidates.leaning[:, row, on]) @ forces[on]
+        yielding += bodies.hertz(candidates.place[row, on], candidates.curvature[row, on]).approach(
+            forces[on]
+        )
+        gap = candidates.gap[0, row] - candidates.gap[0, row].min()
+        turn = found.share.transmission_error[0, 0, row]
+        np.testing.assert_allclose(yielding, kappa * (turn - gap[on]), rtol=1e-9)
+        assert kappa @ forces[on] == pytest.approx(force, rel=1e-12)
+        leaning += np.count_nonzero(np.abs(kappa - 1.0) > 1e-3)
+    assert leaning > 4
+
+
 def test_least_gap_is_well_below_that_of_the_nominal_place():
     """Reading relief where involutes would touch errs by R h'^2/2: a micrometre of twenty."""
     pair = relieved(20e-6, 3e-3, "parabolic")

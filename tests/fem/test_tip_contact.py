@@ -336,11 +336,8 @@ def test_edge_and_flank_deflect_as_the_pinion_turns(article_pair, article_bodies
         lever = np.cos(angle) - np.sin(angle) * pinion.rho_range[1] / pinion.base_radius
         bulk[edge, edge] -= corner - pinion.hub_windup / article_pair.face_width * lever**2
         deflection = bulk @ force
-        # the law is in the force that turns the pinion as much, and in the pinion's turn
-        turned = kappa[edge] * force[edge]
-        deflection[edge] += (
-            kappa[edge] * Table.through(law.force, law.approach, law.smooth).value_and_slope(turned)[0]
-        )
+        table = Table.through(law.force, law.approach, law.smooth)
+        deflection[edge] += table.value_and_slope(force[edge])[0]
         deflection[~edge] += article_bodies.hertz(first[~edge]).approach(force[~edge])
         np.testing.assert_allclose(deflection, kappa * cycle.transmission_error[row], rtol=1e-6)
         assert np.all(kappa[edge] < 0.999)

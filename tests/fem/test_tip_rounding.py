@@ -61,7 +61,7 @@ def test_a_small_contact_on_the_arc_is_hertz(article_pair, article_bodies):
     one = tip_round(profile, radius)
     place = np.array([article_pair.points.A - 1e-3])
     force, approach = rounded_law(
-        article_pair, article_bodies.tips[1], 1, place, article_bodies.pinion.law, one
+        article_pair, article_bodies.tips[1], 1, place, article_bodies.pinion.law, np.ones(1), one
     )
     approach = approach - np.nanmin(approach)
     radii, line = article_pair.base_radii, article_pair.line_of_action

@@ -93,8 +93,8 @@ def calculix(mesh, loaded, normal, load, folder):
 def ours(rho, load, model="free-ends"):
     """What the face adds between cells by a load q(z) on the whole face, at middles of cells: z and [m]."""
     face, bodies = FaceSetting(CELLS, model=model), compliance(PAIR, 0.005)
-    middles, one = face.middles(WIDTH), np.ones((1, 1))
-    both = cell_matrix(face, bodies, np.full((2, 1, 1), rho), one, np.zeros((1, 1, 1)))[0]
+    middles = face.middles(WIDTH)
+    both = cell_matrix(face, bodies, np.full((2, 1, 1), rho), np.zeros((1, 1, 1)))[0]
     return middles, 0.5 * both @ (load(middles) * WIDTH / CELLS)
 
 

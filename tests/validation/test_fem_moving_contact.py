@@ -68,6 +68,7 @@ def alone(bodies, position, torque):
         0.0,
         yes,
         np.ones((1, 1)),
+        np.ones((1, 1)),
         moves,
         np.ones((1, 1, 1, 1)),
         None,

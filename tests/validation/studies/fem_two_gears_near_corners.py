@@ -46,7 +46,7 @@ def ours(bodies, position, torque, moving=False, strained=True):
         found = solve_contact(given, bodies, force, None, CornerLaws(given, bodies))
     finally:
         moving_contact._energies = energies
-    share = found.share.forces[0, 0, 0] / found.lever_ratios[0] / bodies.pair.face_width / 1e3
+    share = found.share.forces[0, 0, 0] / bodies.pair.face_width / 1e3
     approach = found.share.transmission_error[0, 0, 0] + found.touch[0, 0]
     return float(approach), dict(zip(found.candidates.offset.tolist(), share.tolist(), strict=True))
 
