@@ -145,8 +145,19 @@ def test_a_train_is_in_tables_report_and_outputs(train):
     assert {"drive_peaks_bearings", "drive_peaks_shafts"} <= {*tables}
     most = max(float(data[f"drive_sweep_force_factor_{way}"].max()) for way in ("up", "down"))
     assert OUTPUTS["greatest_force_factor"].value(engine) == most
+    assert OUTPUTS["greatest_force_factor_error"].value(engine) == math.inf  # another motion at 7400 rpm
     with pytest.raises(InputError, match="rigid shafts"):
         OUTPUTS["contact_loss_speed_rpm"].value(engine)
+
+
+def test_the_error_of_a_trains_mesh_force_is_of_samples_and_of_motions_that_repeat(train):
+    swept = train.values["drive sweep"]
+    known = {"up": np.array([0.02, np.nan]), "down": np.array([np.nan, 0.03])}
+    error = dataclasses.replace(swept, force_change=known).greatest_factor_error
+    assert error == swept.sampling_error + 0.03
+    none = dict.fromkeys(known, np.full(2, np.nan))
+    assert dataclasses.replace(swept, force_change=none).greatest_factor_error is None
+    assert dataclasses.replace(swept, force_change=None).greatest_factor_error is None
 
 
 def test_a_sweep_shows_what_it_has_done(train, monkeypatch):
