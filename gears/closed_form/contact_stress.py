@@ -95,7 +95,7 @@ def iso6336_2(pair: GearPair, force: float) -> Iso6336ContactStress:
     Warns
     -----
     RangeWarning
-        At a contact ratio of 2 or more: no pair bears alone.
+        At a contact ratio of 2 or more, where no pair bears alone, or below 1.
 
     References
     ----------
@@ -117,6 +117,9 @@ def iso6336_2(pair: GearPair, force: float) -> Iso6336ContactStress:
             faults.add("contact_ratio", f"{ratio:.4g}", allowed, "take finite elements")
     if ratio >= SHARED:
         said = f"ISO 6336-2: contact ratio {ratio:.3f} is not below {SHARED:g}: no pair bears alone"
+        warnings.warn(said, RangeWarning, stacklevel=2)
+    if ratio < 1.0:
+        said = f"ISO 6336-2: transverse contact ratio {ratio:.3f} is below 1: made for paths of a base pitch at least"
         warnings.warn(said, RangeWarning, stacklevel=2)
     helix, points, overlap = pair.helix, pair.points, min(pair.overlap_ratio, 1.0)
     working = math.tan(pair.working_pressure_angle)

@@ -222,11 +222,13 @@ def check_mesh(findings: Findings, pair: PairGeometry) -> None:
     rounding = ROUNDING * pair.module
     if pair.backlash < (-TIGHTEST * pair.module if pair.tight else -rounding):
         _add_jam(findings, pair)
-    if not pair.total_contact_ratio >= 1.0:
+    # overlap hands over from pair to pair too, where there is a path at all
+    handed_over = pair.total_contact_ratio if pair.contact_ratio > 0.0 else pair.contact_ratio
+    if not handed_over >= 1.0:
         remedy = (
             "the next pair comes too late: lengthen the teeth by tip_alteration, or bring the axes closer"
         )
-        findings.add("contact_ratio", f"{pair.total_contact_ratio:.6g}", "must be at least 1", remedy)
+        findings.add("contact_ratio", f"{handed_over:.6g}", "must be at least 1", remedy)
     first, second = pair.teeth_profiles
     # each gear with its mate, and its curvature radius where contact comes nearest to its root
     meshing = (

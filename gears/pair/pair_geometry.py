@@ -85,8 +85,9 @@ class PairGeometry:
         assert second is not None
         return first, second
 
-    reference_radii = _of_both("reference_radius", "Reference radius, r = m_n z / (2 cos beta).")
-    base_radii = _of_both("base_radius", "Base radius, r_b = r cos alpha_t.")
+    # m and alpha of the transverse section: m_t = m_n / cos beta, alpha_t
+    reference_radii = _of_both("reference_radius", "Reference radius, r = m z / 2.")
+    base_radii = _of_both("base_radius", "Base radius, r_b = r cos alpha.")
     root_radii = _of_both("root_radius", "Root radius, r_f = r - m (h_fP - x).")
     tip_radii = _of_both("tip_radius", "Tip radius, r_a = r + m (h_aP + x + k).")
     form_radii = _of_both("form_radius", "Form radius, at which the involute starts.")
@@ -153,7 +154,10 @@ class PairGeometry:
 
     @described("m", shown="mm")
     def base_pitch(self) -> float:
-        """Transverse base pitch, p_bt = pi m_n cos alpha_n / cos beta_b."""
+        """Base pitch, p_b = pi m cos alpha.
+
+        That of the transverse section, m_t and alpha_t: pi m_n cos alpha_n / cos beta_b.
+        """
         return math.pi * self.module * math.cos(self.rack.alpha) / self.helix.base_cosine
 
     @property

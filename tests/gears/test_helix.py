@@ -10,7 +10,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from gears import BasicRack, Gear, GearPair, GeometryError, GeometryWarning, check_meshing
+from base import RangeWarning
+from gears import BasicRack, Gear, GearPair, GeometryError, GeometryWarning, check_meshing, closed_form
 from gears.tooth.helix import Helix
 from gears.tooth.profile import generate
 
@@ -229,6 +230,11 @@ def test_overlap_makes_up_for_a_path_shorter_than_the_base_pitch():
     assert helical(30.0, short).contact_ratio < 1.0 < helical(30.0, short).total_contact_ratio
     with pytest.raises(GeometryError, match=r"contact_ratio = 0\.8"):
         helical(30.0, short, face_width=0.5e-3)
+    apart = helical(30.0, short).working_centre_distance + 3e-3
+    with pytest.raises(GeometryError, match=r"contact_ratio = -0\."):
+        helical(30.0, short, centre_distance=apart)
+    with pytest.warns(RangeWarning, match="transverse contact ratio 0.* is below 1"):
+        closed_form.iso6336_2(helical(30.0, short), 1e4)
 
 
 @pytest.mark.parametrize("angle", [20.0, math.radians(46.0), math.nan, "20 deg", None, True])
