@@ -1,9 +1,8 @@
 """Branches that a session with coverage records: those that the packages' own tests run.
 
-Noting branches takes a quarter to two thirds of what the code itself takes. Tests of `UNRECORDED` compute whole cases
-for what physics, extremes and printed results say of them, line by line what the packages' own tests run: they are run
-and judged as all others, and the share in pyproject.toml has to be reached without them. A session that notes which
-test runs which line (``--cov-context``, tests/planted) records all tests.
+Noting branches takes up to two thirds of what the code itself takes. Tests of `UNRECORDED` ask what physics, extremes
+and printed results say of whole cases: they are run and judged as all others, and the share in pyproject.toml has to be
+reached without them. A session that notes which test runs which line (``--cov-context``, tests/planted) records all.
 """
 
 from __future__ import annotations

@@ -66,7 +66,10 @@ class PathOfContact:
 
     @described("m", "point", shown="mm")
     def radius(self) -> Array:
-        """Radius of relative curvature R = rho1 rho2 / (rho1 + rho2)."""
+        """Radius of relative curvature R = rho1 rho2 / (rho1 + rho2).
+
+        In the transverse section: helical flanks, whose lines of contact are inclined, have R / cos beta_b across them.
+        """
         return np.asarray(self.rho1 * self.rho2 / (self.rho1 + self.rho2))
 
     @property
