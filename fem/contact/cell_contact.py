@@ -13,6 +13,7 @@ from base import Array, Integers, record
 from fem.contact.cell_laws import CellLaws, between_middles
 from fem.contact.cell_matrix import cell_coupling, cross_coupling
 from fem.contact.contact_sides import ContactSides
+from fem.contact.face_errors import face_load_factors
 from fem.contact.partial_cells import WITHIN, gap_drops, partial_cells
 from fem.elasticity.flamant import hertz_half_width
 from fem.pair.face_shafts import HeldShafts, ShaftsUnderFace, shafts_under_face
@@ -116,13 +117,13 @@ class CellContact:
         held : bool
             Whether the share is measured from the first touch on shafts that are held; else it counts the shafts.
         """
-        cells, unit = face.cells, self.pair.face_width / face.cells
+        cells = face.cells
         apart, oil = self._apart(face), self.sides.oil
         film = None if oil is None else CellLaws(oil, cells)
         ahead, reach = np.repeat(self.sides.sign > 0.0, cells), np.repeat(self.sides.reach, cells, axis=-1)
         levers = np.repeat(self.sides.sign * self.sides.tilted_lever_ratios, cells, axis=-1)
-        start = _flat(between_middles(near, cells) * (near.shape[-1] / cells))
-        laws, shafts = CellLaws(self.sides.laws, cells), shafts_under_face(face, self.pair)
+        start, laws = _flat(self.spread(face, near)), self.laws(face)
+        shafts = shafts_under_face(face, self.pair)
 
         @lru_cache(maxsize=1)  # large ones are kept nowhere else
         def coupling(strip: float) -> tuple[CellCoupling, CellCoupling]:
@@ -147,11 +148,7 @@ class CellContact:
             load_share = replace(load_share, transmission_error=load_share.transmission_error + least)
             return _unique(load_share, alone, own, film)
 
-        def widest(load_share: LoadShare) -> Array:
-            return self._half_widths(_by_cells(load_share.forces, cells).max(axis=-1) / unit)
-
-        mean = self._half_widths(near.sum(axis=-1) / self.pair.face_width)
-        load_share, strips = shared_by_width(share, widest, unit, mean)
+        load_share, strips = self.by_width(face, near, share)
         bends = np.zeros_like(load_share.forces)
         slopes = np.zeros_like(bends), np.zeros_like(bends)
         for strip in np.unique(strips).tolist():
@@ -184,6 +181,67 @@ class CellContact:
             np.zeros_like(remaining_gaps) if rise is None else rise,
             reached,
         )
+
+    def laws(self, face: FaceSetting) -> JointLaw:
+        """Laws of cells that touch all over."""
+        return CellLaws(self.sides.laws, face.cells)
+
+    def spread(self, face: FaceSetting, near: Array) -> Array:
+        """Forces on parts of the pairs (torques, ..., pairs, parts) as those on cells (..., pairs, cells) [N]."""
+        return between_middles(near, face.cells) * (near.shape[-1] / face.cells)
+
+    def by_width(
+        self, face: FaceSetting, near: Array, share: Callable[[float, Integers], LoadShare]
+    ) -> tuple[LoadShare, Array]:
+        """Share all torques, with strips where contacts are as wide as cells (`shared_by_width`).
+
+        Parameters
+        ----------
+        face : FaceSetting
+        near : (torques, ..., pairs, parts) array
+            Forces to begin with [N].
+        share : callable
+            Shares some torques with a strip.
+        """
+        unit = self.pair.face_width / face.cells
+
+        def widest(load_share: LoadShare) -> Array:
+            return self._half_widths(_by_cells(load_share.forces, face.cells).max(axis=-1) / unit)
+
+        mean = self._half_widths(near.sum(axis=-1) / self.pair.face_width)
+        return shared_by_width(share, widest, unit, mean)
+
+    def line_loads(self, forces: Array) -> Array:
+        """Line loads times the face width (..., loaded pairs, cells) [N], of forces on cells of all pairs."""
+        return forces.shape[-1] * forces[..., : self.sides.count, :]
+
+    def factors(self, loads: Array) -> Array:
+        """Load factors (...) of line loads (..., loaded pairs, cells): of the most loaded pair over that pair's mean."""
+        return face_load_factors(loads)
+
+    def most_loaded(self, loads: Array, at: tuple[int, int], over_mean: bool) -> Array:
+        """Line loads (cells,) of the pair that decides a maximum at a pitch and position.
+
+        Parameters
+        ----------
+        loads : (pitches, positions, loaded pairs, cells) array
+        at : (int, int)
+        over_mean : bool
+            Whether the maximum is that of the factor, over the mean; else that of the loads.
+        """
+        here = loads[at]
+        if over_mean:
+            most = here[int(np.argmax(here.sum(axis=-1)))]
+            return np.asarray(most / most.mean())
+        return np.asarray(here[int(np.argmax(here.max(axis=-1)))])
+
+    def centre(self, forces: Array) -> Array:
+        """Centre of the load along the face (...) [m] of forces (..., pairs, cells), those of the loaded side."""
+        loaded = forces[..., : self.sides.count, :]
+        parts = loaded.shape[-1]
+        z = ((np.arange(parts) + 0.5) / parts - 0.5) * self.pair.face_width
+        whole = loaded.sum(axis=(-2, -1))
+        return np.asarray((loaded.sum(axis=-2) @ z) / np.where(whole > 0.0, whole, 1.0))
 
     def gap_drops(self, face: FaceSetting, coarse: CellShare) -> Array:
         """By how much the minimum gap of cells falls short of their mean (torques, ..., pairs, cells) [m].

@@ -59,7 +59,7 @@ def stays_clear(
     """
     other = flanks_in_place(setup.opposite, film, reach)
     touch = flanks.candidates.gap.min(axis=-1, keepdims=True)
-    backlash = setup.pair.backlash + other.candidates.gap + touch
+    backlash = setup.backlash + other.candidates.gap + touch
     behind = _less_film(other.lever_ratios * backlash, other)
     first = _less_film(flanks.gaps, flanks) / flanks.lever_ratios
     if np.any(first.min(axis=-1) + (behind / other.lever_ratios).min(axis=-1) < 0.0):
@@ -74,7 +74,7 @@ def stays_clear(
     sizes = (np.abs(matrix) @ heaviest)[..., 0]
     doubt = np.full(sizes.shape, DOUBT)
     if setup.moving_contact:  # both sides roll on, by D and by D + j
-        turn = deflection + max(setup.pair.backlash, 0.0)
+        turn = deflection + max(setup.backlash, 0.0)
         doubt += (ROLLED / setup.pair.module * turn)[..., None]
     opened = other.lever_ratios * deflection[..., None]
     clearance = behind + opened + moved - doubt * sizes + _given_way(alone, other)
@@ -82,7 +82,7 @@ def stays_clear(
         clearance = clearance - DOUBT_OF_ENDS * deflection[..., None]
     if not np.all((clearance > 0.0) | apart[:, None, None, None]):
         return None
-    touched = alone.contacts.turn + setup.pair.backlash + touch[..., 0] + other.candidates.gap.min(axis=-1)
+    touched = alone.contacts.turn + setup.backlash + touch[..., 0] + other.candidates.gap.min(axis=-1)
     nothing = np.zeros_like(clearance)
     share = replace(alone.share, forces=nothing, pair_stiffness=nothing, transmission_error=-touched)
     closing = bodies.turning * force[:, None, None] - touched

@@ -128,7 +128,7 @@ class ContactSides:
     def play(self) -> Array:
         """Turn between the first touches of both sides (pitches, positions) [m]."""
         touches = (side.candidates.gap.min(axis=-1) for side in self.flanks)
-        return np.asarray(self.setups[0].pair.backlash + sum(touches))
+        return np.asarray(self.setups[0].backlash + sum(touches))
 
     def share(self, force: Array) -> LoadShare:
         """Share forces (torques, 1 or pitches, 1 or positions) [N]."""
@@ -180,7 +180,7 @@ def both_sides(
     cross = between(setup, bodies, flanks.candidates, other.candidates)
     matrix[:, :count, count:], matrix[:, count:, :count] = cross, np.swapaxes(cross, 1, 2)
     touch = flanks.candidates.gap.min(axis=-1, keepdims=True)
-    behind = other.lever_ratios * (setup.pair.backlash + other.candidates.gap + touch)
+    behind = other.lever_ratios * (setup.backlash + other.candidates.gap + touch)
     gaps = np.concatenate([flanks.gaps, behind], axis=-1)
     return ContactSides((setup, setup.opposite), (flanks, other), matrix, gaps)
 

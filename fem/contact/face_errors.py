@@ -62,6 +62,8 @@ class CellErrors:
         Further one of both from what free ends leave uncertain, alike at all positions.
     scatter : dict of (3, torques) arrays
         As of ``gears.sharing.mesh_figures.FewerCells``.
+    centre : (torques,) array
+        Of the centre of the load along the face, root mean square over positions [m].
     shafts, tilt, matrix : (torques,) arrays
         Of how far shafts give way, of their tilt, and of the mesh between bodies on them; 0 where they are rigid.
     """
@@ -71,6 +73,7 @@ class CellErrors:
     relative: Array
     ends: Array
     scatter: Mapping[str, Array]
+    centre: Array
     shafts: Array
     tilt: Array
     matrix: Array
@@ -85,7 +88,7 @@ class CellErrors:
 def no_errors(torques: int) -> CellErrors:
     """Errors of loads that are even along the face, of a single cell: none."""
     none = np.zeros(torques)
-    return CellErrors(none, none, none, none, {}, none, none, none)
+    return CellErrors(none, none, none, none, {}, none, none, none, none)
 
 
 def half_as_many(face: FaceSetting) -> tuple[FaceSetting, float]:
@@ -110,7 +113,8 @@ def cell_errors(over: CellContact, face: FaceSetting, fine: CellShare, coarse: C
         scatter[name] = np.stack([size, _size(varying), size / np.sqrt(_stretches(change))])
     each = [_load_errors(over, face, fine, coarse, torque) for torque in range(len(over.whole))]
     factor, line_load, ends = np.array(each).T
-    return CellErrors(factor, line_load, relative, ends, scatter, *_shaft_errors(fine, coarse, rest))
+    centre = rest * _size(over.centre(fine.forces) - over.centre(coarse.forces))
+    return CellErrors(factor, line_load, relative, ends, scatter, centre, *_shaft_errors(fine, coarse, rest))
 
 
 def _shaft_errors(fine: CellShare, coarse: CellShare, rest: float) -> Array:
@@ -172,21 +176,19 @@ def _load_errors(
     over: CellContact, face: FaceSetting, fine: CellShare, coarse: CellShare, torque: int
 ) -> tuple[float, float, float]:
     """Errors of the maximum factor and line load, and that of stiffness and deflection by free ends."""
-    count = over.sides.count
-    loads, fewer = (
-        cell_share.remaining_gaps.shape[-1] * cell_share.forces[torque][..., :count, :]
-        for cell_share in (fine, coarse)
-    )
-    factors, half = face_load_factors(loads), face_load_factors(fewer)
+    loads, fewer = (over.line_loads(cell_share.forces[torque]) for cell_share in (fine, coarse))
+    factors, half = over.factors(loads), over.factors(fewer)
     greatest, greatest_half = loads.max(axis=(-2, -1)), fewer.max(axis=(-2, -1))
     ends, errors = 0.0, []
     for values, few_values, over_mean in ((factors, half, True), (greatest, greatest_half, False)):
         at, few_at = _place(values), _place(few_values)
-        error = greatest_error(_most_loaded(loads[at], over_mean), _most_loaded(fewer[few_at], over_mean))
+        error = greatest_error(
+            over.most_loaded(loads, at, over_mean), over.most_loaded(fewer, few_at, over_mean)
+        )
         if face.model == FREE_ENDS:
             free, held = coarse.share, _between_walls(over, face, coarse, torque, at)
-            without = held.remaining_gaps.shape[-1] * held.forces[0][..., :count, :]
-            value = face_load_factors(without) if over_mean else without.max(axis=(-2, -1))
+            without = over.line_loads(held.forces[0])
+            value = over.at(torque, *at).factors(without) if over_mean else without.max(axis=(-2, -1))
             error += ENDS_ERROR * abs(float(few_values[at]) - float(value[0, 0])) / float(values[at])
             for name in ("stiffness", "transmission_error") if over_mean else ():
                 apart = getattr(held.share, name)[0, 0, 0] / getattr(free, name)[torque, *at]
@@ -208,14 +210,6 @@ def _between_walls(
     few, _ = half_as_many(face)
     start = coarse.forces[torque, *at][None, None, None]
     return over.at(torque, *at).shared(replace(few, model=WALLS), start)
-
-
-def _most_loaded(loads: Array, over_mean: bool) -> Array:
-    """Line loads (cells,) of the pair that bears most, over their mean, or of that with the largest one."""
-    if over_mean:
-        most = loads[int(np.argmax(loads.sum(axis=-1)))]
-        return np.asarray(most / most.mean())
-    return np.asarray(loads[int(np.argmax(loads.max(axis=-1)))])
 
 
 def greatest_error(cells: Array, fewer: Array) -> float:

@@ -110,8 +110,11 @@ def loaded_flanks(
     candidates = placed.candidates
     laws, largest = corner_laws.at(candidates, setup.moving_contact)
     rho1, rho2 = candidates.rho
-    matrix = bodies.bulk(rho1, rho2, candidates.leaning)
-    _leave_out_corner(bodies, matrix, candidates)
+    if candidates.lines is None:
+        matrix = bodies.bulk(rho1, rho2, candidates.leaning)
+        _leave_out_corner(bodies, matrix, candidates)
+    else:  # between cells of the lines alone (``fem.contact.line_contact``)
+        matrix = np.zeros((*rho1.shape, rho1.shape[-1]))
     return LoadedFlanks(
         candidates, placed.lever_ratios, placed.oil, placed.tilted_lever_ratios, matrix, laws, largest
     )

@@ -197,7 +197,7 @@ class MovedSides:
             slopes = zip(*by_position, strict=True)
             cross = CellCross((here.coupling.cells, there.coupling.cells), (still_cells, *slopes))
         touches = (side.flanks.candidates.gap.min(axis=-1) for side in sides)
-        return MovingSides(here, there, np.asarray(setup.pair.backlash + sum(touches)), cross)
+        return MovingSides(here, there, np.asarray(setup.backlash + sum(touches)), cross)
 
     def rolled(self, bodies: PairCompliance, kept: SharedContacts) -> SharedContacts:
         """A loaded side that bears alone, with the gaps of the other where both have rolled on; those of cells stay."""

@@ -23,7 +23,7 @@ from gears.sharing.staying_contacts import JointLaw
 if TYPE_CHECKING:
     from fem.contact.cell_coupling import CellCoupling
 
-__all__ = ["WITHIN", "PartialCells", "gap_drops", "partial_cells"]
+__all__ = ["WITHIN", "PartialCells", "drops_within", "gap_drops", "partial_cells"]
 
 WITHIN, MEAN = 4, np.array([7.0, 32.0, 12.0, 32.0, 7.0]) / 90.0
 """Parts of a cell by which the gaps in it are known, and Boole's weights of their mean."""
@@ -92,5 +92,9 @@ def gap_drops(gaps: Array, bends: Array) -> Array:
     slope = between_middles(np.gradient(bends, axis=-1), cells) * (bends.shape[-1] / cells)
     at = WITHIN * np.arange(cells)[:, None] + np.arange(WITHIN + 1)
     place = np.arange(WITHIN + 1) / WITHIN - 0.5
-    within = gaps[..., at] + slope[..., None] * place
-    return np.asarray(within @ MEAN - within.min(axis=-1))
+    return drops_within(gaps[..., at] + slope[..., None] * place)
+
+
+def drops_within(gaps: Array) -> Array:
+    """By how much the smallest of gaps at equal parts of cells (..., WITHIN + 1) falls short of their mean (...) [m]."""
+    return np.asarray(gaps @ MEAN - gaps.min(axis=-1))

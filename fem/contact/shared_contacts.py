@@ -20,6 +20,7 @@ import numpy as np
 
 from base import Array, Booleans, record
 from fem.contact.cell_contact import CellContact
+from fem.contact.line_contact import LineContact
 from fem.contact.face_errors import CellErrors, cell_errors, half_as_many, no_errors
 from fem.laws.local_law import Film, film_yielding
 
@@ -160,12 +161,16 @@ def share_staying(bodies: PairCompliance, whole: Array, sides: ContactSides) -> 
     """
     face = sides.setups[0].face
     whole = whole + np.zeros(sides.gaps.shape[:-1])
-    even = sides.share(whole)
-    if face.even_load:
-        return SharedContacts.even(even, sides.open(even))
-    over = CellContact(bodies, whole, sides)
     few, _ = half_as_many(face)
-    coarse = over.shared(few, even.forces[..., None], held=False)
+    if sides.setups[0].helical:
+        over = lines = LineContact(bodies, whole, sides)
+        coarse = over.shared(few, lines.even, held=False)
+    else:
+        even = sides.share(whole)
+        if face.even_load:
+            return SharedContacts.even(even, sides.open(even))
+        over = CellContact(bodies, whole, sides)
+        coarse = over.shared(few, even.forces[..., None], held=False)
     coarse = over.shared(few, coarse.forces, over.gap_drops(few, coarse))
     fine = over.shared(face, coarse.forces, over.gap_drops(face, coarse))
     share = of_pairs(fine.share, face.cells)

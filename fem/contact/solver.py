@@ -57,6 +57,8 @@ def solve_contact(
         state = solve_one_side(setup, bodies, force, flanks, corner_laws) if np.all(force) else None
         if state is None or np.max(state.closing + state.touch) <= flanks.candidates.reach_gap:
             break
+    if state is not None and setup.helical:
+        return state
     if state is None or setup.two_sided or _near(setup, flanks, state):
         state = _two_sided(setup, bodies, force, film, flanks, state, reach, corner_laws)
     return state

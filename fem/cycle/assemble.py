@@ -14,6 +14,7 @@ from fem.contact.opposite_flanks import OppositeFlanks
 from fem.cycle.events import ContactProblem
 from fem.cycle.face_loads import face_loads
 from fem.cycle.fit_errors import fit_error
+from fem.cycle.line_loads import line_loads
 from fem.cycle.model_error import LoadedContacts
 from fem.cycle.result import MeshCycle
 from fem.elasticity.flamant import hertz_half_width
@@ -81,7 +82,7 @@ def cycle_of(
         )
         + bad,
         gaps=candidates.gap.reshape(-1, pairs),
-        transmission_error=(-(setup.pair.backlash + moved) if setup.back else moved) + bad,
+        transmission_error=(-(setup.backlash + moved) if setup.back else moved) + bad,
         stiffness=stiffness + bad,
         secant_stiffness=(abs(force) / deflection if force else stiffness) + bad,
         pair_stiffness=contact.share.pair_stiffness[number].reshape(-1, pairs) + bad,
@@ -102,8 +103,9 @@ def cycle_of(
         supports=supports,
         reference=held,
         face=None if refusal else face_loads(setup, contact, number, bodies.plane),
+        lines=None if refusal else line_loads(setup, contact, number, bodies.plane),
         loaded=None
-        if refusal
+        if refusal or setup.helical
         else LoadedContacts(setup, bodies, candidates, on_faces, approach, force, behind),
         problem=None
         if refusal

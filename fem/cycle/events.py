@@ -133,6 +133,8 @@ class ContactProblem:
         Nearer to a tip corner than its fit goes, a flank's compliance stays the same; up to there it grows as a
         logarithm, which arcs resolve that grow with the distance.
         """
+        if self.setup.helical:
+            return self.setup.seen(self.setup.corners)
         pair, (start, end) = self.setup.pair, self.setup.ends
         clear = np.array(
             [end - bodies.pinion.rho_range[1], pair.line_of_action - bodies.wheel.rho_range[1] - start]
@@ -178,7 +180,7 @@ class ContactProblem:
             added = yielding_over_face(self.film, rho1, state.cell_forces(0)[0], shares)
             secant = size / (size / secant + added) if size else secant
         if self.setup.back:
-            moved = -(self.setup.pair.backlash + moved)
+            moved = -(self.setup.backlash + moved)
         moments, slopes = state.moments(0)
         moments = moments / size if size else np.zeros_like(moments)
         curves = np.stack([moved, tangent, secant, *moments, *slopes])

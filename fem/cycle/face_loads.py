@@ -145,7 +145,7 @@ class FaceLoads(FaceCells):
 
 
 def face_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str) -> FaceLoads | None:
-    """Line loads of one torque of a solution; None where they are even along the face.
+    """Line loads of one torque of a solution; None where they are even along the face, and of helical pairs.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def face_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         Of the torque.
     plane : {"strain", "stress"}
     """
-    if setup.face.even_load:
+    if setup.face.even_load or setup.helical:
         return None
     over, pair, cells = contact.contacts, setup.pair, setup.face.cells
     forces = contact.cell_forces(number).reshape(-1, *over.forces.shape[-2:])

@@ -38,7 +38,7 @@ def mesh_cycle(
     torque: Array,
     positions: int = 40,
     compliance: PairCompliance | None = None,
-    beyond_path: bool = True,
+    beyond_path: bool | None = None,
     film: Film | None = None,
     tolerance: float = 0.001,
     plane: str = "strain",
@@ -74,8 +74,9 @@ def mesh_cycle(
         Intervals of a base pitch.
     compliance : PairCompliance, optional
         Of this pair; computed to ``tolerance`` in ``plane`` unless given.
-    beyond_path : bool
-        Whether tip edges may touch outside A..E (``fem.laws.tip_contact``); they do under usual loads.
+    beyond_path : bool or None
+        Whether tip edges may touch outside A..E (``fem.laws.tip_contact``); they do under usual loads. None lets those of
+        spur pairs; lines of contact of helical pairs are held to the path.
     film : Film, optional
         Separation of the flanks by the oil, in series with each pair before the load is shared.
     tolerance, plane
@@ -148,10 +149,11 @@ def mesh_cycle(
     >>> round(cycle.mean_stiffness / 40e-3 / 1e9, 1)  # N/(mm um)
     24.3
     """
+    tip_edges = pair.helix_angle == 0.0 if beyond_path is None else beyond_path
     setup = MeshSetup(
         pair,
         positions,
-        beyond_path,
+        tip_edges,
         deviations,
         pitches,
         first_teeth,
@@ -167,7 +169,7 @@ def mesh_cycle(
     bodies = (
         compliance
         if compliance is not None
-        else _compliance(pair, tolerance, plane, tip_edges=beyond_path, options=options)
+        else _compliance(pair, tolerance, plane, tip_edges=tip_edges, options=options)
     )
     ready = watch.seconds
     corner_laws = laws_of_corners(setup, bodies)

@@ -8,6 +8,7 @@ from base import Array, described
 from base.results import EXACT
 from fem.contact.opposite_flanks import OppositeFlanks
 from fem.cycle.face_loads import FaceLoads
+from fem.cycle.line_loads import LineLoads
 from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.laws.contact_candidates import ContactCandidates
 from gears import GearPair, half_width, peak_pressure
@@ -35,6 +36,7 @@ class PairFigures:
     flank: str
     opposite: OppositeFlanks | None
     face: FaceLoads | None
+    lines: LineLoads | None
 
     @described("N", "position")
     def opposite_force(self) -> Array:
@@ -45,17 +47,21 @@ class PairFigures:
     @described("N", "position")
     def separating_force(self) -> Array:
         """Force of the flanks on both sides that pushes the gears apart, along the line of centres."""
-        force = self.forces.sum(axis=-1) + self.opposite_force
+        force = self._across_axis() + self.opposite_force
         return np.asarray(force * np.sin(self.pair.working_pressure_angle))
 
     @described("N", "position")
     def bearing_force(self) -> Array:
         """Force on the bearings of either gear by the normal forces: separating and tangential part together.
 
-        Tip edges are taken along the line of action.
+        In the transverse section; tip edges are taken along the line of action.
         """
-        across = self.forces.sum(axis=-1) - self.opposite_force
+        across = self._across_axis() - self.opposite_force
         return np.asarray(np.hypot(self.separating_force, across * np.cos(self.pair.working_pressure_angle)))
+
+    def _across_axis(self) -> Array:
+        """Normal force of the loaded flanks in the transverse section (n,) [N]."""
+        return np.asarray(self.forces.sum(axis=-1) * self.pair.helix.base_cosine)
 
     def _loaded_radius(self) -> tuple[Array, Array, float]:
         """Maximum line loads [N/m] and radii of relative curvature [m] of contacts of two flanks, else nan; E'."""
@@ -71,11 +77,15 @@ class PairFigures:
 
         nan at tip edges too: there the pressure is no ellipse, and at a sharp corner it has no bound.
         """
+        if self.lines is not None:
+            return _largest(self.lines.hertz_pressure)
         return peak_pressure(*self._loaded_radius())
 
     @described("m", "position pair", shown="um", no_error=HERTZ)
     def half_width(self) -> Array:
         """Half-width of the Hertz contact, the largest over the face; nan where two flanks do not touch."""
+        if self.lines is not None:
+            return _largest(self.lines.half_width)
         return half_width(*self._loaded_radius())
 
     def surface_speeds(self, speed: float = 1.0) -> Array:
@@ -152,3 +162,9 @@ class PairFigures:
             ):
                 total -= np.sum(np.where(bears, other.lever - lost, 0.0) * per_pair, axis=-1)
         return sums[0], sums[1]
+
+
+def _largest(values: Array) -> Array:
+    """Largest of the cells of each line (..., cells) that touch; nan where none does."""
+    most = np.nan_to_num(values).max(axis=-1)
+    return np.where(most > 0.0, most, np.nan)

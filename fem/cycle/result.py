@@ -24,6 +24,7 @@ from base.results import EXACT, ITSELF
 from fem.contact.opposite_flanks import OppositeFlanks
 from fem.cycle.events import ContactProblem, measured_less
 from fem.cycle.face_loads import FaceLoads
+from fem.cycle.line_loads import LineLoads
 from fem.cycle.model_error import LoadedContacts
 from fem.cycle.pair_figures import PairFigures
 from fem.elasticity.support import FIXED, Support
@@ -153,6 +154,9 @@ class MeshCycle(PairFigures, MeshFigures):
     )
     opposite: OppositeFlanks | None = part("flanks on the other side, where they bear as well", default=None)
     face: FaceLoads | None = part("line loads over the face; None where they are even", default=None)
+    lines: LineLoads | None = part(
+        "line loads over the lines of contact of a helical pair; None of spur pairs", default=None
+    )
     reference: str = quantity(
         "", 'what the deflection is measured against: "body", "bore" or "teeth"', default="bore"
     )
@@ -296,7 +300,8 @@ class MeshCycle(PairFigures, MeshFigures):
     def unloaded_transmission_error(self) -> Array:
         """D at which the loaded flanks touch without load: the smallest gap, beyond the backlash for back flanks."""
         least = self.gaps.min(axis=1)
-        return np.asarray(least if self.flank == "front" else -(self.pair.backlash + least))
+        play = MeshSetup(self.pair).backlash
+        return np.asarray(least if self.flank == "front" else -(play + least))
 
     @described("1", "position", no_error=EXACT)
     def loaded_position(self) -> Array:

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from fem.elasticity.plane_elasticity import PlaneElasticity
 from gears import BasicRack, Blank, Gear
-from gears.pair.spur_only import require_spur
 from gears.tooth.face import STRAIGHT
 
 if TYPE_CHECKING:
@@ -48,18 +47,21 @@ class GearShape:
     rack : gears.BasicRack
     poisson : float
         nu*, in which plane strain and plane stress are one.
+    helix_angle : float
+        Size of beta on the reference cylinder, whatever the hand [rad]: the shape is that of the transverse section.
     """
 
     gear: Gear
     rack: BasicRack
     poisson: float
+    helix_angle: float = 0.0
 
     @property
     def profile(self) -> ToothProfile:
-        """Tooth of module 1."""
+        """Tooth of (normal) module 1."""
         from gears.tooth.profile import generate
 
-        tooth = generate(self.gear, 1.0, self.rack, 1.0)
+        tooth = generate(self.gear, 1.0, self.rack, 1.0, self.helix_angle)
         assert tooth is not None  # the pair that it comes from has teeth
         return tooth
 
@@ -118,13 +120,7 @@ def shapes(
     profiles : (gears.ToothProfile, gears.ToothProfile)
         Whose bores are where the gears are held.
     plane : {"strain", "stress"}
-
-    Raises
-    ------
-    gears.GeometryError
-        Of helical pairs, whose section in twisted coordinates is another.
     """
-    require_spur(pair, "finite elements")
 
     def over(unit: float, length: float) -> float:
         return rounded(length / unit)
@@ -150,6 +146,7 @@ def shapes(
             ),
             pair.rack,
             PlaneElasticity.of(material, plane).plane_poisson,
+            rounded(abs(pair.helix_angle)),
         )
         for gear, width, profile, material in zip(
             (pair.pinion, pair.wheel), pair.face_widths, profiles, pair.materials, strict=True

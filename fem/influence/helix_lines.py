@@ -5,15 +5,19 @@ hand. Cells of equal length h divide it. Loads are line loads per length of the 
 along the normal. With all waves c(a, b; k) of ``fem.influence.helix_waves`` together, cells of the loaded line yield
 
 .. math:: \frac{\cos\beta_b}{\pi E^*} \overline{\frac{1}{|\zeta|}}
-   - \frac{1}{\pi E^* \ell} \overline{\frac{1 - e^{-\kappa |\zeta|}}{|\zeta|}} + \delta_{ij} \left[ u_r
-   + \frac{2}{\pi E^* \ell} \left( \ln\frac{\kappa}{2} + \gamma - \frac{1 + \nu^*}{2} \right) \right] + \ldots
+   - \frac{1}{\pi E^* \ell} \overline{\frac{1 - e^{-\kappa |\zeta|}}{|\zeta|}} + \delta_{ij} \frac{1}{\ell} \left[ u_r
+   + \frac{2}{\pi E^*} \left( \ln\frac{\kappa}{2} + \gamma - \frac{1 + \nu^*}{2} \right) \right] + \ldots
 
-with means over both cells, and a smooth rest. A load at itself has 1/R at a distance of e^(-(1 + nu*)/2) across the
-line, in modules, where the plane's singular solution is nil (``fem.elasticity.flamant``): the local law of the contact
-says what its pressure adds to that.
+with means over both cells, u_r that of an even load in the plane (``fem.influence.gear_compliance``), and a smooth
+rest. A load at itself has 1/R at a distance of e^(-(1 + nu*)/2) across the line, in modules, where the plane's singular
+solution is nil (``fem.elasticity.flamant``): the local law of the contact says what its pressure adds to that. The
+pressure spreads over a strip of half-width a: 1/R is taken at the distance (zeta^2/cos^2 beta_b + a^2/4)^(1/2), a/2
+the distance whose logarithm is the mean one in Hertz's pressure, which counts where cells are about as short as that.
 """
 
 from __future__ import annotations
+
+from functools import lru_cache
 
 import numpy as np
 
@@ -23,8 +27,11 @@ from fem.influence.helix_waves import HelixHarmonics
 
 __all__ = ["ContactLine", "along_line", "between_lines"]
 
-POINTS = 512
-"""Of the quadrature over waves: distances of some 40 modules."""
+POINTS = 13.0
+"""Of the quadrature over waves, for every module of the longest distance."""
+
+STEP = 0.0125
+"""Of distances [modules] at which the waves' sums are known; cubics join them."""
 
 
 @record
@@ -56,15 +63,20 @@ def between_lines(waves: HelixHarmonics, load: ContactLine, point: ContactLine) 
     ----------
     waves : HelixHarmonics
     load, point : ContactLine
-        On different teeth, of cells as long as each other.
+        On different teeth.
     """
     tooth = point.tooth - load.tooth
-    first, second = np.broadcast_arrays(load.rho[:, None], point.rho)
-    even = waves.even_cross[abs(tooth)].at(*((second, first) if tooth < 0 else (first, second)))
+    series = waves.even_cross[abs(tooth)]
+    if tooth < 0:
+        even = _products(*series.bases(point.rho, load.rho), series.coefficients).T
+    else:
+        even = _products(*series.bases(load.rho, point.rho), series.coefficients)
     return _of_waves(waves, load, point) + _overlap(load, point) * even
 
 
-def along_line(waves: HelixHarmonics, poisson: float, line: ContactLine) -> Array:
+def along_line(
+    waves: HelixHarmonics, poisson: float, line: ContactLine, in_plane: Array, half_width: float = 0.0
+) -> Array:
     """Mean displacements of the cells of a line by unit line loads on its cells (loads, points), but for the local law.
 
     Parameters
@@ -73,24 +85,40 @@ def along_line(waves: HelixHarmonics, poisson: float, line: ContactLine) -> Arra
     poisson : float
         nu*
     line : ContactLine
+    in_plane : (cells,) array
+        u_r of an even load at the cells' places, on the spur gear of this section.
+    half_width : float
+        Of the pressure, in modules; 0 is a line.
     """
     helix, cells = waves.helix(line.rho[:, None], line.rho), np.arange(len(line.z))
     bent = _without_logarithm(line)
-    even = waves.even_own.at(line.rho)
-    even = even + 2.0 / (np.pi * waves.helix(line.rho, line.rho)) * (
-        np.log(0.5 * BEND) + np.euler_gamma - 0.5 * (1.0 + poisson)
-    )
-    distant = waves.cos_base * _distant(len(cells))
-    itself = 2.0 * (np.log(2.0 * line.length / waves.cos_base) - 1.0) + 1.0 + poisson
-    distant[cells, cells] = waves.cos_base * itself
+    constant = 2.0 / np.pi * (np.log(0.5 * BEND) + np.euler_gamma - 0.5 * (1.0 + poisson))
+    even = waves.even_own.at(line.rho) + (in_plane + constant) / waves.helix(line.rho, line.rho)
+    strip = 0.5 * half_width
+    distant = waves.cos_base * _distant(len(cells), strip * waves.cos_base / line.length)
+    # without a strip the cell's own mean lacks the logarithm that a strip takes from it
+    within = np.log(strip) if strip else np.log(2.0 * line.length / waves.cos_base) - 1.0
+    distant[cells, cells] += waves.cos_base * (2.0 * within + 1.0 + poisson)
     return np.asarray(_of_waves(waves, line, line) + np.diag(even) + (distant - bent / helix) / np.pi)
 
 
-def _distant(cells: int) -> Array:
-    """Means of 1/|zeta| over two cells of a line, times a cell (cells, cells): 0 for a cell with itself."""
-    steps = np.arange(cells + 1.0)
-    second = steps * np.log(np.maximum(steps, 1.0))
-    means = np.concatenate([[0.0], second[:-2] - 2.0 * second[1:-1] + second[2:]])
+def _products(loads: Array, points: Array, coefficients: Array) -> Array:
+    """Sum of polynomials (loads, n), (points, n) with coefficients (n, n)."""
+    return np.asarray(loads @ coefficients @ points.T)
+
+
+def _distant(cells: int, strip: float) -> Array:
+    """Means of 1/(zeta^2 + strip^2)^(1/2) over two cells of a line, lengths in cells (cells, cells).
+
+    Without a strip that of a cell with itself is infinite, and 0 is given.
+    """
+    steps = np.abs(np.arange(-1.0, cells + 1.0))
+    if strip:
+        second = steps * np.arcsinh(steps / strip) - np.hypot(steps, strip)
+    else:
+        second = steps * np.log(np.maximum(steps, 1.0))
+    means = second[:-2] - 2.0 * second[1:-1] + second[2:]
+    means[0] = means[0] if strip else 0.0
     return np.asarray(means[np.abs(np.subtract.outer(np.arange(cells), np.arange(cells)))])
 
 
@@ -109,25 +137,64 @@ def _without_logarithm(line: ContactLine) -> Array:
 
 
 def _overlap(load: ContactLine, point: ContactLine) -> Array:
-    """Share of a cell over which two cells are beside each other (loads, points)."""
-    return np.maximum(0.0, 1.0 - np.abs(point.z - load.z[:, None]) / load.length)
+    """Part of the observed cells that is beside the loaded ones (loads, points)."""
+    start = np.maximum(*np.broadcast_arrays(_edge(load, -0.5)[:, None], _edge(point, -0.5)))
+    stop = np.minimum(*np.broadcast_arrays(_edge(load, 0.5)[:, None], _edge(point, 0.5)))
+    return np.asarray(np.maximum(0.0, stop - start) / point.length)
+
+
+def _edge(line: ContactLine, side: float) -> Array:
+    return np.asarray(line.z + side * line.length)
 
 
 def _of_waves(waves: HelixHarmonics, load: ContactLine, point: ContactLine) -> Array:
     """What the smooth part of the waves adds (loads, points).
 
-    Weights of the solved waves are transformed for the distances that there are; beyond the shortest solved wave the
-    smooth part is constant, so that it stays where the load is.
+    Beyond the shortest solved wave the smooth part is constant, so that it stays where the load is.
     """
-    smooth = waves.smooth(point.tooth - load.tooth, load.rho[:, None], point.rho)
-    zeta, length = point.z - load.z[:, None], load.length
-    s, share = np.polynomial.legendre.leggauss(POINTS)
+    tooth = point.tooth - load.tooth
+    first, second = (point, load) if tooth < 0 else (load, point)
+    series = waves.cross[abs(tooth)] if tooth else waves.own
+    loads, points = series.bases(first.rho, second.rho)
+    count = loads.shape[1]
+    by_load = (loads @ series.coefficients.reshape(count, -1)).reshape(len(loads), count, -1)
+    smooth = np.einsum("iaw,ja->ijw", by_load, points, optimize=True)
+    zeta = second.z - first.z[:, None]
+    size = np.sqrt(0.5 * (load.length**2 + point.length**2))
+    longest = float(np.ceil(np.abs(zeta).max() + 1.0))
+    sums = _sums_between(zeta, size, longest)
+    last = smooth[..., ::2] @ between_waves(np.array([SHORTEST]))[0]
+    moved = np.sum(smooth * sums, axis=-1) * load.length
+    moved = moved.T if tooth < 0 else moved
+    return np.asarray(moved + _overlap(load, point) * (last.T if tooth < 0 else last))
+
+
+def _sums_between(zeta: Array, size: float, longest: float) -> Array:
+    """Sums over waves at distances (...) for cells of a mean square length (..., 2 waves): cosine, minus sine.
+
+    Means over cells are those over cells of length nil and of a module, in proportion to the square of the length.
+    """
+    upper = float(np.ceil(4.0 * size) / 4.0)
+    of_line, of_cell = (_sums(length, longest) for length in (0.0, upper))
+    place = np.abs(zeta) / STEP
+    at = np.minimum(place.astype(int), len(of_line) - 4)
+    t = (place - at)[..., None]
+    part = (size / upper) ** 2
+    table = (1.0 - part) * of_line + part * of_cell
+    before, here, after, beyond = (table[at + k] for k in range(4))
+    bend = 2.0 * before - 5.0 * here + 4.0 * after - beyond
+    sums = here + 0.5 * t * (after - before + t * (bend + t * (3.0 * (here - after) + beyond - before)))
+    sums[..., 1::2] *= np.where(zeta < 0.0, 1.0, -1.0)[..., None]
+    return np.asarray(sums)
+
+
+@lru_cache(maxsize=16)
+def _sums(length: float, longest: float) -> Array:
+    """Sums over waves at distances from one step below 0 on, for cells of a length (distances, 2 waves)."""
+    s, share = np.polynomial.legendre.leggauss(int(np.ceil(POINTS * max(longest, 8.0))))
     wavenumber = 0.5 * SHORTEST * (s + 1.0)
     last = between_waves(np.array([SHORTEST]))[0]
-    share = 0.5 * SHORTEST * share * np.sinc(0.5 * wavenumber * length / np.pi) ** 2 * length / np.pi
+    share = 0.5 * SHORTEST * share * np.sinc(0.5 * wavenumber * length / np.pi) ** 2 / np.pi
     rest = (between_waves(wavenumber) - last) * share[:, None]
-    distances, which = np.unique(np.round(zeta, 12), return_inverse=True)
-    turns = np.outer(distances, wavenumber)
-    cosine, sine = (np.reshape((f(turns) @ rest)[which], smooth.shape) for f in (np.cos, np.sin))
-    moved = np.sum(smooth.real * cosine - smooth.imag * sine, axis=-1)
-    return np.asarray(moved + _overlap(load, point) * (smooth.real @ last))
+    turns = np.outer(STEP * np.arange(-1.0, longest / STEP + 4.0), wavenumber)
+    return np.stack([np.cos(turns) @ rest, np.sin(turns) @ rest], axis=-1).reshape(len(turns), -1)

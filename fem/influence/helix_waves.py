@@ -23,15 +23,15 @@ interpolated by Chebyshev polynomials, in both places and in s = k/(k + kappa). 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from base import Array, record, unclocked
 from fem.elasticity.flank_samples import sample_places
-from fem.elasticity.line_load import FlankPoints, flank_points, line_loads
+from fem.elasticity.line_load import FlankPoints, flank_points
 from fem.elasticity.prism import Face, Section, prism, section
-from fem.elasticity.ring import ring_of
 from fem.influence.flank_variable import FlankVariable, RootVariable
 from fem.influence.gear_face import BEND, between_waves, solid_of, solved_waves
 from fem.influence.gear_shape import MeshedShape
@@ -56,7 +56,8 @@ class HelixHarmonics:
     cross : mapping of int to CrossSeries of (waves, 2)
         S on the k-th tooth on the side of growing rho; on the other side it is the conjugate with places exchanged.
     even_own : FlankSeries
-        What an even load yields at itself beyond the half-space's 2/(pi E* l) [-ln(q/l) - (1 + nu*)/2].
+        What an even load yields at itself beyond u_r/l, u_r that of an even load on the spur gear of this section
+        (``fem.influence.gear_compliance``).
     even_cross : mapping of int to CrossSeries
         c(a, b; 0) on the k-th tooth.
     """
@@ -76,6 +77,20 @@ class HelixHarmonics:
     def helix(self, load: Array, point: Array) -> Array:
         """Length l of a helix through the flank for a unit of z, in the mean between two places (...)."""
         return np.asarray(np.sqrt(1.0 + self.twist**2 * (self.base_radius**2 + load * point)))
+
+    @property
+    def mirrored(self) -> HelixHarmonics:
+        """The same section with the other hand: z is counted the other way, so that waves run back."""
+        back = np.array([1.0, -1.0])
+        return replace(
+            self,
+            twist=-self.twist,
+            own=replace(self.own, coefficients=self.own.coefficients * back),
+            cross={
+                tooth: replace(series, coefficients=series.coefficients * back)
+                for tooth, series in self.cross.items()
+            },
+        )
 
     def smooth(self, tooth: int, load: Array, point: Array) -> Array:
         """Smooth part of S at the solved waves (..., waves), complex; tooth 0 is the loaded one."""
@@ -114,7 +129,7 @@ def _half_space(base_radius: float, twist: float, load: Array, point: Array, wav
     return np.asarray((2.0 * bracket - np.log1p((wavenumber / BEND) ** 2)) / (np.pi * helix[..., None]))
 
 
-def helix_harmonics(meshed: MeshedShape, twist: float) -> HelixHarmonics:
+def helix_harmonics(meshed: MeshedShape, twist: float, reach: int | None = None) -> HelixHarmonics:
     """Solve a gear of module 1 and E* = 1 for waves along the face.
 
     Parameters
@@ -123,10 +138,13 @@ def helix_harmonics(meshed: MeshedShape, twist: float) -> HelixHarmonics:
         Of the transverse section.
     twist : float
         tan(beta_b)/r_b, positive for a right hand [rad/module].
+    reach : int, optional
+        Neighbours that are observed on the side of growing rho; those of the shape unless given.
     """
     from meshes import mesh_sector
 
-    profile, reach = meshed.shape.profile, meshed.shape.reach
+    profile = meshed.shape.profile
+    reach = meshed.shape.reach if reach is None else reach
     mesh = mesh_sector(profile, meshed.sizes, meshed.refinements)
     over, rho = section(mesh, solid_of(meshed.shape.poisson), twist), sample_places(profile, PLACES)
     at, teeth = flank_points(mesh, rho), list(range(reach + 1))
@@ -157,17 +175,16 @@ def helix_harmonics(meshed: MeshedShape, twist: float) -> HelixHarmonics:
 
 
 def _at_the_load(over: Section, at: FlankPoints, by_nodes: Array) -> Array:
-    """What even loads yield at themselves beyond the half-space (loads,), from answers of nodal forces there.
+    """What even loads yield at themselves beyond u_r/l (loads,), from answers of nodal forces there.
 
-    What these lack is what they lack in the plane on the same mesh, where the singular solution is known, for lengths
-    that the helix leaves of those in the section.
+    What nodal forces lack is what they lack in the plane on the same mesh, where u_r is known, for lengths that the
+    helix leaves of those in the section.
     """
-    regular = line_loads(ring_of(over.mesh, over.law), at).regular_at_load()
     straight = prism(section(over.mesh, over.law), Face.wave(0.0)).influence(at, 0)[0][:, 0, 0]
     radius, twist = over.mesh.base_radius, over.twist
     helix = np.sqrt(1.0 + twist**2 * (radius**2 + at.rho**2))
     shorter = np.sqrt(1.0 + (twist * radius) ** 2) / helix**2
-    return np.asarray(by_nodes + (regular - straight + 2.0 / np.pi * np.log(shorter)) / helix)
+    return np.asarray(by_nodes + (2.0 / np.pi * np.log(shorter) - straight) / helix)
 
 
 def _fitted(variable: FlankVariable, rho: Array, samples: Array) -> CrossSeries:

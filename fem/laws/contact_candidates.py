@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Booleans, Faults, Integers, record
+from fem.laws.line_candidates import ContactLines, contact_lines, line_offsets
 from fem.laws.mesh_setup import Deviations, MeshSetup
 from fem.laws.relieved_flanks import gentle, touch
 from fem.laws.tip_contact import nearest_gap
@@ -17,10 +18,13 @@ from fem.laws.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_ga
 if TYPE_CHECKING:
     from gears import GearPair
 
-__all__ = ["ContactCandidates", "contact_candidates", "unloaded_transmission_error"]
+__all__ = ["ContactCandidates", "contact_candidates", "line_gaps", "unloaded_transmission_error"]
 
 REACHES = (0.6, 1.0)
 """Base pitches outside the path within which tip edges are looked for; the second if the first is not enough."""
+
+SEEN_ALONG = 128
+"""Places over the face at which the smallest gap of lines of contact is looked for."""
 
 
 @record
@@ -60,6 +64,9 @@ class ContactCandidates:
         Candidates whose chamfer is nearer than the corner before it.
     reach_gap : float
         Gap of the nearest contact that is not among the candidates [m].
+    lines : ContactLines or None
+        Where lines of contact cross the face, of which ``place`` is the middle; None of spur pairs, where they lie
+        along it.
     """
 
     position: Array
@@ -78,6 +85,7 @@ class ContactCandidates:
     back_gap: Array
     chamfered: Booleans
     reach_gap: float
+    lines: ContactLines | None = None
 
     def at(self, rows: slice) -> ContactCandidates:
         """Contacts at some positions of a base pitch, with what bodies and laws need; gaps stay those of all."""
@@ -89,6 +97,7 @@ class ContactCandidates:
             edge=self.edge[rows],
             leaning=self.leaning[:, rows],
             teeth=self.teeth[:, rows],
+            lines=None if self.lines is None else self.lines.at(rows),
         )
 
     def corners(self) -> tuple[tuple[int, Booleans], ...]:
@@ -104,13 +113,10 @@ def contact_candidates(setup: MeshSetup, reach: float = REACHES[0]) -> ContactCa
     pitch, line = pair.base_pitch, pair.line_of_action
     last = ceil(pair.contact_ratio)
     offset = np.arange(-1, last + 1) if setup.beyond_path else np.arange(last)
+    if setup.helical:
+        return _lines(setup)
     stations = setup.stations
-    position = (np.arange(positions) + 0.5) / positions if stations is None else stations.within
-    within, turned = position, np.zeros(len(position), dtype=np.int64)
-    if setup.back:
-        within = setup.mirror - position
-        turned = np.floor(within).astype(np.int64)
-        within = within - turned
+    position, within, turned = _standing(setup)
     place = pair.points.A + (within[:, None] + offset) * pitch
     outside = (place < start) | (place > end)
     edge = outside & (np.maximum(start - place, place - end) < reach * pitch) & setup.beyond_path
@@ -176,6 +182,75 @@ def contact_candidates(setup: MeshSetup, reach: float = REACHES[0]) -> ContactCa
         chamfered=chamfered,
         reach_gap=_reach_gap(setup, reach) + least if setup.beyond_path else np.inf,
     )
+
+
+def _standing(setup: MeshSetup) -> tuple[Array, Array, Integers]:
+    """Positions within a base pitch, those of the loaded flanks in it, and by how many these are turned on (n,)."""
+    stations = setup.stations
+    position = (np.arange(setup.positions) + 0.5) / setup.positions if stations is None else stations.within
+    within, turned = position, np.zeros(len(position), dtype=np.int64)
+    if setup.back:
+        within = setup.mirror - position
+        turned = np.floor(within).astype(np.int64)
+        within = within - turned
+    return position, within, turned
+
+
+def _lines(setup: MeshSetup) -> ContactCandidates:
+    """Candidates of a helical pair: lines of contact, each with its smallest gap."""
+    pair, offset = setup.pair, line_offsets(setup)
+    position, within, turned = _standing(setup)
+    lines = contact_lines(setup, pair.points.A + (within[:, None] + offset) * pair.base_pitch)
+    touchable = lines.touches
+    place = np.where(touchable, lines.place, 0.5 * (pair.points.A + pair.points.E))
+    rho = np.stack([place, pair.line_of_action - place])
+    cells = lines.divided(SEEN_ALONG)
+    nearest = np.where(cells.used, line_gaps(setup, cells.z, cells.rho), np.inf).min(axis=-1)
+    ahead = offset - turned[:, None] if setup.back else -offset
+    steps = np.broadcast_to(ahead, place.shape)
+    if setup.stations is not None:
+        steps = steps + setup.stations.pitch[:, None]
+    numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
+    none = np.zeros_like(touchable)
+    gap = nearest[None]
+    return ContactCandidates(
+        position=position if setup.stations is None else setup.stations.pitch + position,
+        offset=offset,
+        place=place,
+        rho=rho,
+        touchable=touchable,
+        edge=none,
+        curvature=np.ones_like(place),
+        lacking=np.where(touchable, 0.0, np.inf),
+        lever=np.full_like(rho, pair.helix.base_cosine),
+        tangent_arm=np.where(touchable, rho, np.nan),
+        leaning=np.zeros_like(rho),
+        gap=gap,
+        teeth=setup.teeth(steps) % numbers,
+        back_gap=setup.backlash + gap.min(axis=-1).ravel(),
+        chamfered=none,
+        reach_gap=np.inf,
+        lines=lines,
+    )
+
+
+def line_gaps(setup: MeshSetup, z: Array, rho: Array) -> Array:
+    """Gaps along the transverse line of action without load (..., cells) [m].
+
+    Parameters
+    ----------
+    setup : MeshSetup
+        Of a helical pair.
+    z : (..., cells) array
+        Places along the face [m].
+    rho : (2, ..., cells) array
+        Curvature radii on pinion and wheel there [m].
+    """
+    radius = rho[0] * rho[1] / (rho[0] + rho[1])
+    gaps = setup.face.gaps_at(setup.pair, z, radius)
+    if setup.removed is not None:
+        gaps = gaps + setup.removed[0](rho[0]) + setup.removed[1](rho[1])
+    return np.asarray(gaps)
 
 
 def _reach_gap(setup: MeshSetup, reach: float) -> float:

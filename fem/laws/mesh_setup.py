@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Faults, Integers, Limit, rounded_down
+from fem.laws.helical_limits import check_helical
+from fem.laws.line_candidates import SHORT_CELL
 from fem.laws.tip_contact import Removed
 from fem.laws.tip_geometry import TipRound, chamfer_length, tip_round
 from fem.pair.face_setting import EVEN, FaceSetting
 from fem.pair.options import USUAL_OPTIONS, Options
 from gears import GearDeviations
-from gears.pair.spur_only import check_spur
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -85,6 +86,22 @@ class MeshSetup:
         face = self.face.opposite(self.pair.working_pressure_angle)
         return replace(self, back=not self.back, face=face)
 
+    @property
+    def helical(self) -> bool:
+        """Whether lines of contact cross the face."""
+        return self.pair.helix_angle != 0.0
+
+    @property
+    def line_slope(self) -> float:
+        """d rho1/dz along a line of contact: tan(beta_b), positive on front flanks of a right-handed pinion."""
+        slope = self.pair.helix.base_tangent
+        return -slope if self.back else slope
+
+    @property
+    def backlash(self) -> float:
+        """Backlash along the transverse line of action, along which D is counted [m]."""
+        return self.pair.backlash / self.pair.helix.base_cosine
+
     @cached_property
     def mirror(self) -> float:
         """Sum c of a position and of that at which the mirrored gears stand alike, with the wheel where it is.
@@ -114,7 +131,8 @@ class MeshSetup:
 
     def check(self, faults: Faults) -> None:
         """Note everything that is wrong."""
-        check_spur(faults, self.pair, "loaded contact")
+        if self.helical:
+            check_helical(faults, self)
         faults.number("positions", self.positions, COUNT)
         faults.number("pitches", self.pitches, COUNT)
         faults.number("friction", self.friction, FRICTION)
@@ -141,9 +159,9 @@ class MeshSetup:
 
     def _check_rounding(self, faults: Faults) -> None:
         numbers = [
-            isinstance(r, Real) and not isinstance(r, bool) and np.isfinite(r) and r >= 0 for r in self._radii
+            isinstance(r, Real) and not isinstance(r, bool) and np.isfinite(r) and r >= 0 for r in self.radii
         ]
-        if len(self._radii) != 2 or not all(numbers):
+        if len(self.radii) != 2 or not all(numbers):
             allowed = "must be a radius of at least 0 m, or one for each gear"
             faults.add("tip_rounding", self.tip_rounding, allowed, "give metres; 0 is sharp")
             return
@@ -165,7 +183,8 @@ class MeshSetup:
             faults.add("tip_rounding", self.tip_rounding, "must leave a contact ratio above 1", remedy)
 
     @property
-    def _radii(self) -> tuple[float, ...]:
+    def radii(self) -> tuple[float, ...]:
+        """Of the rounded tip edges, as many as were given [m]."""
         radii = self.tip_rounding
         return tuple(radii) if isinstance(radii, Sequence) else (radii, radii)
 
@@ -180,7 +199,7 @@ class MeshSetup:
         """Roundings of pinion's and wheel's tip edges."""
         first, second = (
             tip_round(profile, float(r))
-            for profile, r in zip(self.pair.teeth_profiles, self._radii, strict=True)
+            for profile, r in zip(self.pair.teeth_profiles, self.radii, strict=True)
         )
         return first, second
 
@@ -225,6 +244,8 @@ class MeshSetup:
         """
         pair = self.pair
         line, places = pair.line_of_action, [*self.ends, pair.points.A, pair.points.E]
+        if self.helical:
+            return self._ends_of_lines
         for gear, profile in enumerate(pair.teeth_profiles):
             deviations, rho = self._by_gear[gear], []
             if profile.tip_relief is not None:
@@ -236,6 +257,16 @@ class MeshSetup:
             places.append(pair.points.C)
         inside = [place for place in places if self.ends[0] <= place <= self.ends[1]] + [pair.points.A]
         return np.unique((np.array(inside) - pair.points.A) / pair.base_pitch % 1.0)
+
+    @property
+    def _ends_of_lines(self) -> Array:
+        """Positions at which a line of contact begins to touch, reaches the other end of the face, or leaves one."""
+        start, end = self.ends
+        half = 0.5 * self.pair.face_width * abs(self.line_slope)
+        short = SHORT_CELL / self.face.cells * 2.0 * half
+        bends = np.array([-half, half, -half + short, half - short])
+        middles = np.concatenate([start + bends, end + bends])
+        return np.unique((middles - self.pair.points.A) / self.pair.base_pitch % 1.0)
 
     @property
     def removed(self) -> tuple[Removed, Removed] | None:

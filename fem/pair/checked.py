@@ -8,17 +8,13 @@ import numpy as np
 
 from base import Array, Faults, shorten
 from gears import GearPair
-from gears.pair.spur_only import check_spur
 
 __all__ = ["check_pair", "numbers_of"]
 
 
 def check_pair(faults: Faults, pair: object) -> bool:
-    """Whether a pair is one, of spur gears; where it is not, note that."""
-    ready = faults.instance("pair", pair, GearPair, "such as GearPair(Gear(24), Gear(31), 2e-3, 20e-3)")
-    if ready and isinstance(pair, GearPair):
-        check_spur(faults, pair, "finite elements")
-    return ready
+    """Whether a pair is one; where it is not, note that."""
+    return faults.instance("pair", pair, GearPair, "such as GearPair(Gear(24), Gear(31), 2e-3, 20e-3)")
 
 
 def numbers_of(faults: Faults, name: str, value: object, remedy: str) -> Array:

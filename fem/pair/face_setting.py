@@ -137,6 +137,10 @@ class FaceSetting:
         z = np.linspace(-0.5, 0.5, parts * self.cells + 1) * pair.face_width
         return self._gaps_at(pair, z, radius)
 
+    def gaps_at(self, pair: GearPair, z: Array, radius: Array) -> Array:
+        """Gaps (...) [m] at places along the face (...) [m], with radii of relative curvature (...) [m]."""
+        return self._gaps_at(pair, z[..., None], radius)[..., 0]
+
     def _gaps_at(self, pair: GearPair, z: Array, radius: Array) -> Array:
         """Gaps (..., n) [m] at places along the face (n,) [m]."""
         removed = sum(
@@ -160,7 +164,8 @@ def face_setting(
     """How the face of a pair is looked at; None where nothing differs along it and no cells are asked for."""
     leads, pair_shafts = (pair.pinion.lead, pair.wheel.lead), shafts or (None, None)
     alike = leads == (STRAIGHT, STRAIGHT) and pair.face_widths == (pair.face_width, pair.face_width)
-    if alike and alignment is None and cells is None and pair_shafts == (None, None):
+    even = alignment is None and cells is None and pair_shafts == (None, None)
+    if alike and even and pair.helix_angle == 0.0:
         return None
     return FaceSetting(USUAL if cells is None else cells, alignment or ALIGNED, leads, model, pair_shafts)
 

@@ -230,7 +230,9 @@ class PairCompliance(SolvedPair):
             compliance[..., load, point] = compliance[..., point, load] = moved
         return compliance
 
-    def hertz(self, rho1: Array, curvature: Array | float = 1.0) -> HertzApproach:
+    def hertz(
+        self, rho1: Array, curvature: Array | float = 1.0, length: Array | float | None = None
+    ) -> HertzApproach:
         """Local indentation of pairs at rho1 [m] as a function of their forces.
 
         Parameters
@@ -238,10 +240,12 @@ class PairCompliance(SolvedPair):
         rho1 : array
             [m]
         curvature : array or float
-            Of relieved flanks over that of the involutes.
+            Of relieved flanks over that of the involutes; cos(beta_b) along lines of contact that cross the face.
+        length : array or float, optional
+            Of the line on which the force acts [m]; the face width unless given.
         """
         path = self.pair.path_at(np.clip(rho1, 0.0, self.pair.line_of_action))
-        width = self.pair.face_width
+        width = self.pair.face_width if length is None else length
         first, second = self.pinion.law, self.wheel.law
         reduced = 2 / (1 / first.plane_modulus + 1 / second.plane_modulus)
         half_width = hertz_half_width(1.0 / width, path.radius / curvature, reduced)  # of 1 N

@@ -1,0 +1,182 @@
+"""Contact of helical pairs: cells of all lines of contact, one active set over them.
+
+Lines cross the flanks, so that every cell has its place, its curvature and its length. With F the force on a cell of
+length h along the axis, its line load along the line is F cos(beta_b)/h, and by Hertz it approaches with the radius
+rho1 rho2/((rho1 + rho2) cos(beta_b)).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Integers, record
+from fem.contact.cell_contact import CellContact, CellShare
+from fem.contact.cell_coupling import CellCoupling
+from fem.contact.cell_matrix import coupled_by, kept_unless_large
+from fem.contact.partial_cells import WITHIN, drops_within
+from fem.elasticity.flamant import hertz_half_width
+from fem.laws.contact_candidates import line_gaps
+from fem.laws.local_law import PairLaws
+from fem.pair.line_compliance import gear_lines, lines_compliance
+
+if TYPE_CHECKING:
+    from fem.laws.line_candidates import ContactLines, LineCells
+    from fem.laws.mesh_setup import MeshSetup
+    from fem.pair.face_setting import FaceSetting
+    from gears import LoadShare
+    from gears.sharing.staying_contacts import JointLaw
+
+__all__ = ["LineContact"]
+
+
+@record
+class LineContact(CellContact):
+    """What is shared over the lines of contact of a helical pair; attributes as of ``CellContact``."""
+
+    @property
+    def setup(self) -> MeshSetup:
+        """With the loaded flanks."""
+        return self.sides.setups[0]
+
+    @property
+    def lines(self) -> ContactLines:
+        """Lines of contact at all positions."""
+        lines = self.sides.flanks[0].candidates.lines
+        assert lines is not None  # of a helical pair
+        return lines
+
+    def coupling(self, face: FaceSetting) -> CellCoupling:
+        """Compliance of the bodies between cells of all lines."""
+        bodies, lines, cells = self.bodies, self.lines, self.lines.divided(face.cells)
+        offset = self.sides.flanks[0].candidates.offset.tolist()
+        module = self.pair.module
+        own = [gear.own(rho) for gear, rho in zip((bodies.pinion, bodies.wheel), cells.rho, strict=True)]
+        half_width = face.strip * self.pair.face_width / face.cells / module
+
+        def cut() -> CellCoupling:
+            gears = gear_lines(bodies, lines.slope, face)
+            blocks = tuple(
+                lines_compliance(bodies, gears, offset, cells, position, half_width)
+                for position in range(len(lines.middle))
+            )
+            used = cells.used.reshape(len(blocks), -1)
+            return CellCoupling(tuple(np.flatnonzero(row) for row in used), blocks, used.shape[1])
+
+        key = coupled_by(bodies, face, lines.middle, *own)
+        numbers = int(np.sum(cells.count.sum(axis=-1) ** 2))
+        return kept_unless_large("lines", (lines.slope, *key), numbers, cut)
+
+    def laws(self, face: FaceSetting) -> JointLaw:
+        """Hertz's law of each cell."""
+        cells, cosine = self.lines.divided(face.cells), self.pair.helix.base_cosine
+        length = np.broadcast_to(cells.length[..., None], cells.z.shape) / cosine
+        law = self.bodies.hertz(cells.rho[0], cosine, length)
+        positions = len(cells.z)
+        return PairLaws(
+            replace(
+                law,
+                constant=law.constant.reshape(positions, -1),
+                per_log=np.reshape(law.per_log, (positions, -1)),
+            )
+        )
+
+    def spread(self, face: FaceSetting, near: Array) -> Array:
+        """Spread forces evenly over the cells of each line; arguments as of ``CellContact``."""
+        cells = self.lines.divided(face.cells)
+        each = near.sum(axis=-1) / np.maximum(cells.count, 1)
+        return np.asarray(each[..., None] * cells.used)
+
+    @property
+    def even(self) -> Array:
+        """Forces on the lines (..., lines, 1) by one line load at all of them [N]."""
+        lines = self.lines
+        length = np.where(lines.touches, lines.length, 0.0)
+        share = length / length.sum(axis=-1, keepdims=True) / self.pair.helix.base_cosine
+        return np.asarray((self.whole[..., None] * share)[..., None])
+
+    def by_width(
+        self, face: FaceSetting, near: Array, share: Callable[[float, Integers], LoadShare]
+    ) -> tuple[LoadShare, Array]:
+        """Share all torques, each with pressure as wide as at an even load, to the next power of two."""
+        lines, unit = self.lines, self.pair.face_width / face.cells
+        length = np.where(lines.touches, lines.length, 0.0).sum(axis=-1)
+        load = (self.whole / length).reshape(len(self.whole), -1).mean(axis=-1)
+        modulus = 2.0 / sum(1.0 / gear.law.plane_modulus for gear in (self.bodies.pinion, self.bodies.wheel))
+        cosine = self.pair.helix.base_cosine
+        radius = float(np.median(self.sides.radius[lines.touches])) / cosine
+        width = hertz_half_width(load, radius, modulus)
+        strips = self.pair.module / unit * 2.0 ** np.round(np.log2(width / self.pair.module))
+        return self._by_strips(strips, share)
+
+    def _by_strips(
+        self, strips: Array, share: Callable[[float, Integers], LoadShare]
+    ) -> tuple[LoadShare, Array]:
+        from fem.pair.wide_contact import shares_together
+
+        groups = [np.flatnonzero(strips == strip) for strip in np.unique(strips)]
+        shares = [share(float(strips[group[0]]), group) for group in groups]
+        return shares_together(shares, np.argsort(np.concatenate(groups))), strips
+
+    def line_loads(self, forces: Array) -> Array:
+        """Line loads times the face width (..., lines, cells) [N] of forces on cells."""
+        cells = self.lines.divided(forces.shape[-1])
+        return np.asarray(forces * (self.pair.face_width / cells.length[..., None]))
+
+    def factors(self, loads: Array) -> Array:
+        """Load factors (...): maximum line load over the mean of all lines; arguments as of ``CellContact``."""
+        length = self.lines.divided(loads.shape[-1]).length[..., None]
+        touches = np.where(self.lines.touches, self.lines.length, 0.0).sum(axis=-1)
+        return np.asarray(loads.max(axis=(-2, -1)) / (np.sum(loads * length, axis=(-2, -1)) / touches))
+
+    def most_loaded(self, loads: Array, at: tuple[int, int], over_mean: bool) -> Array:
+        """Line loads of the line that decides a maximum, as of ``CellContact``."""
+        here, used = loads[at], self.lines.divided(loads.shape[-1]).used[at[1]]
+        line = int(np.argmax(here.max(axis=-1)))
+        own = here[line][used[line]]
+        return np.asarray(own / (here.max() / self.factors(loads)[at]) if over_mean else own)
+
+    def centre(self, forces: Array) -> Array:
+        """Centre of the load along the face (...) [m] of forces (..., lines, cells)."""
+        z = self.lines.divided(forces.shape[-1]).z
+        return np.asarray(np.sum(forces * z, axis=(-2, -1)) / forces.sum(axis=(-2, -1)))
+
+    def gap_drops(self, face: FaceSetting, coarse: CellShare) -> Array:
+        """By how much the minimum gap of cells falls short of their mean (torques, ..., lines, cells) [m]."""
+        cells, before = self.lines.divided(face.cells), self.lines.divided(coarse.bends.shape[-1])
+        slope = _slopes(coarse.bends, before, cells)
+        within = np.arange(WITHIN + 1) / WITHIN - 0.5
+        z = cells.z[..., None] + cells.length[..., None, None] * within
+        rho1 = cells.rho[0][..., None] + self.lines.slope * cells.length[..., None, None] * within
+        rho = np.stack([rho1, self.lines.line_of_action - rho1])
+        gaps = self.pair.helix.base_cosine * line_gaps(self.setup, z, rho)
+        return np.where(cells.used, drops_within(gaps + slope[..., None] * within), 0.0)
+
+    def _apart(self, face: FaceSetting) -> Array:
+        """Gaps without load, beyond where the first place touches (pitches, positions, lines cells) [m]."""
+        cells = self.lines.divided(face.cells)
+        within = np.array([-0.5, 0.0, 0.5])
+        z = cells.z[..., None] + cells.length[..., None, None] * within
+        rho1 = cells.rho[0][..., None] + self.lines.slope * cells.length[..., None, None] * within
+        gaps = line_gaps(self.setup, z, np.stack([rho1, self.lines.line_of_action - rho1]))
+        gaps = gaps @ np.array([1.0, 4.0, 1.0]) / 6.0
+        nearest = self.sides.flanks[0].candidates.gap.min(axis=-1)
+        apart = self.pair.helix.base_cosine * np.maximum(gaps - nearest[..., None, None], 0.0)
+        return np.where(cells.used, apart, np.inf).reshape(*apart.shape[:-2], -1)
+
+
+def _slopes(bends: Array, before: LineCells, cells: LineCells) -> Array:
+    """By how much bends (..., lines, parts) of some cells rise over each of others (..., lines, cells) [m]."""
+    count = before.count
+    last = np.maximum(count - 2, 0)[..., None]
+    step = np.diff(bends, axis=-1, append=bends[..., -1:])
+    # steps between neighbours; where a line has one cell only, none
+    place = (np.arange(cells.z.shape[-1]) + 0.5) / np.maximum(cells.count, 1)[..., None] * count[..., None]
+    at = np.clip(np.floor(place - 0.5).astype(int), 0, last)
+    per_part = np.take_along_axis(step, np.broadcast_to(at, (*bends.shape[:-1], at.shape[-1])), axis=-1)
+    ratio = np.where(count > 1, count / np.maximum(cells.count, 1), 0.0)[..., None]
+    return np.asarray(per_part * ratio)

@@ -1,0 +1,208 @@
+"""What the lines of contact of a helical pair carry in a mesh cycle: line loads, pressure, centre of the load, moments."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from base import Array, described, part, quantity, record
+from base.results import EXACT
+from fem.elasticity.plane_elasticity import reduced_modulus
+from fem.pair.face_setting import FaceSetting
+from gears.pair.hertz import half_width, peak_pressure
+
+if TYPE_CHECKING:
+    from fem.contact.contact_state import ContactState
+    from fem.laws.mesh_setup import MeshSetup
+    from gears import GearPair
+
+__all__ = ["LineLoads", "line_loads"]
+
+IN_SINGLE_CELLS = "not estimated cell by cell; line_load_error is that of the largest"
+
+HERTZ = "not estimated: Hertz's law of the cell's line load, whose error is not known in single cells"
+
+BY_CENTRE = "off by at most the force times centre_error: it may pass through zero"
+
+
+@record
+class LineLoads:
+    """Lines of contact over the positions of a mesh cycle, each divided into equal cells.
+
+    Where a line has fewer cells than others, further ones are nan. Loads are per length of the line of contact, which
+    is 1/cos(beta_b) of that along the axis.
+    """
+
+    headline: ClassVar[tuple[str, ...]] = ("greatest_line_load_factor", "greatest_line_load", "axial_force")
+
+    z: Array = quantity(
+        "m",
+        "middles of the cells along the face, 0 at mid-face",
+        "position pair cell",
+        shown="mm",
+        no_error=EXACT,
+    )
+    travel: Array = quantity(
+        "m",
+        "travel of each cell along the transverse path of contact, from A",
+        "position pair cell",
+        shown="mm",
+        no_error=EXACT,
+    )
+    length: Array = quantity(
+        "m",
+        "length of a cell along its line of contact; zero where a line does not touch",
+        "position pair",
+        shown="mm",
+        no_error=EXACT,
+    )
+    line_load: Array = quantity(
+        "N/m",
+        "normal force per length of the line of contact; zero where flanks stand clear",
+        "position pair cell",
+        shown="N/mm",
+        no_error=IN_SINGLE_CELLS,
+    )
+    gap: Array = quantity(
+        "m",
+        "gap left under load along the common normal; zero where flanks touch",
+        "position pair cell",
+        shown="um",
+        no_error=IN_SINGLE_CELLS,
+    )
+    pair: GearPair = part("the gears")
+    setting: FaceSetting = part("cells, alignment and leads")
+    slope: float = quantity(
+        "1", "change of the pinion's curvature radius along the face: tan(beta_b)", no_error=EXACT
+    )
+    plane: str = part('"strain", as of the compliance')
+    error: float = quantity("1", "estimated relative error of the maximum line-load factor")
+    line_load_error: float = quantity("1", "estimated relative error of the maximum line load")
+    centre_error: float = quantity(
+        "m", "estimated error of the centre of the load, root mean square over the positions", shown="um"
+    )
+
+    @property
+    def rho(self) -> Array:
+        """Curvature radii on pinion and wheel (2, positions, pairs, cells) [m]."""
+        rho1 = self.travel + self.pair.points.A
+        return np.stack([rho1, self.pair.line_of_action - rho1])
+
+    @property
+    def force(self) -> Array:
+        """Normal force on each cell (positions, pairs, cells) [N]; zero where there is none."""
+        return np.nan_to_num(self.line_load) * self.length[..., None]
+
+    @described("m", "position pair cell", shown="mm", no_error=EXACT)
+    def curvature_radius(self) -> Array:
+        """Radius of relative curvature across the line of contact: that of the section over cos(beta_b)."""
+        rho1, rho2 = self.rho
+        return np.asarray(rho1 * rho2 / (rho1 + rho2) / self.pair.helix.base_cosine)
+
+    @described("Pa", "position pair cell", shown="MPa", no_error=HERTZ)
+    def hertz_pressure(self) -> Array:
+        """Hertz pressure: largest of the contact of every cell."""
+        return peak_pressure(*self._contacts)
+
+    @described("m", "position pair cell", shown="um", no_error=HERTZ)
+    def half_width(self) -> Array:
+        """Half-width of the Hertz contact of every cell."""
+        return half_width(*self._contacts)
+
+    @property
+    def _contacts(self) -> tuple[Array, Array, float]:
+        return self.line_load, self.curvature_radius, reduced_modulus(self.pair, self.plane)
+
+    @described("m", "position", shown="mm", no_error=EXACT)
+    def whole_length(self) -> Array:
+        """Length of all lines of contact together."""
+        return np.asarray((np.isfinite(self.z) * self.length[..., None]).sum(axis=(1, 2)))
+
+    @described("1", "position", error="error")
+    def line_load_factor(self) -> Array:
+        """Maximum line load over the mean of all lines of contact."""
+        mean = self.force.sum(axis=(1, 2)) / self.whole_length
+        return np.asarray(np.nan_to_num(self.line_load).max(axis=(1, 2)) / mean)
+
+    @described("1", error="error")
+    def greatest_line_load_factor(self) -> float:
+        """Largest of the line-load factors of all positions."""
+        return float(self.line_load_factor.max())
+
+    @described("N/m", shown="N/mm", error="line_load_error")
+    def greatest_line_load(self) -> float:
+        """Maximum line load of all positions."""
+        return float(np.nanmax(self.line_load))
+
+    @described("N", no_error=EXACT)
+    def axial_force(self) -> float:
+        """Axial force on the pinion, positive along z; the wheel has the opposite."""
+        return float(self.force[0].sum() * self.pair.helix.base_cosine * self.slope)
+
+    @described("m", "position", shown="mm", no_error=BY_CENTRE)
+    def load_centre(self) -> Array:
+        """Centre of the load along the face, 0 at mid-face."""
+        force = self.force
+        return np.asarray((force * np.nan_to_num(self.z)).sum(axis=(1, 2)) / force.sum(axis=(1, 2)))
+
+    @described("N m", "gear", no_error=EXACT)
+    def axial_moment(self) -> tuple[float, float]:
+        """Moment of the axial force on pinion and wheel about the transverse line of action, F_a r_b."""
+        first, second = (self.axial_force * radius for radius in self.pair.base_radii)
+        return first, second
+
+    @described("N m", "gear position", no_error=BY_CENTRE)
+    def tilting_moment(self) -> Array:
+        """Moment on either gear about the axis that crosses its shaft at mid-face and the line of action at right angles.
+
+        The sum of F_t (z + rho tan(beta_b)), F_t the force in the section: the load's centre and the axial force.
+        """
+        rho, slopes = np.nan_to_num(self.rho), np.array([self.slope, -self.slope])
+        lever = np.nan_to_num(self.z) + slopes[:, None, None, None] * rho
+        return np.asarray((self.force * lever).sum(axis=(2, 3)) * self.pair.helix.base_cosine)
+
+    @described("1")
+    def contact_pattern(self) -> float:
+        """Part of the length of all lines, over the whole cycle, that is touched."""
+        touched = ((np.nan_to_num(self.line_load) > 0.0) * self.length[..., None]).sum()
+        return float(touched / self.whole_length.sum())
+
+
+def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str) -> LineLoads | None:
+    """Lines of contact under one torque of a solution; None of spur pairs.
+
+    Parameters
+    ----------
+    setup : MeshSetup
+    contact : ContactState
+    number : int
+        Of the torque.
+    plane : {"strain"}
+    """
+    lines = contact.candidates.lines
+    if lines is None:
+        return None
+    over, pair = contact.contacts, setup.pair
+    forces = contact.cell_forces(number)[0]
+    cells = lines.divided(forces.shape[-1])
+    length = np.where(lines.touches, cells.length, 0.0) / pair.helix.base_cosine
+    per_length = forces / np.where(length > 0.0, length, 1.0)[..., None]
+
+    def of_cells(values: Array) -> Array:
+        return np.where(cells.used, values, np.nan)
+
+    return LineLoads(
+        z=of_cells(cells.z),
+        travel=of_cells(cells.rho[0] - pair.points.A),
+        length=length,
+        line_load=of_cells(per_length),
+        gap=of_cells(np.maximum(over.remaining_gaps[number][0], 0.0)),
+        pair=pair,
+        setting=setup.face,
+        slope=lines.slope,
+        plane=plane,
+        error=float(over.errors.factor[number]),
+        line_load_error=float(over.errors.line_load[number]),
+        centre_error=float(over.errors.centre[number]),
+    )

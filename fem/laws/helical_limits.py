@@ -1,0 +1,41 @@
+"""What the loaded contact of helical pairs does not know, refused all at once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from base import Faults
+from fem.pair.face_setting import FREE_ENDS
+
+if TYPE_CHECKING:
+    from fem.laws.mesh_setup import MeshSetup
+
+__all__ = ["check_helical"]
+
+SPUR = "give helix_angle = 0 for a spur pair, or leave it out"
+
+
+def check_helical(faults: Faults, setup: MeshSetup) -> None:
+    """Note what a setting asks for that lines of contact across the face do not have."""
+    if setup.beyond_path:
+        allowed = "must be False with a helix: contact is held to the path, from A to E"
+        faults.add("beyond_path", True, allowed, "leave it out")
+    if setup.deviations is not None and any(each is not None for each in setup.deviations):
+        faults.add("deviations", "of a helical pair", "must be None with a helix", SPUR)
+    if setup.pitches != 1:
+        allowed = "must be 1 with a helix, whose teeth are alike"
+        faults.add("pitches", setup.pitches, allowed, "leave it out")
+    if any(radius != 0.0 for radius in setup.radii):
+        faults.add("tip_rounding", setup.tip_rounding, "must be 0 with a helix", SPUR)
+    if setup.friction:
+        faults.add("friction", setup.friction, "must be 0 with a helix", SPUR)
+    if setup.base_pitch_difference:
+        faults.add("base_pitch_difference", setup.base_pitch_difference, "must be 0 with a helix", SPUR)
+    if setup.moving_contact:
+        allowed = "must be False with a helix: contacts stay where undeformed teeth touch"
+        faults.add("moving_contact", True, allowed, "give moving_contact=False")
+    if setup.face.on_shafts:
+        faults.add("shafts", "under a helical pair", "must be None with a helix", SPUR)
+    if setup.face.model != FREE_ENDS:
+        allowed = f'must be "{FREE_ENDS}" with a helix: there are no walls that it fits'
+        faults.add("face_model", repr(setup.face.model), allowed, "leave it out")

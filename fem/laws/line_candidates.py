@@ -1,0 +1,143 @@
+"""Lines of contact of a helical pair before any load: how long they are at each position, and where on the flanks.
+
+In the plane of action a line is inclined by the base helix angle: on the loaded flank of a right-handed pinion
+rho1 = rho1(0) + z tan(beta_b), z = 0 at mid-face, and rho2 falls by as much. It touches where rho1 is between A and E.
+Forces act along the common normal, inclined by beta_b to the transverse section, so that all levers and gaps along it
+have the factor cos(beta_b).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Booleans, Integers, record
+
+if TYPE_CHECKING:
+    from fem.laws.mesh_setup import MeshSetup
+
+__all__ = ["ContactLines", "LineCells", "contact_lines", "line_offsets"]
+
+SHORTEST = 1e-9
+"""Part of the face below which a line does not touch."""
+
+SHORT_CELL = 0.5
+"""Of a cell's usual length, the face over their number: a shorter line is as stiff, per length, as one of that."""
+
+
+@record
+class LineCells:
+    """Cells of lines of contact, equal ones of each line.
+
+    Attributes
+    ----------
+    z : (positions, pairs, cells) array
+        Middles along the face [m], 0 at mid-face; beyond a line's last cell those of further ones.
+    rho : (2, positions, pairs, cells) array
+        Curvature radii on pinion and wheel there [m].
+    length : (positions, pairs) array
+        Of a cell along the face [m].
+    felt : (positions, pairs) array
+        Length over which the bodies feel its load [m]: never less than ``SHORT_CELL`` of a usual cell, since the
+        pressure of a line that begins is no strip of any length.
+    used : (positions, pairs, cells) boolean array
+        Cells that there are: the first ones of each line.
+    """
+
+    z: Array
+    rho: Array
+    length: Array
+    felt: Array
+    used: Booleans
+
+    @property
+    def count(self) -> Integers:
+        """Cells of each line (positions, pairs)."""
+        return np.asarray(self.used.sum(axis=-1))
+
+
+@record
+class ContactLines:
+    """Lines of contact of n positions.
+
+    Attributes
+    ----------
+    start, stop : (n, pairs) arrays
+        Where each line starts and ends along the face [m], 0 at mid-face; both 0 where it does not touch.
+    middle : (n, pairs) array
+        rho1 of each line at mid-face, beyond the path where it does not touch there [m].
+    slope : float
+        d rho1/dz.
+    line_of_action : float
+        rho1 + rho2 [m].
+    face_width : float
+        [m]
+    """
+
+    start: Array
+    stop: Array
+    middle: Array
+    slope: float
+    line_of_action: float
+    face_width: float
+
+    def at(self, rows: slice) -> ContactLines:
+        """Lines at some positions."""
+        return replace(self, start=self.start[rows], stop=self.stop[rows], middle=self.middle[rows])
+
+    @property
+    def touches(self) -> Booleans:
+        """Whether each line touches at all (n, pairs)."""
+        return np.asarray(self.stop - self.start > SHORTEST * self.face_width)
+
+    @property
+    def place(self) -> Array:
+        """rho1 in the middle of what touches of each line (n, pairs) [m]."""
+        return np.asarray(self.middle + 0.5 * self.slope * (self.start + self.stop))
+
+    @property
+    def length(self) -> Array:
+        """Of what touches along the face (n, pairs) [m]."""
+        return np.asarray(self.stop - self.start)
+
+    def divided(self, cells: int) -> LineCells:
+        """Divide every line into equal cells, of the length of `cells` on the whole face or a little less."""
+        touches, length = self.touches, np.where(self.touches, self.length, self.face_width)
+        count = np.where(touches, np.ceil(length / self.face_width * cells - 1e-9), 0).astype(int)
+        each = length / np.maximum(count, 1)
+        number = np.arange(cells)
+        z = np.where(touches, self.start, 0.0)[..., None] + each[..., None] * (number + 0.5)
+        rho1 = self.middle[..., None] + self.slope * z
+        used = number < count[..., None]
+        # cells that there are not have places, which are never used
+        rho1 = np.where(used, rho1, np.where(touches, self.place, 0.5 * self.line_of_action)[..., None])
+        felt = np.maximum(each, SHORT_CELL * self.face_width / cells)
+        return LineCells(z, np.stack([rho1, self.line_of_action - rho1]), each, felt, used)
+
+
+def line_offsets(setup: MeshSetup) -> Integers:
+    """Base pitches by which each line is ahead of the pair that entered last at mid-face."""
+    pair = setup.pair
+    beyond = 0.5 * pair.overlap_ratio
+    return np.arange(-ceil(beyond), ceil(pair.contact_ratio + beyond))
+
+
+def contact_lines(setup: MeshSetup, middle: Array) -> ContactLines:
+    """Lines of contact whose middles stand at some places.
+
+    Parameters
+    ----------
+    setup : MeshSetup
+        Of a helical pair.
+    middle : (n, pairs) array
+        rho1 of each line at mid-face [m].
+    """
+    pair, slope = setup.pair, setup.line_slope
+    (start, end), half = setup.ends, 0.5 * pair.face_width
+    ends = np.sort(np.stack([(start - middle) / slope, (end - middle) / slope]), axis=0)
+    first, last = np.clip(ends, -half, half)
+    return ContactLines(first, last, middle, slope, pair.line_of_action, pair.face_width)
+

@@ -1,0 +1,178 @@
+"""Compliance of both gears of a helical pair between cells of its lines of contact, put together.
+
+Each gear is a solid without ends that lines of contact cross (``fem.influence.helix_lines``), and what its free ends
+add (``fem.influence.helix_ends``). Line loads and displacements are along the common normal; a cell of length h along
+the axis has the line load F/h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, record
+from fem.influence.gear_shape import MeshedShape, rounded
+from fem.influence.gear_store import GearStore
+from fem.influence.helix_ends import HelixEnds, helix_ends
+from fem.influence.helix_lines import ContactLine, along_line, between_lines
+from fem.influence.helix_waves import HelixHarmonics, helix_harmonics
+from fem.pair.face_setting import FREE_ENDS
+
+if TYPE_CHECKING:
+    from fem.influence.gear_compliance import GearCompliance
+    from fem.laws.line_candidates import LineCells
+    from fem.pair.face_setting import FaceSetting
+    from fem.pair.pair_compliance import PairCompliance
+
+__all__ = ["GearLines", "gear_lines", "lines_compliance"]
+
+WIDE = 1.5
+"""Half-widths of the pressure below which a cell's load is felt over as much: it is no line any more."""
+
+
+@record
+class GearLines:
+    """One gear of a helical pair as its lines of contact feel it.
+
+    Attributes
+    ----------
+    flexible : GearCompliance
+        Of the spur gear with the transverse section.
+    poisson : float
+        nu*
+    waves : HelixHarmonics
+    ends : HelixEnds or None
+        None where ends are left out.
+    side : int
+        1 of the pinion, -1 of the wheel, whose teeth ahead have smaller curvature radii.
+    offset : float
+        Middle of the gear's own face [m].
+    """
+
+    flexible: GearCompliance
+    poisson: float
+    waves: HelixHarmonics
+    ends: HelixEnds | None
+    side: int
+    offset: float
+
+    def line(self, tooth: int, z: Array, rho: Array, length: float) -> ContactLine:
+        """A line of contact in modules, with places and lengths in metres."""
+        module = self.flexible.module
+        return ContactLine(self.side * tooth, (z - self.offset) / module, rho / module, length / module)
+
+    def between(self, load: ContactLine, point: ContactLine, half_width: float) -> Array:
+        """Mean displacements of cells by unit forces on cells (loads, points) [m/N], but for the local law.
+
+        Parameters
+        ----------
+        load, point : ContactLine
+        half_width : float
+            Of the pressure, in modules.
+        """
+        module, modulus = self.flexible.module, self.flexible.law.plane_modulus
+        if load is point:
+            in_plane = self.flexible.own(load.rho * module) * modulus
+            moved = along_line(self.waves, self.poisson, load, in_plane, half_width)
+        else:
+            moved = between_lines(self.waves, load, point)
+        if self.ends is not None:
+            moved = moved + self.ends.between(load, point)
+        return np.asarray(moved / (modulus * module * load.length))
+
+
+def gear_lines(bodies: PairCompliance, slope: float, face: FaceSetting) -> tuple[GearLines, GearLines]:
+    """Both gears of a helical pair, solved where they are kept nowhere.
+
+    Parameters
+    ----------
+    bodies : PairCompliance
+    slope : float
+        d rho1/dz along a line of contact.
+    face : FaceSetting
+    """
+    pair, store = bodies.pair, GearStore()
+    lines = ceil(pair.total_contact_ratio)
+    solved = []
+    for gear, side in enumerate((1, -1)):
+        meshed, width = bodies.meshed[gear], rounded(pair.face_widths[gear] / pair.module)
+        twist = side * slope * pair.module / pair.base_radii[gear]
+        reach = max(meshed.shape.reach, lines)
+        ends = _ends(meshed, twist, width, store) if face.model == FREE_ENDS else None
+        solved.append(
+            GearLines(
+                (bodies.pinion, bodies.wheel)[gear],
+                meshed.shape.poisson,
+                _waves(meshed, twist, reach, store),
+                ends,
+                side,
+                pair.face_offsets[gear],
+            )
+        )
+    return solved[0], solved[1]
+
+
+def _waves(meshed: MeshedShape, twist: float, reach: int, store: GearStore) -> HelixHarmonics:
+    """Waves of a gear of either hand, by those of the right hand."""
+    size = rounded(abs(twist))
+    right = store.record("helix waves", (meshed, size, reach), partial(helix_harmonics, meshed, size, reach))
+    return right if twist > 0.0 else right.mirrored
+
+
+def _ends(meshed: MeshedShape, twist: float, width: float, store: GearStore) -> HelixEnds:
+    """Free ends of a gear of either hand, by those of the right hand."""
+    size = rounded(abs(twist))
+    right = store.record("helix ends", (meshed, size, width), partial(helix_ends, meshed, size, width))
+    return right if twist > 0.0 else right.mirrored
+
+
+def lines_compliance(
+    bodies: PairCompliance,
+    gears: Sequence[GearLines],
+    offset: Sequence[int],
+    cells: LineCells,
+    position: int,
+    half_width: float,
+) -> Array:
+    """Compliance of both bodies between the used cells of all lines at a position (n, n) [m/N], but for local laws.
+
+    Parameters
+    ----------
+    bodies : PairCompliance
+    gears : two GearLines
+    offset : sequence of int
+        Base pitches by which each line is ahead.
+    cells : LineCells
+    position : int
+    half_width : float
+        Of the pressure, in modules.
+    """
+    count, module = cells.count[position], bodies.pair.module
+    chosen = np.flatnonzero(count).tolist()
+    ends = np.concatenate([[0], np.cumsum(count[chosen])])
+    compliance = np.zeros((ends[-1], ends[-1]))
+    for gear, solved in enumerate(gears):
+        lines = [
+            solved.line(
+                int(offset[line]),
+                cells.z[position, line, : count[line]],
+                cells.rho[gear, position, line, : count[line]],
+                max(float(cells.felt[position, line]), WIDE * half_width * module),
+            )
+            for line in chosen
+        ]
+        for i, load in enumerate(lines):
+            own = slice(ends[i], ends[i + 1])
+            compliance[own, own] += solved.between(load, load, half_width)
+            for j, point in enumerate(lines[:i]):
+                other = slice(ends[j], ends[j + 1])
+                moved = solved.between(load, point, half_width)
+                compliance[own, other] += moved
+                compliance[other, own] += moved.T
+    # what hubs and supports move all teeth by, by the part of the normal force across the axis
+    common = (sum(bodies.support) + sum(bodies.step_windup)) * bodies.pair.helix.base_cosine**2
+    return compliance + common
