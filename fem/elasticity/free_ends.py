@@ -23,11 +23,14 @@ from fem.elasticity.line_load import FlankPoints
 from fem.elasticity.prism import Face, Section, prism
 
 __all__ = [
+    "ORDER",
     "HalfFace",
     "free_ends",
     "free_ends_across",
     "half_face",
     "over_cells",
+    "piece_values",
+    "pieces_between",
     "unknowns_along",
 ]
 
@@ -42,10 +45,12 @@ LAST, GROWTH = 0.375, 2.6
 class HalfFace:
     """Continuous piecewise polynomials over half a face, by their values at nodes from mid-face to the end.
 
+    A helix has no middle: there they go over a whole face (``fem.elasticity.lengthened``).
+
     Attributes
     ----------
     ends : (pieces + 1,) array
-        Where pieces end [m], from 0.
+        Where pieces end [m], on half a face from 0.
     mass, stiffness, mixed : (n, n) arrays
         <f g>, <f' g'>, <f g'>.
     """
@@ -79,7 +84,7 @@ class HalfFace:
         local = 2 * (z - start) / long - 1
         values_and_slopes = np.zeros((2, len(self.mass), len(z)))
         rows, columns = ORDER * piece[:, None] + np.arange(ORDER + 1), np.arange(len(z))[:, None]
-        values_and_slopes[0, rows, columns] = _values(local)
+        values_and_slopes[0, rows, columns] = piece_values(local)
         values_and_slopes[1, rows, columns] = _slopes(local) * (2 / long)[:, None]
         return values_and_slopes
 
@@ -107,7 +112,7 @@ class HalfFace:
         start, stop = self.ends[piece], self.ends[piece + 1]
         z = np.abs(middle[:, None] + half[:, None] * s)
         local = (2 * (z - start[:, None]) / (stop - start)[:, None] - 1).ravel()
-        values = weight @ _values(local).reshape(len(middle), ORDER + 1, ORDER + 1)
+        values = weight @ piece_values(local).reshape(len(middle), ORDER + 1, ORDER + 1)
         values = values * (half / np.diff(edges)[cell])[:, None]
         rows = ORDER * piece[:, None] + np.arange(ORDER + 1)
         np.add.at(even, (rows, cell[:, None]), values)
@@ -122,8 +127,8 @@ def _nodes() -> Array:
     return np.concatenate([[-1.0], np.sort(inner), [1.0]])
 
 
-def _values(s: Array) -> Array:
-    """Values (k, ORDER + 1) of a piece's functions at places (k,)."""
+def piece_values(s: Array) -> Array:
+    """Values (k, ORDER + 1) of the functions of one piece, from -1 to 1, at places (k,) of it."""
     return np.asarray(legendre.legvander(s, ORDER) @ np.linalg.inv(legendre.legvander(_nodes(), ORDER)))
 
 
@@ -157,10 +162,20 @@ def half_face(half_width: float, module: float, last: float = LAST, growth: floa
         Length of the piece at the end [modules], and of each piece over the one nearer to the end.
     """
     lengths = _lengths(half_width, module, last, growth)
-    ends = half_width * np.concatenate([[0.0], np.cumsum(lengths[::-1])]) / sum(lengths)
-    n = ORDER * len(lengths) + 1
+    return pieces_between(half_width * np.concatenate([[0.0], np.cumsum(lengths[::-1])]) / sum(lengths))
+
+
+def pieces_between(ends: Array) -> HalfFace:
+    """Polynomials over pieces of a face.
+
+    Parameters
+    ----------
+    ends : (pieces + 1,) array
+        Where pieces end, growing [m]; of half a face from 0, of a face without a middle from anywhere.
+    """
+    n = ORDER * (len(ends) - 1) + 1
     s, weight = legendre.leggauss(ORDER + 1)
-    values, slopes = _values(s), _slopes(s)
+    values, slopes = piece_values(s), _slopes(s)
     mass, stiffness, mixed = np.zeros((3, n, n))
     for piece, length in enumerate(np.diff(ends)):
         at = slice(ORDER * piece, ORDER * piece + ORDER + 1)

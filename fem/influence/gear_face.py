@@ -111,11 +111,12 @@ def solid_of(poisson: float) -> PlaneElasticity:
     return PlaneElasticity("strain", 1 - nu**2, nu)
 
 
-def section_of(meshed: MeshedShape, sizes: Sizes, refinements: int) -> Section:
-    """Section of a gear of module 1 and E* = 1."""
+def section_of(meshed: MeshedShape, sizes: Sizes, refinements: int, twist: float = 0.0) -> Section:
+    """Section of a gear of module 1 and E* = 1, twisted by some radians a module."""
     from meshes import mesh_sector
 
-    return section(mesh_sector(meshed.shape.profile, sizes, refinements), solid_of(meshed.shape.poisson))
+    mesh = mesh_sector(meshed.shape.profile, sizes, refinements)
+    return section(mesh, solid_of(meshed.shape.poisson), twist)
 
 
 def axial_harmonics(meshed: MeshedShape) -> AxialHarmonics:
