@@ -93,7 +93,9 @@ class _Effect:
     def between(self, load: ContactLine, point: ContactLine) -> Array:
         """Means over cells of ``point`` by unit line loads on cells of ``load`` (loads, points)."""
         tooth = point.tooth - load.tooth
-        table = self.tables[abs(tooth)]
+        table = self.tables.get(abs(tooth))
+        if table is None:  # too far away to feel an end
+            return np.zeros((len(load.z), len(point.z)))
         seen = (table.T if tooth < 0 else table) @ self._on(point).T
         return np.asarray(load.length * (self._on(load) @ seen))
 

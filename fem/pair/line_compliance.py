@@ -102,7 +102,7 @@ def gear_lines(bodies: PairCompliance, slope: float, face: FaceSetting) -> tuple
         meshed, width = bodies.meshed[gear], rounded(pair.face_widths[gear] / pair.module)
         twist = side * slope * pair.module / pair.base_radii[gear]
         reach = max(meshed.shape.reach, lines)
-        ends = _ends(meshed, twist, width, store) if face.model == FREE_ENDS else None
+        ends = helix_ends(meshed, twist, width) if face.model == FREE_ENDS else None
         solved.append(
             GearLines(
                 (bodies.pinion, bodies.wheel)[gear],
@@ -120,13 +120,6 @@ def _waves(meshed: MeshedShape, twist: float, reach: int, store: GearStore) -> H
     """Waves of a gear of either hand, by those of the right hand."""
     size = rounded(abs(twist))
     right = store.record("helix waves", (meshed, size, reach), partial(helix_harmonics, meshed, size, reach))
-    return right if twist > 0.0 else right.mirrored
-
-
-def _ends(meshed: MeshedShape, twist: float, width: float, store: GearStore) -> HelixEnds:
-    """Free ends of a gear of either hand, by those of the right hand."""
-    size = rounded(abs(twist))
-    right = store.record("helix ends", (meshed, size, width), partial(helix_ends, meshed, size, width))
     return right if twist > 0.0 else right.mirrored
 
 
@@ -155,13 +148,15 @@ def lines_compliance(
     chosen = np.flatnonzero(count).tolist()
     ends = np.concatenate([[0], np.cumsum(count[chosen])])
     compliance = np.zeros((ends[-1], ends[-1]))
+    half = 0.5 * bodies.pair.face_width
+    felt = 0.5 * np.maximum(cells.felt[position], WIDE * half_width * module)
     for gear, solved in enumerate(gears):
         lines = [
             solved.line(
                 int(offset[line]),
-                cells.z[position, line, : count[line]],
+                np.clip(cells.z[position, line, : count[line]], felt[line] - half, half - felt[line]),
                 cells.rho[gear, position, line, : count[line]],
-                max(float(cells.felt[position, line]), WIDE * half_width * module),
+                2.0 * felt[line],
             )
             for line in chosen
         ]
