@@ -45,3 +45,4 @@ from .tooth.polygon import outline as outline
 from .tooth.profile import ToothProfile as ToothProfile
 from .tooth.rack import ISO_53_A as ISO_53_A
 from .tooth.rack import BasicRack as BasicRack
+from .tooth.topography import Topography as Topography

@@ -324,17 +324,13 @@ def _settled(contacts: StayingContacts, coupling: CellCoupling, whole: Array, st
 
 def along_cells(face: FaceSetting, pair: GearPair, candidates: ContactCandidates) -> Array:
     """Gaps of cells beyond where the first place of the face touches (positions, pairs, cells) [m]."""
-    return np.maximum(face.gaps(pair, _radius(candidates)) - face.least_gap(pair), 0.0)
+    least = np.asarray(face.least_gap(pair, candidates.rho))
+    return np.maximum(face.gaps(pair, candidates.rho) - least[..., None], 0.0)
 
 
 def _gaps_within(face: FaceSetting, pair: GearPair, candidates: ContactCandidates) -> Array:
     """Gaps at equal distances along the face (positions, pairs, places) [m]."""
-    return face.gaps_within(pair, _radius(candidates), WITHIN)
-
-
-def _radius(candidates: ContactCandidates) -> Array:
-    rho1, rho2 = candidates.rho
-    return np.asarray(rho1 * rho2 / (rho1 + rho2))
+    return face.gaps_within(pair, candidates.rho, WITHIN)
 
 
 def _unique(

@@ -160,9 +160,9 @@ class ContactState:
         force, approach = self.share.forces[number], self.share.transmission_error[number]
         if self.side is None:
             return np.repeat(self.candidates.rho[:, None], len(force), axis=1)
-        return self.side.rho(
-            force, approach + (self.setup.face.least_gap(self.setup.pair) + self.bent(number))
-        )
+        radii, touchable = self.candidates.rho, self.candidates.touchable
+        first = self.setup.face.first_gap(self.setup.pair, radii, touchable)
+        return self.side.rho(force, approach + (first + self.bent(number)))
 
     def shafts_give_way(self, number: int) -> float:
         """Maximum deflection of both shafts on the face over the module; 0 of rigid ones."""

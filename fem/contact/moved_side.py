@@ -107,7 +107,7 @@ class MovedSide:
             None if flanks.oil is None else CellLaws(flanks.oil, face.cells),
             np.where(touchable, clear.reshape(*gaps.shape[:-1], -1) - short, 0.0),
             along.reshape(*along.shape[:-2], -1),
-            face.least_gap(self.setup.pair),
+            face.first_gap(self.setup.pair, candidates.rho, candidates.touchable),
             touchable,
             self.lever_ratios,
             self.tilted_lever_ratios,

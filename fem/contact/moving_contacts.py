@@ -52,7 +52,7 @@ class MovingContacts:
         contact.
     along : (..., positions, n) array
         By how much less than D each cell has closed beside its pair's own gap [m].
-    least : float
+    least : float or (positions,) array
         Turn at which the first cell touches, from where straight, aligned gears do [m].
     touchable : (pitches, positions, n) boolean array
     lever_ratios, tilted_lever_ratios : (positions, pairs) arrays
@@ -71,7 +71,7 @@ class MovingContacts:
     film: JointLaw | None
     clear: Array
     along: Array
-    least: float
+    least: Array | float
     touchable: Booleans
     lever_ratios: Array
     tilted_lever_ratios: Array

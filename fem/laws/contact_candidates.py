@@ -157,11 +157,13 @@ def contact_candidates(setup: MeshSetup, reach: float = REACHES[0]) -> ContactCa
     teeth, other = setup.teeth(steps), setup.opposite
     by_tooth = setup.pitch_gap(teeth) + setup.tooth_gap(teeth, rho) / np.where(touchable, lever[0], 1.0)
     rolling = setup.rolling_gap(place)
-    along, along_behind = (side.face.least_gap(pair) for side in (setup, other))
+    held = np.clip(other_place, start, end)
+    along = setup.face.least_gap(pair, rho)
+    along_behind = other.face.least_gap(pair, np.stack([held, line - held]))
     gaps = gap + rolling + by_tooth + along
     least = float(np.min(by_tooth) + np.min(rolling))
-    behind = other.pitch_gap(other.teeth(steps)) + setup.rolling_gap(np.clip(other_place, start, end))
-    back = np.where(touchable, behind, np.inf).min(axis=-1) + along_behind
+    behind = other.pitch_gap(other.teeth(steps)) + setup.rolling_gap(held)
+    back = np.where(touchable, behind + along_behind, np.inf).min(axis=-1)
     numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
     tiles = (1, setup.pitches, 1)
     return ContactCandidates(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Array, Faults, Limit, record, shorten
+from base import Array, Booleans, Faults, Limit, record, shorten
 from gears import Shaft
 from gears.tooth.face import ALIGNED, STRAIGHT, Alignment, Lead
 
@@ -105,49 +105,102 @@ class FaceSetting:
                 "shafts", shorten(self.shafts), "must be of pinion and wheel", "give None for a stiff one"
             )
             return
-        for name, lead, width in zip(("pinion", "wheel"), self.leads, pair.face_widths, strict=True):
-            if lead.end_relief and lead.end_relief_length > 0.5 * width:
-                allowed = f"must be at most {0.5 * width:g} m, half the face"
-                faults.add(
-                    f"{name}.lead.end_relief_length", lead.end_relief_length, allowed, "relieve less of it"
-                )
-
+        self._check_leads(faults, pair)
         if not faults.found:
             check_memory(faults, pair, self.cells, positions, self.model)
         for k, shaft in enumerate(self.shafts):
             if faults.instance(f"shafts[{k}]", shaft, Shaft, optional=True) and shaft is not None:
                 _check_shaft(faults, f"shafts[{k}]", shaft, pair.face_width, pair.face_offsets[k])
 
-    def least_gap(self, pair: GearPair) -> float:
-        """Smallest of the gaps along the face by straight leads and what lies in the plane of action [m], 0 or less."""
-        return float(np.min(self.gaps_along(pair)))
+    def _check_leads(self, faults: Faults, pair: GearPair) -> None:
+        """Note leads that do not fit their gears, and what is not known with them."""
+        for k, (name, lead) in enumerate(zip(("pinion", "wheel"), self.leads, strict=True)):
+            path, width = f"{name}.lead", pair.face_widths[k]
+            if lead.end_relief and lead.end_relief_length > 0.5 * width:
+                allowed = f"must be at most {0.5 * width:g} m, half the face"
+                faults.add(f"{path}.end_relief_length", lead.end_relief_length, allowed, "relieve less of it")
+            if lead.topography is not None:
+                span = pair.active_profiles[k]
+                faults.extend(lead.topography.apart(f"{path}.topography", span, width))
+            if lead.topographic and self.on_shafts:
+                key, value = ("topography", lead.topography) if lead.topography else ("twist", lead.twist)
+                allowed = "must be left out where shafts give way under the face"
+                faults.add(f"{path}.{key}", shorten(value), allowed, "leave it out, or take rigid shafts")
+
+    @property
+    def topographic(self) -> bool:
+        """Whether gaps along the face depend on the place on the profiles too."""
+        return any(lead.topographic for lead in self.leads)
+
+    def least_gap(self, pair: GearPair, rho: Array | None = None) -> Array | float:
+        """Smallest of the gaps along the face by leads and what lies in the plane of action [m].
+
+        One of all pairs, 0 or less; of each (positions, pairs), by its radii rho (2, positions, pairs), where twist or
+        topography count.
+        """
+        if rho is None or not self.topographic:
+            return float(np.min(self.gaps_along(pair)))
+        z, far = self._places(pair), np.array(np.inf)
+        rows = (self._gaps(pair, z, far, row[..., None]) for row in np.moveaxis(rho, 1, 0))
+        return np.stack([row.min(axis=-1) for row in rows])
+
+    def first_gap(self, pair: GearPair, rho: Array, touchable: Booleans) -> Array | float:
+        """Smallest of `least_gap` of the pairs that can touch: of all positions, or of each (positions,) [m]."""
+        least = self.least_gap(pair, rho)
+        if isinstance(least, float):
+            return least
+        return np.asarray(np.where(touchable, least, np.inf).min(axis=-1))
 
     def gaps_along(self, pair: GearPair) -> Array:
         """Gaps at PLACES along the face by straight leads and what lies in the plane of action (PLACES,) [m]."""
-        z = np.linspace(-0.5, 0.5, PLACES) * pair.face_width
-        return self._gaps_at(pair, z, np.array(np.inf))
+        return self._gaps(pair, self._places(pair), np.array(np.inf))
 
-    def gaps(self, pair: GearPair, radius: Array) -> Array:
-        """Mean gaps of the cells (..., cells) [m], less those at mid-face of straight aligned gears."""
-        sampled = self.gaps_within(pair, radius, 2)
+    def gaps(self, pair: GearPair, rho: Array) -> Array:
+        """Mean gaps of the cells (..., cells) [m], less those at mid-face of straight aligned gears.
+
+        Parameters
+        ----------
+        pair : GearPair
+        rho : (2, ...) array
+            Curvature radii where pinion and wheel are touched, the same all along the face [m].
+        """
+        sampled = self.gaps_within(pair, rho, 2)
         return np.asarray((sampled[..., :-1:2] + 4.0 * sampled[..., 1::2] + sampled[..., 2::2]) / 6.0)
 
-    def gaps_within(self, pair: GearPair, radius: Array, parts: int) -> Array:
-        """Gaps at the ends of equal parts of every cell (..., parts cells + 1) [m]."""
+    def gaps_within(self, pair: GearPair, rho: Array, parts: int) -> Array:
+        """Gaps at the ends of equal parts of every cell (..., parts cells + 1) [m]; rho as of `gaps`."""
         z = np.linspace(-0.5, 0.5, parts * self.cells + 1) * pair.face_width
-        return self._gaps_at(pair, z, radius)
+        return self.gaps_at(pair, z, rho[..., None])
 
-    def gaps_at(self, pair: GearPair, z: Array, radius: Array) -> Array:
-        """Gaps (...) [m] at places along the face (...) [m], with radii of relative curvature (...) [m]."""
-        return self._gaps_at(pair, z[..., None], radius)[..., 0]
+    def gaps_at(self, pair: GearPair, z: Array, rho: Array) -> Array:
+        """Gaps along the transverse line of action at places of the face (...) [m], less those of straight aligned gears.
 
-    def _gaps_at(self, pair: GearPair, z: Array, radius: Array) -> Array:
-        """Gaps (..., n) [m] at places along the face (n,) [m]."""
-        removed = sum(
-            lead.removed(z - offset, width)
-            for lead, width, offset in zip(self.leads, pair.face_widths, pair.face_offsets, strict=True)
-        )
-        return np.asarray(self.alignment.gap(z, pair.face_width, radius[..., None]) + removed)
+        Parameters
+        ----------
+        pair : GearPair
+        z : (...) array
+            Places, from the middle of the face in contact [m].
+        rho : (2, ...) array
+            Curvature radii of the transverse section where pinion and wheel are touched there [m]; broadcasts with z.
+            Lines of contact that are oblique have another pair of them at every place.
+        """
+        rho1, rho2 = rho
+        return self._gaps(pair, z, np.asarray(rho1 * rho2 / (rho1 + rho2)), rho)
+
+    def _places(self, pair: GearPair) -> Array:
+        return np.asarray(np.linspace(-0.5, 0.5, PLACES) * pair.face_width)
+
+    def _gaps(self, pair: GearPair, z: Array, radius: Array, rho: Array | None = None) -> Array:
+        """Gaps by alignment and leads; without radii rho (2, ...) those that depend on z alone."""
+        own = zip(self.leads, pair.face_widths, pair.face_offsets, strict=True)
+        if rho is None or not self.topographic:
+            removed = sum(lead.removed(z - offset, width) for lead, width, offset in own)
+        else:
+            removed = sum(
+                lead.removed_at(z - offset, radii, width, span)
+                for (lead, width, offset), radii, span in zip(own, rho, pair.active_profiles, strict=True)
+            )
+        return np.asarray(self.alignment.gap(z, pair.face_width, radius) + removed)
 
 
 EVEN = FaceSetting(1, model=SLICES)

@@ -184,6 +184,12 @@ class PairGeometry:
         pitch = self.base_radii[0] * self._working_tangent
         return PathPoints(A=start, B=end - self.base_pitch, C=pitch, D=start + self.base_pitch, E=end)
 
+    @property
+    def active_profiles(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Curvature radii at start and end of the active profiles of pinion and wheel, transverse section [m]."""
+        start, end, line = self.points.A, self.points.E, self.line_of_action
+        return (start, end), (line - end, line - start)
+
     @described("1")
     def contact_ratio(self) -> float:
         """Transverse contact ratio, length of the path over the base pitch."""

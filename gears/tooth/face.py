@@ -1,6 +1,6 @@
 """How flanks differ along the face: lead modifications of each gear, and the alignment of both.
 
-z runs along the face from -b/2 to b/2, the same for both gears.
+z runs along the face from -b/2 to b/2, the same for both gears. Twist and topography differ over the profile too.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import numpy as np
 
 from base import Array, Fault, Faults, Limit
 from gears.tooth.flank_curves import LeadTrace
+from gears.tooth.topography import Topography
 
 __all__ = ["ALIGNED", "STRAIGHT", "Alignment", "Lead"]
 
@@ -19,6 +20,7 @@ LEAD_LIMITS = {
     "slope": Limit(-1e-3, 1e-3, "m", "give the deviation over the face width in metres"),
     "end_relief": Limit(0.0, 1e-3, "m", "give the material removed at both ends in metres"),
     "end_relief_length": Limit(0.0, 1e3, "m", "give the length from either end in metres"),
+    "twist": Limit(-1e-3, 1e-3, "m", "give by how much the slopes at both ends differ, in metres"),
 }
 """What the numbers of a lead may be."""
 
@@ -31,10 +33,12 @@ ALIGNMENT_LIMITS = {
 
 @dataclass(frozen=True)
 class Lead:
-    """What is removed from one gear's flanks along the face, the same on every tooth.
+    r"""What is removed from one gear's flanks along the face, the same on every tooth.
 
     Removed at z, with x = 2 z/b: ``crowning x^2 + slope x/2 + end_relief max(0, 1 - (b/2 - |z|)/length)^2``, less the
-    material of a measured trace.
+    material of a measured trace. Removed at z and at the curvature radius rho, besides, with s from -1 at the start of
+    the active profile to 1 at its end at the tip, linear in rho (the roll length): ``twist x s/4``, less the material
+    of a topography. All amounts count in the transverse plane, normal to the involute.
 
     Parameters
     ----------
@@ -48,11 +52,26 @@ class Lead:
         Length of that part, from either end [m].
     trace : LeadTrace, optional
         Measured lead, on top of these.
+    twist : float
+        Flank twist (bias) [m]: by how much the slope of the profile at the end z = b/2 exceeds that at z = -b/2, S_alpha,
+        and as well the slope of the lead at the tip that at the start of the active profile, S_beta. These are the two
+        twists of ISO 21771, here over the whole face and the whole active profile, where they are equal. Slopes are
+        those of material removed, as `slope` is: above 0 it lacks at the tip where z > 0, and at the start of the
+        profile where z < 0. Slope deviations of ISO 1328-1 count material in excess: their twist has the other sign.
+    topography : Topography, optional
+        Table over profile and face, measured or prescribed, on top of these.
 
     Examples
     --------
     >>> Lead(crowning=10e-6).removed(np.array([-0.02, 0.0, 0.01]), 0.04)
     array([1.0e-05, 0.0e+00, 2.5e-06])
+
+    Lead slopes at start, middle and tip of the active profile, 16 um from first to last:
+
+    >>> rho = np.array([8e-3, 13e-3, 18e-3])
+    >>> ends = [Lead(twist=16e-6).removed_at(z, rho, 0.04, (8e-3, 18e-3)) for z in (-0.02, 0.02)]
+    >>> (1e6 * (ends[1] - ends[0])).round(9) + 0.0
+    array([-8.,  0.,  8.])
     """
 
     crowning: float = 0.0  # C_beta, m
@@ -60,6 +79,13 @@ class Lead:
     end_relief: float = 0.0  # C_beta I = C_beta II, m
     end_relief_length: float = 0.0  # L_CI = L_CII, m
     trace: LeadTrace | None = None
+    twist: float = 0.0  # S_alpha = S_beta, m
+    topography: Topography | None = None
+
+    @property
+    def topographic(self) -> bool:
+        """Whether what is removed along the face depends on the place on the profile too."""
+        return bool(self.twist) or self.topography is not None
 
     def faults(self, path: str) -> tuple[Fault, ...]:
         """All faults of the values by themselves, empty when there are none."""
@@ -71,10 +97,13 @@ class Lead:
             )
         if self.trace is not None:
             collector.extend(self.trace.faults(f"{path}.trace"))
+        given = collector.instance(f"{path}.topography", self.topography, Topography, optional=True)
+        if given and self.topography is not None:
+            collector.extend(self.topography.faults(f"{path}.topography"))
         return tuple(collector.found)
 
     def removed(self, z: Array, face_width: float) -> Array:
-        """Material lacking at z (n,) [m]."""
+        """Material lacking at z (n,), but for twist and topography [m]."""
         x = 2.0 * z / face_width
         lacking = self.crowning * x**2 + 0.5 * self.slope * x
         if self.end_relief:
@@ -83,6 +112,35 @@ class Lead:
         if self.trace is not None:
             lacking = lacking - self.trace.at(z)
         return np.asarray(lacking)
+
+    def removed_at(
+        self, z: float | Array, rho: float | Array, face_width: float, span: tuple[float, float]
+    ) -> Array:
+        """All material that the flank lacks by its lead, at places along the face and on the profile [m].
+
+        Tip relief and profile deviations, which depend on rho alone, are not in it.
+
+        Parameters
+        ----------
+        z : (...) array
+            From the middle of this gear's face [m].
+        rho : (...) array
+            Curvature radii of its flank [m]; arrays broadcast. Beyond the active profile the twist goes on, and the
+            topography keeps the value of its edge.
+        face_width : float
+            b of this gear [m].
+        span : (float, float)
+            Curvature radii at start and end of its active profile (``GearPair.active_profiles``) [m].
+        """
+        z, rho = np.asarray(z, dtype=float), np.asarray(rho, dtype=float)
+        lacking = self.removed(z, face_width)
+        if self.twist:
+            low, high = span
+            up = (2.0 * rho - low - high) / (high - low)
+            lacking = lacking + 0.25 * self.twist * (2.0 * z / face_width) * up
+        if self.topography is not None:
+            lacking = lacking - self.topography.at(rho, z)
+        return np.asarray(np.broadcast_to(lacking, np.broadcast_shapes(z.shape, rho.shape)))
 
 
 STRAIGHT = Lead()
