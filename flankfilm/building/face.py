@@ -107,7 +107,11 @@ def _of_setting(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:
     if setting is not None:
         setting.check(faults, pair, POSITIONS)
     for fault in faults.found:
-        if fault.where in ("cells", "face_model"):
+        if fault.where.endswith(".lead.topography"):
+            at = fault.where.replace("lead.topography", "deviations.map.twist")
+            remedy = 'Give "left-out", or drop [alignment] or the segments of [shafts]'
+            yield replace(fault, where=f"pair.{at}", value="'kept'", remedy=remedy)
+        elif fault.where in ("cells", "face_model"):
             yield in_keys(fault, scene.alignment, "alignment")
         else:
             yield in_keys(fault, scene.pair, "pair")

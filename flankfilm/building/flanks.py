@@ -17,7 +17,7 @@ from flankfilm.scene.sections.gears import GEARS, GearSection
 from flankfilm.scene.sections.map_section import MapSection
 from flankfilm.scene.sections.section import required
 
-__all__ = ["deviations", "lead_trace"]
+__all__ = ["deviations", "measured_lead"]
 
 SLACK = 0.05
 """Part of the active profile, or of the face, that a curve may leave out at either end."""
@@ -56,10 +56,8 @@ def deviations(scene: Scene, pair: gears.GearPair, *, every_tooth: bool) -> Both
     return (first, second) if first or second else None
 
 
-def lead_trace(
-    section: GearSection, name: str, face_width: float, base_radius: float
-) -> gears.LeadTrace | None:
-    """Measured lead of a gear.
+def measured_lead(section: GearSection, name: str, face_width: float, base_radius: float) -> gears.Lead:
+    """Measured lead of a gear, and the rest of a map where it is kept.
 
     Parameters
     ----------
@@ -76,18 +74,22 @@ def lead_trace(
     Warns
     -----
     GeometryWarning
-        Of a map's twist, which is left out.
+        Of a map's twist that is left out.
     """
     made = section.deviations
     if made is None or (made.lead is None and made.map is None):
-        return None
+        return gears.Lead()
     source: LeadSection | MapSection
+    rest: gears.Topography | None = None
     if made.map is not None:
         source, kind = made.map, "map"
         parts = made.map.flank_map(base_radius)
         trace = parts.lead
-        if parts.twist > LEAST_TWIST:
-            twist = f"{name}: the map's twist, up to {1e6 * parts.twist:.2g} um of material, is left out"
+        if made.map.twist == "kept":
+            rest = parts.rest
+        elif parts.twist > LEAST_TWIST:
+            size = f"{name}: the map's twist, up to {1e6 * parts.twist:.2g} um of material"
+            twist = f'{size}, is left out; give map.twist = "kept" to count it'
             warnings.warn(twist, gears.GeometryWarning, stacklevel=2)
     elif made.lead is not None:
         source, kind = made.lead, "lead"
@@ -104,7 +106,7 @@ def lead_trace(
             raise InputError.at(key, value, f"must lie on {ends}", remedy)
         remedy = 'Measure farther, count places from the middle of the face, or give beyond = "hold"'
         raise InputError.at(key, value, f"must cover {ends}, but for a twentieth at either end", remedy)
-    return trace
+    return gears.Lead(trace=trace, topography=rest)
 
 
 def _of_gear(

@@ -11,7 +11,7 @@ from typing import TypeVar
 import fem
 import gears
 from base import InputError
-from flankfilm.building.flanks import lead_trace
+from flankfilm.building.flanks import measured_lead
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.sections.gears import GEARS, GearSection, PairSection
 from flankfilm.scene.sections.ground import in_keys, under_keys
@@ -82,7 +82,7 @@ def _gear(pair: PairSection, name: str, rack: gears.BasicRack) -> gears.Gear:
     module = pair.value("module_mm")
     width = section.value("face_width_mm") or pair.value("face_width_mm")
     base_radius = 0.5 * module * section.teeth * math.cos(rack.alpha)
-    return section.gear(module, rack, lead_trace(section, name, width, base_radius))
+    return section.gear(module, rack, measured_lead(section, name, width, base_radius))
 
 
 @contextmanager

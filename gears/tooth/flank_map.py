@@ -1,4 +1,4 @@
-"""A measured map of a flank taken apart: a profile, a lead, and the twist that neither has."""
+"""A measured map of a flank taken apart: a profile, a lead, and the rest, its twist, that neither has."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from numpy.typing import ArrayLike
 
 from base import Array, Faults
 from gears.tooth.flank_curves import LeadTrace, ProfileDeviation, check_finite, numbers
+from gears.tooth.topography import Topography
 
 __all__ = ["FlankMap", "flank_map"]
 
 
 @dataclass(frozen=True)
 class FlankMap:
-    """Map of a flank without its twist: ``material(rho, z) = profile(rho) + lead(z)``.
+    """Map of a flank in three parts: ``material(rho, z) = profile(rho) + lead(z) + rest(rho, z)``.
 
     Attributes
     ----------
@@ -24,12 +25,15 @@ class FlankMap:
     lead : LeadTrace
         Mean over the profile, less the mean of the map.
     twist : float
-        Largest deviation of the map from their sum: what is left out [m].
+        Largest deviation of the map from the sum of these two [m].
+    rest : Topography
+        That deviation: what `Lead` takes beside the lead.
     """
 
     profile: ProfileDeviation
     lead: LeadTrace
     twist: float
+    rest: Topography
 
 
 def flank_map(rho: ArrayLike, z: ArrayLike, material: ArrayLike, form: str = "smooth") -> FlankMap:
@@ -47,7 +51,7 @@ def flank_map(rho: ArrayLike, z: ArrayLike, material: ArrayLike, form: str = "sm
     material : (n, k) array
         Material in excess of the straight involute flank, normal to it [m].
     form : {"smooth", "linear"}
-        Of both curves, as of `ProfileDeviation`.
+        Of both curves, as of `ProfileDeviation`, and of the rest, as of `Topography`.
 
     Raises
     ------
@@ -70,11 +74,12 @@ def flank_map(rho: ArrayLike, z: ArrayLike, material: ArrayLike, form: str = "sm
     over, along = _weights(radii), _weights(places)
     profile, mean = heights @ along, float(over @ heights @ along)
     lead = over @ heights - mean
-    twist = float(np.abs(heights - profile[:, None] - lead).max())
+    rest = heights - profile[:, None] - lead
     return FlankMap(
         ProfileDeviation(numbers(radii), numbers(profile), form),
         LeadTrace(numbers(places), numbers(lead), form),
-        twist,
+        float(np.abs(rest).max()),
+        Topography(numbers(radii), numbers(places), tuple(map(numbers, rest)), form),
     )
 
 

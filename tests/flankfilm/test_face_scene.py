@@ -37,6 +37,7 @@ LEADS = SCENE.replace(
     "pinion = { teeth = 36 }",
     "pinion = { teeth = 36, crowning_um = 10, end_relief_um = 8, end_relief_length_mm = 5 }",
 ).replace("wheel = { teeth = 40 }", "wheel = { teeth = 40, lead_slope_um = -6 }")
+TWISTED = SCENE.replace("teeth = 40 }", "teeth = 40, lead_twist_um = 7 }")
 WIDE = SCENE.replace("teeth = 36 }", "teeth = 36, face_width_mm = 45, face_offset_mm = 2 }")
 ALIGNED = SCENE + "[alignment]\nin_plane_um = 20\ncells = 32\n"
 
@@ -59,6 +60,17 @@ def test_keys_become_leads_and_alignment():
     assert face(parse_scene(ALIGNED + 'out_of_plane_um = 50\nface_model = "walls"'))[
         "alignment"
     ] == Alignment(pytest.approx(20e-6), pytest.approx(50e-6))
+
+
+def test_a_twist_is_a_key_and_varies_the_load():
+    scene = parse_scene(TWISTED)
+    assert gear_pair(scene).wheel.lead == Lead(twist=pytest.approx(7e-6))
+    assert varies_by(scene) == ["pair.wheel.lead_twist_um"]
+    assert gear_pair(plain_flanks(scene)) == even_along_face(gear_pair(scene)) == gear_pair(parse_scene(SCENE))
+    found = faults(TWISTED.replace("= 7", "= 1e6"))
+    assert "at least -1000 and at most 1000 um" in found["pair.wheel.lead_twist_um"]
+    refused = faults(TWISTED + 'model = "ishikawa"\n')
+    assert "pair.wheel.lead_twist_um" in refused["stiffness.model"]
 
 
 def test_a_gear_has_a_width_of_its_own_and_overhangs_vary_the_load():

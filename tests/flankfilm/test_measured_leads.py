@@ -101,6 +101,22 @@ def test_twist_is_named(tmp_path):
         gear_pair(scene_of('map = { file = "map.csv" }', tmp_path))
 
 
+def test_twist_is_kept_where_that_is_asked_for(tmp_path):
+    """Profile, lead and topography together are the map, at its points."""
+    whole = PROFILE[:, None] + LEAD + np.outer([-3.0, -1.0, 1.0, 3.0], [-1.0, 0.0, 1.0])
+    map_file(tmp_path, whole)
+    scene = scene_of('map = { file = "map.csv", twist = "kept" }', tmp_path)
+    pair = gear_pair(scene)
+    lead, (first, _) = pair.pinion.lead, deviations(scene, pair, every_tooth=False)
+    rho, z = 1e-3 * ROLL[:, None], np.array([-0.02, 0.0, 0.02])
+    lacking = lead.removed_at(z, rho, 0.04, pair.active_profiles[0])
+    np.testing.assert_allclose(first.profile.at(rho) - lacking, 1e-6 * whole, atol=1e-18)
+    assert lead.topographic
+    given = 'map = { file = "map.csv", twist = "half" }'
+    with pytest.raises(InputError, match="left-out"):
+        scene_of(given, tmp_path)
+
+
 @pytest.mark.parametrize(
     ("given", "where", "allowed"),
     [

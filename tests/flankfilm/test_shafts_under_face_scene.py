@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from base import InputError, SolverError
+from flankfilm.building.preflight import refuse
 from flankfilm.files.cache import Cache
 from flankfilm.report import drive_parts, face_parts
 from flankfilm.report.text import number
@@ -83,6 +84,18 @@ def overhung() -> Engine:
 @pytest.fixture(scope="module")
 def aligned():
     return _engine(ALIGNED)[DRY_CYCLE]
+
+
+def test_twists_beside_shafts_that_give_way_are_refused_under_their_keys():
+    kept = "deviations = { map = { z_mm = [-10, 10], roll_deg = [5, 40], material_um = [[0, 2], [2, 0]], twist = "
+    text = OVERHUNG.replace("bore_mm = 15.0", f'bore_mm = 15.0, {kept}"kept" }} }}')
+    text = text.replace("bore_mm = 20.0", "bore_mm = 20.0, lead_twist_um = 5")
+    refuse(parse_scene(text))
+    with pytest.raises(InputError) as told:
+        refuse(parse_scene(text + SHAFTS))
+    found = {fault.where: fault for fault in told.value.faults}
+    assert set(found) == {"pair.pinion.deviations.map.twist", "pair.wheel.lead_twist_um"}
+    assert all("shafts give way" in fault.allowed and fault.remedy for fault in found.values())
 
 
 def test_a_wheel_that_overhangs_is_no_stiffer_than_an_aligned_one(overhung, aligned):

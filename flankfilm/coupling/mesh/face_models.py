@@ -187,6 +187,10 @@ def _left_out(face: fem.FaceLoads, pair: gears.GearPair) -> Iterator[str]:
             yield f"end relief of the {name}"
         if lead.trace is not None:
             yield f"measured lead of the {name}"
+        if lead.twist:
+            yield f"flank twist of the {name}"
+        if lead.topography is not None:
+            yield f"topography of the {name}"
     if setting.alignment.out_of_plane:
         yield "alignment across the plane of action"
     if any(shaft is not None for shaft in setting.shafts):

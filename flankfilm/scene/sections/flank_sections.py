@@ -127,7 +127,7 @@ class DeviationsSection(Section):
     )
     map: MapSection | None = key(
         "measured map of the flanks instead of profile and lead: its means over the face and over the profile count, "
-        "its twist is left out, and named",
+        "and the rest, its twist, where it is kept",
         None,
         such_as={"file": "pinion_map.csv"},
         traits=Traits(along_face=True),

@@ -172,6 +172,14 @@ class GearSection(Section):
         such_as=5,
         traits=LEAD_FORM,
     )
+    lead_twist_um: float = key(
+        "flank twist (ISO 21771, S_alpha = S_beta): by how much the lead slope at the tip exceeds that at the start of "
+        "the active profile, half of it either way; material removed",
+        0.0,
+        of="lead.twist",
+        such_as=6,
+        traits=LEAD_FORM,
+    )
     end_relief_um: float = key(
         "end relief: material removed at both ends of the face, by a parabola over end_relief_length_mm",
         0.0,
@@ -218,7 +226,7 @@ class GearSection(Section):
             raise InputError(faults)
         return self
 
-    def gear(self, module: float, rack: gears.BasicRack, trace: gears.LeadTrace | None) -> gears.Gear:
+    def gear(self, module: float, rack: gears.BasicRack, measured: gears.Lead) -> gears.Gear:
         """Gear in SI.
 
         Parameters
@@ -226,20 +234,20 @@ class GearSection(Section):
         module : float
             [m]
         rack : gears.BasicRack
-        trace : gears.LeadTrace or None
-            Measured lead, over the whole face.
+        measured : gears.Lead
+            Measured lead and topography, over the whole face.
         """
         return gears.Gear(
             **self.si() | self._tip(module, rack),
             tip_relief=None if self.tip_relief is None else self.tip_relief.relief(),
             blank=None if self.blank is None else self.blank.blank(),
-            lead=self._lead(trace),
+            lead=self._lead(measured),
         )
 
-    def _lead(self, trace: gears.LeadTrace | None) -> gears.Lead:
+    def _lead(self, measured: gears.Lead) -> gears.Lead:
         """Lead in SI; a length of end relief without any is that of a straight lead."""
         lead = self.si_of("lead")
-        return gears.Lead(**lead if self.end_relief_um else lead | {"end_relief_length": 0.0}, trace=trace)
+        return replace(measured, **lead if self.end_relief_um else lead | {"end_relief_length": 0.0})
 
     def _tip(self, module: float, rack: gears.BasicRack) -> dict[str, float]:
         """Tip alteration of a gear whose tip diameter is given; nothing where it is not."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -18,7 +18,7 @@ PLACES = {"z_mm": Limit(-1e4, 1e4, "mm", "give places in millimetres from the mi
 
 
 class MapSection(CurveSection):
-    """Measured map of a gear's flanks, over profile and face; its twist is left out."""
+    """Measured map of a gear's flanks, over profile and face."""
 
     values = ("material_um", EXCESS)
 
@@ -43,6 +43,12 @@ class MapSection(CurveSection):
     beyond: Beyond = key(
         "where the map leaves out more than a twentieth of face or active profile: refuse it, or hold its value",
         "refuse",
+    )
+
+    twist: Literal["left-out", "kept"] = key(
+        "what becomes of the rest of the map, which its mean profile and its mean lead do not have: left out with a "
+        "warning that says its size, or kept as a topography; shafts that give way under the face exclude it",
+        "left-out",
     )
 
     def _faults(self) -> Iterator[Fault]:
@@ -71,6 +77,6 @@ class MapSection(CurveSection):
             yield from outside("material_um", row, EXCESS)
 
     def flank_map(self, base_radius: float) -> gears.FlankMap:
-        """Profile, lead and twist, of a gear of a base radius [m], in SI."""
+        """Profile, lead and rest, of a gear of a base radius [m], in SI."""
         rho = self.radii(base_radius)
         return gears.flank_map(rho, self.value("z_mm"), self.value("material_um"), self.form)
