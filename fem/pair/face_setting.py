@@ -173,7 +173,7 @@ class FaceSetting:
         return self.gaps_at(pair, z, rho[..., None])
 
     def gaps_at(self, pair: GearPair, z: Array, rho: Array) -> Array:
-        """Gaps along the transverse line of action at places of the face (...) [m], less those of straight aligned gears.
+        """Gaps along the transverse line of action at places of the face (...) [m]; 0 of straight aligned gears.
 
         Parameters
         ----------

@@ -76,7 +76,9 @@ def _made_of(loads: fem.FaceLoads) -> str:
         if lead.topography is not None:
             heights = [height for row in lead.topography.material for height in row]
             low, high = min(heights), max(heights)
-            parts.append(f"topography of the {name}, {number(1e6 * low)} to {number(1e6 * high)} µm of material")
+            parts.append(
+                f"topography of the {name}, {number(1e6 * low)} to {number(1e6 * high)} µm of material"
+            )
     for plane, value in (("in", setting.alignment.in_plane), ("across", setting.alignment.out_of_plane)):
         if value:
             parts.append(f"axes {number(1e6 * value)} µm out of parallel {plane} the plane of action")

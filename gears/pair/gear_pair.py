@@ -155,7 +155,7 @@ class GearPair(PairGeometry):
 
     @property
     def straight(self) -> bool:
-        """Whether the flanks of both gears are straight along the face, without crowning, slope and end relief."""
+        """Whether the flanks of both gears are straight along the face, without a lead."""
         return self.pinion.lead == self.wheel.lead == STRAIGHT
 
     _repr_html_ = view

@@ -53,11 +53,12 @@ class Lead:
     trace : LeadTrace, optional
         Measured lead, on top of these.
     twist : float
-        Flank twist (bias) [m]: by how much the slope of the profile at the end z = b/2 exceeds that at z = -b/2, S_alpha,
-        and as well the slope of the lead at the tip that at the start of the active profile, S_beta. These are the two
-        twists of ISO 21771, here over the whole face and the whole active profile, where they are equal. Slopes are
-        those of material removed, as `slope` is: above 0 it lacks at the tip where z > 0, and at the start of the
-        profile where z < 0. Slope deviations of ISO 1328-1 count material in excess: their twist has the other sign.
+        Flank twist (bias) [m]: by how much the slope of the profile at the end z = b/2 exceeds that at z = -b/2,
+        S_alpha, and as well the slope of the lead at the tip that at the start of the active profile, S_beta. ISO
+        21771 has these two twists; over the whole face and the whole active profile, as here, they are equal, and
+        corners of the flank lack a quarter of it. Slopes are those of material removed, as `slope` is: above 0 it
+        lacks at the tip where z > 0, and at the start of the profile where z < 0. Slope deviations of ISO 1328-1 count
+        material in excess, so that a twist by them has the other sign.
     topography : Topography, optional
         Table over profile and face, measured or prescribed, on top of these.
 

@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from base import Array, Fault, Faults, Limit
+from base import Array, Fault, Faults, Integers, Limit
 from gears.tooth.flank_curves import FORMS, MATERIAL, check_finite, numbers
 
 __all__ = ["Topography"]
@@ -95,9 +95,8 @@ class Topography:
         values = np.array(self.material)
         if self.form == "linear":
             return (values,)
-        rho, z = np.array(self.rho), np.array(self.z)
-        by_rho = np.gradient(values, rho, axis=0, edge_order=_order(rho))
-        by_z, by_both = (np.gradient(each, z, axis=1, edge_order=_order(z)) for each in (values, by_rho))
+        by_rho = _slopes(values, np.array(self.rho), 0)
+        by_z, by_both = (_slopes(each, np.array(self.z), 1) for each in (values, by_rho))
         return values, by_z, by_rho, by_both
 
     def faults(self, path: str = "topography") -> tuple[Fault, ...]:
@@ -113,7 +112,9 @@ class Topography:
         heights = tuple(height for row in self.material for height in row)
         check_finite(collector, f"{path}.material", heights)
         if {len(row) for row in self.material} != {len(self.z)} or len(self.material) != len(self.rho):
-            allowed = f"must have a row for each of {len(self.rho)} rho and a column for each of {len(self.z)} z"
+            allowed = (
+                f"must have a row for each of {len(self.rho)} rho and a column for each of {len(self.z)} z"
+            )
             value = f"{len(self.material)} rows, {len(heights)} values"
             collector.add(f"{path}.material", value, allowed, "give the table as rows over the profile")
         if finite := [height for height in heights if math.isfinite(height)]:
@@ -139,16 +140,20 @@ class Topography:
             if places[-1] <= low or places[0] >= high:
                 value = f"{places[0]:.6g} to {places[-1]:.6g} m"
                 allowed = f"must meet {called}, {low:.6g} to {high:.6g} m"
-                collector.add(f"{path}.{name}", value, allowed, "check the unit and where places are counted from")
+                collector.add(
+                    f"{path}.{name}", value, allowed, "check the unit and where places are counted from"
+                )
         return tuple(collector.found)
 
 
-def _order(places: Array) -> int:
-    """Of the slopes at the ends: parabolas, or a line through two points."""
-    return 2 if len(places) > 2 else 1
+def _slopes(values: Array, places: Array, axis: int) -> Array:
+    """Slopes at points along an axis: of parabolas through three of them, or of the line through two."""
+    if len(places) > 2:
+        return np.asarray(np.gradient(values, places, axis=axis, edge_order=2))
+    return np.asarray(np.gradient(values, places, axis=axis, edge_order=1))
 
 
-def _weights(places: Array, at: Array, form: str) -> tuple[tuple[Array, tuple[Array, ...]], ...]:
+def _weights(places: Array, at: Array, form: str) -> tuple[tuple[Integers, tuple[Array, ...]], ...]:
     """Both neighbours of places, each with the weight of its value and, of cubics, of its slope."""
     inside = np.clip(at, places[0], places[-1])
     cell = np.clip(np.searchsorted(places, inside, side="right") - 1, 0, len(places) - 2)

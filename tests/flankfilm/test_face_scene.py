@@ -66,7 +66,9 @@ def test_a_twist_is_a_key_and_varies_the_load():
     scene = parse_scene(TWISTED)
     assert gear_pair(scene).wheel.lead == Lead(twist=pytest.approx(7e-6))
     assert varies_by(scene) == ["pair.wheel.lead_twist_um"]
-    assert gear_pair(plain_flanks(scene)) == even_along_face(gear_pair(scene)) == gear_pair(parse_scene(SCENE))
+    assert (
+        gear_pair(plain_flanks(scene)) == even_along_face(gear_pair(scene)) == gear_pair(parse_scene(SCENE))
+    )
     found = faults(TWISTED.replace("= 7", "= 1e6"))
     assert "at least -1000 and at most 1000 um" in found["pair.wheel.lead_twist_um"]
     refused = faults(TWISTED + 'model = "ishikawa"\n')

@@ -115,9 +115,7 @@ def test_points_are_met_and_edges_are_held():
         rho, z = np.array(made.rho), np.array(made.z)
         np.testing.assert_allclose(made.at(rho[:, None], z), made.material, rtol=0, atol=1e-20)
         np.testing.assert_allclose(made.at(1.0, z), made.material[-1], rtol=0, atol=1e-20)
-        np.testing.assert_allclose(
-            made.at(rho, -1.0), [row[0] for row in made.material], rtol=0, atol=1e-20
-        )
+        np.testing.assert_allclose(made.at(rho, -1.0), [row[0] for row in made.material], rtol=0, atol=1e-20)
 
 
 def test_equal_tables_are_equal_and_leads_with_them_are_not_straight():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from functools import partial
 
@@ -12,7 +13,7 @@ import fem
 import fem.elasticity.free_ends
 import fem.influence.gear_face
 from base import InputError, RangeWarning
-from gears import Alignment, Gear, GearPair, Lead, Material, TipRelief
+from gears import Alignment, Gear, GearPair, Lead, Material, TipRelief, Topography
 
 FREE = pytest.param("free-ends", marks=pytest.mark.slow)
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(200e-6)
@@ -78,6 +79,32 @@ def test_crowning_of_200_um(bodies, load, model):
     np.testing.assert_allclose(found.line_load, found.line_load[..., ::-1], rtol=1e-7, atol=1e-3)
     assert found.face_load_factor.min() > 3.0
     assert np.all(found.line_load[:, :, 0] == 0.0)
+
+
+@pytest.mark.parametrize("load", [LINE_LOAD, 0.05 * LINE_LOAD])
+@pytest.mark.parametrize("more", [{}, {"moving_contact": True}, {"beyond_path": False}])
+def test_twists_up_to_their_limit(bodies, load, more):
+    """Flanks that touch at opposite corners; the loaded end of the face changes within a base pitch."""
+    for twist in (1e-3, -200e-6):
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message=ON_FEW, category=RangeWarning)
+            found = _cycle(bodies, load, Lead(twist=twist), **more)
+        assert found.face_load_factor.max() > 2.0
+        ends = found.line_load.sum(axis=1)[:, [0, -1]]
+        assert ends[:, 0].max() > 0.0 < ends[:, 1].max()
+
+
+@pytest.mark.parametrize("form", ["smooth", "linear"])
+def test_rough_tables_and_steps(bodies, form):
+    """A wave of 20 um within three points either way; a step of 100 um from one point to the next."""
+    rho, z = np.linspace(1e-3, 12e-3, 60), np.linspace(-0.5, 0.5, 50) * PAIR.face_width
+    wave = 10e-6 * np.sin(2.1 * np.arange(60))[:, None] * np.cos(2.3 * np.arange(50))
+    step = np.where(z > 3e-3, -100e-6, 0.0) + 0.0 * rho[:, None]
+    for heights in (wave, step):
+        found = _cycle(bodies, lead=Lead(topography=Topography(rho, z, heights, form)))
+        assert found.face_load_factor.min() > 1.05
+    beyond = found.face_position > 3e-3 + 0.04 * PAIR.face_width
+    assert np.all(found.line_load[..., beyond] == 0.0)
 
 
 @pytest.mark.parametrize("slenderness", [0.5, 2.0, 40.0])
