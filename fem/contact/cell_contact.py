@@ -325,7 +325,7 @@ def _settled(contacts: StayingContacts, coupling: CellCoupling, whole: Array, st
 def along_cells(face: FaceSetting, pair: GearPair, candidates: ContactCandidates) -> Array:
     """Gaps of cells beyond where the first place of the face touches (positions, pairs, cells) [m]."""
     least = np.asarray(face.least_gap(pair, candidates.rho))
-    return np.maximum(face.gaps(pair, candidates.rho) - least[..., None], 0.0)
+    return np.asarray(np.maximum(face.gaps(pair, candidates.rho) - least[..., None], 0.0))
 
 
 def _gaps_within(face: FaceSetting, pair: GearPair, candidates: ContactCandidates) -> Array:

@@ -98,9 +98,9 @@ class Lead:
             )
         if self.trace is not None:
             collector.extend(self.trace.faults(f"{path}.trace"))
-        given = collector.instance(f"{path}.topography", self.topography, Topography, optional=True)
-        if given and self.topography is not None:
-            collector.extend(self.topography.faults(f"{path}.topography"))
+        table = self.topography
+        if collector.instance(f"{path}.topography", table, Topography, optional=True) and table is not None:
+            collector.extend(table.faults(f"{path}.topography"))
         return tuple(collector.found)
 
     def removed(self, z: Array, face_width: float) -> Array:
