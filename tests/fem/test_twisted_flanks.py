@@ -9,6 +9,8 @@ import pytest
 
 from base import InputError
 from fem import PairCompliance, compliance, mesh_cycle
+from fem.laws.contact_candidates import contact_candidates
+from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import FaceSetting, face_setting
 from gears import (
     Alignment,
@@ -119,6 +121,24 @@ def test_a_table_that_varies_along_the_face_alone_is_a_lead(bodies, torque):
     made = Lead(topography=Topography(np.linspace(*span, 4), PLACES, np.tile(CURVE, (4, 1)), "linear"))
     one, other = (cycle(bodies, with_leads(lead), torque) for lead in (made, trace))
     same(one, other)
+
+
+def test_gaps_of_both_sides_count_the_first_touch_of_each_pair():
+    """Of a lead the same as of its table; of twists that match none."""
+    trace = Lead(trace=LeadTrace(PLACES, CURVE, "linear"))
+    made = Lead(topography=Topography([1e-3, 20e-3], PLACES, [CURVE, CURVE], "linear"))
+    twist = Lead(twist=TWIST)
+
+    def gaps(pair, beyond):
+        setup = MeshSetup(pair, POSITIONS, beyond, face=face_setting(pair, Alignment(), 8, "walls"))
+        return contact_candidates(setup)
+
+    for lead, wheel, other, beyond in ((made, None, trace, True), (twist, twist, None, False)):
+        one, plain = gaps(with_leads(lead, wheel), beyond), gaps(with_leads(other), beyond)
+        np.testing.assert_allclose(one.gap, plain.gap, rtol=0, atol=1e-15)
+        np.testing.assert_allclose(one.back_gap, plain.back_gap, rtol=0, atol=1e-15)
+    alone, plain = gaps(with_leads(twist), False), gaps(PAIR, False)
+    assert np.all(alone.back_gap < plain.back_gap - 1e-6)
 
 
 @pytest.mark.slow

@@ -70,6 +70,7 @@ def test_the_sum_is_nearest_to_the_map_and_twist_is_what_it_misses():
     found = flank_map(rho, z, heights)
     left = heights - np.array(found.profile.material)[:, None] - np.array(found.lead.material)
     assert found.twist == pytest.approx(np.abs(left).max(), rel=1e-12)
+    np.testing.assert_array_equal(found.rest.material, left)
     over, along = (np.convolve(np.diff(x), [0.5, 0.5]) for x in (rho, z))
     np.testing.assert_allclose(left @ along, 0.0, atol=1e-22)  # nothing is left for a curve over the profile
     np.testing.assert_allclose(over @ left, 0.0, atol=1e-22)  # nor for one along the face

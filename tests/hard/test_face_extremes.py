@@ -82,7 +82,9 @@ def test_crowning_of_200_um(bodies, load, model):
 
 
 @pytest.mark.parametrize("load", [LINE_LOAD, 0.05 * LINE_LOAD])
-@pytest.mark.parametrize("more", [{}, {"moving_contact": True}, {"beyond_path": False}])
+@pytest.mark.parametrize(
+    "more", [{}, pytest.param({"moving_contact": True}, marks=pytest.mark.slow), {"beyond_path": False}]
+)
 def test_twists_up_to_their_limit(bodies, load, more):
     """Flanks that touch at opposite corners; the loaded end of the face changes within a base pitch."""
     for twist in (1e-3, -200e-6):
@@ -94,7 +96,7 @@ def test_twists_up_to_their_limit(bodies, load, more):
         assert ends[:, 0].max() > 0.0 < ends[:, 1].max()
 
 
-@pytest.mark.parametrize("form", ["smooth", "linear"])
+@pytest.mark.parametrize("form", [pytest.param("smooth", marks=pytest.mark.slow), "linear"])
 def test_rough_tables_and_steps(bodies, form):
     """A wave of 20 um within three points either way; a step of 100 um from one point to the next."""
     rho, z = np.linspace(1e-3, 12e-3, 60), np.linspace(-0.5, 0.5, 50) * PAIR.face_width
