@@ -13,7 +13,7 @@ from base import Array, Integers, record
 from fem.contact.cell_laws import CellLaws, between_middles
 from fem.contact.cell_matrix import cell_coupling, cross_coupling
 from fem.contact.contact_sides import ContactSides
-from fem.contact.face_errors import face_load_factors
+from fem.contact.face_errors import face_load_factors, greatest_error
 from fem.contact.partial_cells import WITHIN, gap_drops, partial_cells
 from fem.elasticity.flamant import hertz_half_width
 from fem.pair.face_shafts import HeldShafts, ShaftsUnderFace, shafts_under_face
@@ -219,17 +219,29 @@ class CellContact:
         """Load factors (...) of line loads (..., loaded pairs, cells): of the most loaded pair over that pair's mean."""
         return face_load_factors(loads)
 
-    def most_loaded(self, loads: Array, at: tuple[int, int], over_mean: bool) -> Array:
-        """Line loads (cells,) of the pair that decides a maximum at a pitch and position.
+    def largest(self, loads: Array) -> Array:
+        """Maximum (...) of line loads (..., loaded pairs, cells)."""
+        return np.asarray(loads.max(axis=(-2, -1)))
+
+    def largest_error(
+        self, loads: Array, at: tuple[int, int], fewer: Array, few_at: tuple[int, int], over_mean: bool
+    ) -> float:
+        """Relative error of a maximum, by half as many cells.
 
         Parameters
         ----------
-        loads : (pitches, positions, loaded pairs, cells) array
-        at : (int, int)
+        loads, fewer : (pitches, positions, loaded pairs, cells) arrays
+            Line loads.
+        at, few_at : (int, int)
+            Where the maximum is of either.
         over_mean : bool
             Whether the maximum is that of the factor, over the mean; else that of the loads.
         """
-        here = loads[at]
+        first, second = self._most_loaded(loads[at], over_mean), self._most_loaded(fewer[few_at], over_mean)
+        return greatest_error(first, second)
+
+    def _most_loaded(self, here: Array, over_mean: bool) -> Array:
+        """Line loads (cells,) of the pair (pairs, cells) that decides a maximum."""
         if over_mean:
             most = here[int(np.argmax(here.sum(axis=-1)))]
             return np.asarray(most / most.mean())

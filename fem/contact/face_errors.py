@@ -178,17 +178,16 @@ def _load_errors(
     """Errors of the maximum factor and line load, and that of stiffness and deflection by free ends."""
     loads, fewer = (over.line_loads(cell_share.forces[torque]) for cell_share in (fine, coarse))
     factors, half = over.factors(loads), over.factors(fewer)
-    greatest, greatest_half = loads.max(axis=(-2, -1)), fewer.max(axis=(-2, -1))
+    greatest, greatest_half = over.largest(loads), over.largest(fewer)
     ends, errors = 0.0, []
     for values, few_values, over_mean in ((factors, half, True), (greatest, greatest_half, False)):
         at, few_at = _place(values), _place(few_values)
-        error = greatest_error(
-            over.most_loaded(loads, at, over_mean), over.most_loaded(fewer, few_at, over_mean)
-        )
+        error = over.largest_error(loads, at, fewer, few_at, over_mean)
         if face.model == FREE_ENDS:
             free, held = coarse.share, _between_walls(over, face, coarse, torque, at)
             without = over.line_loads(held.forces[0])
-            value = over.at(torque, *at).factors(without) if over_mean else without.max(axis=(-2, -1))
+            single = over.at(torque, *at)
+            value = single.factors(without) if over_mean else single.largest(without)
             error += ENDS_ERROR * abs(float(few_values[at]) - float(value[0, 0])) / float(values[at])
             for name in ("stiffness", "transmission_error") if over_mean else ():
                 apart = getattr(held.share, name)[0, 0, 0] / getattr(free, name)[torque, *at]

@@ -31,7 +31,11 @@ if TYPE_CHECKING:
     from gears import LoadShare
     from gears.sharing.staying_contacts import JointLaw
 
-__all__ = ["LineContact"]
+__all__ = ["WINDOW", "LineContact"]
+
+WINDOW = 0.5
+"""Modules of a line over which the maximum line load is a mean: at ends of lines that of single cells goes with their
+length."""
 
 
 @record
@@ -127,18 +131,25 @@ class LineContact(CellContact):
         cells = self.lines.divided(forces.shape[-1])
         return np.asarray(forces * (self.pair.face_width / cells.length[..., None]))
 
+    def largest(self, loads: Array) -> Array:
+        """Largest mean of line loads over half a module of a line (...); arguments as of ``CellContact``."""
+        cells = self.lines.divided(loads.shape[-1])
+        forces = loads * (cells.length[..., None] / self.pair.face_width)
+        largest = cells.largest_mean(forces, WINDOW * self.pair.module * self.pair.helix.base_cosine)
+        return np.asarray(largest.max(axis=-1) * self.pair.face_width)
+
     def factors(self, loads: Array) -> Array:
-        """Load factors (...): maximum line load over the mean of all lines; arguments as of ``CellContact``."""
+        """Load factors (...): that over the mean of all lines."""
         length = self.lines.divided(loads.shape[-1]).length[..., None]
         touches = np.where(self.lines.touches, self.lines.length, 0.0).sum(axis=-1)
-        return np.asarray(loads.max(axis=(-2, -1)) / (np.sum(loads * length, axis=(-2, -1)) / touches))
+        return np.asarray(self.largest(loads) / (np.sum(loads * length, axis=(-2, -1)) / touches))
 
-    def most_loaded(self, loads: Array, at: tuple[int, int], over_mean: bool) -> Array:
-        """Line loads of the line that decides a maximum, as of ``CellContact``."""
-        here, used = loads[at], self.lines.divided(loads.shape[-1]).used[at[1]]
-        line = int(np.argmax(here.max(axis=-1)))
-        own = here[line][used[line]]
-        return np.asarray(own / (here.max() / self.factors(loads)[at]) if over_mean else own)
+    def largest_error(
+        self, loads: Array, at: tuple[int, int], fewer: Array, few_at: tuple[int, int], over_mean: bool
+    ) -> float:
+        """Relative error of a maximum: all that half as many cells change."""
+        value = self.factors if over_mean else self.largest
+        return abs(float(value(fewer)[few_at] / value(loads)[at]) - 1.0)
 
     def centre(self, forces: Array) -> Array:
         """Centre of the load along the face (...) [m] of forces (..., lines, cells)."""

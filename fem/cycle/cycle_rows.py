@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Faults, Limit
+from gears.pair.spur_only import check_spur
 
 if TYPE_CHECKING:
     from fem.cycle.result import MeshCycle
@@ -19,6 +20,7 @@ def check_row(faults: Faults, cycle: MeshCycle, row: int, *, over_face: bool = F
 
     Of fields over the face also one without cells, of others one with them.
     """
+    check_spur(faults, cycle.pair, "fields and forces on meshes")
     last = len(cycle.position) - 1
     known = np.isfinite(
         faults.number("row", row, Limit(0, last, remedy="give a row of the cycle", whole=True))

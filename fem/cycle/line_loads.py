@@ -8,6 +8,7 @@ import numpy as np
 
 from base import Array, described, part, quantity, record
 from base.results import EXACT
+from fem.contact.line_contact import WINDOW
 from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.pair.face_setting import FaceSetting
 from gears.pair.hertz import half_width, peak_pressure
@@ -71,6 +72,7 @@ class LineLoads:
         shown="um",
         no_error=IN_SINGLE_CELLS,
     )
+    most_loaded: Array = part("largest mean over half a module of a line (positions,) [N/m]")
     pair: GearPair = part("the gears")
     setting: FaceSetting = part("cells, alignment and leads")
     slope: float = quantity(
@@ -119,11 +121,16 @@ class LineLoads:
         """Length of all lines of contact together."""
         return np.asarray((np.isfinite(self.z) * self.length[..., None]).sum(axis=(1, 2)))
 
+    @described("N/m", "position", shown="N/mm", error="line_load_error")
+    def maximum_line_load(self) -> Array:
+        """Maximum line load: the largest mean over half a module of a line."""
+        return self.most_loaded
+
     @described("1", "position", error="error")
     def line_load_factor(self) -> Array:
         """Maximum line load over the mean of all lines of contact."""
         mean = self.force.sum(axis=(1, 2)) / self.whole_length
-        return np.asarray(np.nan_to_num(self.line_load).max(axis=(1, 2)) / mean)
+        return np.asarray(self.most_loaded / mean)
 
     @described("1", error="error")
     def greatest_line_load_factor(self) -> float:
@@ -133,7 +140,7 @@ class LineLoads:
     @described("N/m", shown="N/mm", error="line_load_error")
     def greatest_line_load(self) -> float:
         """Maximum line load of all positions."""
-        return float(np.nanmax(self.line_load))
+        return float(self.most_loaded.max())
 
     @described("N", no_error=EXACT)
     def axial_force(self) -> float:
@@ -198,6 +205,8 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         length=length,
         line_load=of_cells(per_length),
         gap=of_cells(np.maximum(over.remaining_gaps[number][0], 0.0)),
+        most_loaded=cells.largest_mean(forces, WINDOW * pair.module * pair.helix.base_cosine).max(axis=-1)
+        * pair.helix.base_cosine,
         pair=pair,
         setting=setup.face,
         slope=lines.slope,

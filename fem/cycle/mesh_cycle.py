@@ -223,6 +223,12 @@ def _check(
     known = compliance if ready else None
     if setup.face is not EVEN and (plane if known is None else known.plane) != "strain":
         faults.add("plane", plane, 'must be "strain" where the face has cells', "leave plane out")
+    if setup.helical and known is not None and known.left_out:
+        allowed = "must be whole with a helix"
+        faults.add("compliance", f"without {', '.join(sorted(known.left_out))}", allowed, "take the whole compliance")
+    if setup.helical and film is not None:
+        allowed = "must be None with a helix: there are no films on lines of contact across the face"
+        faults.add("film", shorten(film), allowed, "give helix_angle = 0 for a spur pair, or leave it out")
     if reference is not None:
         faults.choice("reference", reference, REFERENCES)
     if not torque.size:

@@ -248,8 +248,7 @@ def line_gaps(setup: MeshSetup, z: Array, rho: Array) -> Array:
     rho : (2, ..., cells) array
         Curvature radii on pinion and wheel there [m].
     """
-    radius = rho[0] * rho[1] / (rho[0] + rho[1])
-    gaps = setup.face.gaps_at(setup.pair, z, radius)
+    gaps = setup.face.gaps_at(setup.pair, z, rho)
     if setup.removed is not None:
         gaps = gaps + setup.removed[0](rho[0]) + setup.removed[1](rho[1])
     return np.asarray(gaps)

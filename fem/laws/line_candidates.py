@@ -53,6 +53,35 @@ class LineCells:
     felt: Array
     used: Booleans
 
+    def largest_mean(self, forces: Array, window: float) -> Array:
+        """Largest mean line load of each line over a length of it (..., positions, pairs) [N/m], per length of axis.
+
+        Parameters
+        ----------
+        forces : (..., positions, pairs, cells) array
+            On cells [N].
+        window : float
+            Length along the axis [m]; a shorter line counts with its whole force over it.
+        """
+        cells = forces.shape[-1]
+        before = np.concatenate([np.zeros((*forces.shape[:-1], 1)), np.cumsum(forces, axis=-1)], axis=-1)
+        place = np.arange(cells + 1) + (window / self.length)[..., None]
+        whole = np.minimum(place.astype(int), cells - 1)
+        here, force = (
+            np.take_along_axis(values, np.broadcast_to(whole, (*forces.shape[:-1], cells + 1)), axis=-1)
+            for values in (before, forces)
+        )
+        ahead = here + np.minimum(place - whole, 1.0) * force - before
+        # the other way round, from the last cell back
+        reached = np.maximum(np.arange(cells + 1) - (window / self.length)[..., None], 0.0)
+        first = np.minimum(reached.astype(int), cells - 1)
+        there, force = (
+            np.take_along_axis(values, np.broadcast_to(first, (*forces.shape[:-1], cells + 1)), axis=-1)
+            for values in (before, forces)
+        )
+        behind = before - there - (reached - first) * force
+        return np.asarray(np.maximum(ahead, behind).max(axis=-1) / window)
+
     @property
     def count(self) -> Integers:
         """Cells of each line (positions, pairs)."""

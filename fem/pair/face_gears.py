@@ -9,6 +9,7 @@ from fem.influence.gear_face import AxialHarmonics, EndCorrection
 from fem.influence.gear_store import GearStore, ResultStore
 from fem.pair.face_compliance import ends_of, waves_of
 from fem.pair.face_setting import FREE_ENDS, SLICES
+from gears.pair.spur_only import require_spur
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
@@ -56,6 +57,7 @@ def face_gears(
     >>> face_gears(bodies, "walls").ends is None
     True
     """
+    require_spur(bodies.pair, "waves between walls")
     if model == SLICES:
         return None
     watch, gears = Stopwatch(), GearStore(kept)

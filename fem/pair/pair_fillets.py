@@ -18,6 +18,7 @@ from fem.influence.fillet_influence import FilletInfluence, fillet_influence
 from fem.influence.gear_shape import GearShape, shapes
 from fem.influence.gear_store import GearStore, ResultStore
 from gears.closed_form.root_stress import THIN_RIM, rim_factor
+from gears.pair.spur_only import check_spur
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -159,6 +160,7 @@ def fillets(
     True
     """
     faults = Faults()
+    check_spur(faults, pair, "root stress")
     faults.number("tolerance", tolerance, TOLERANCE)
     check_plane(faults, plane)
     if fillet_edge is not None:

@@ -12,6 +12,7 @@ from fem.pair.checked import check_pair, numbers_of
 from fem.pair.compliance import compliance as _compliance
 from fem.pair.pair_compliance import PairCompliance
 from fem.pair.references import REFERENCES, check_reference, held_turns, turns
+from gears.pair.spur_only import check_spur
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -69,7 +70,8 @@ def single_pair_stiffness(
     14.8
     """
     faults = Faults()
-    check_pair(faults, pair)
+    if check_pair(faults, pair):
+        check_spur(faults, pair, "single pairs")
     rho1 = np.atleast_1d(numbers_of(faults, "rho1", rho1, "give metres"))
     faults.instance("compliance", compliance, PairCompliance, "as of fem.compliance", optional=True)
     faults.raise_if_any()
