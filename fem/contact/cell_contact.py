@@ -188,7 +188,7 @@ class CellContact:
 
     def spread(self, face: FaceSetting, near: Array) -> Array:
         """Forces on parts of the pairs (torques, ..., pairs, parts) as those on cells (..., pairs, cells) [N]."""
-        return between_middles(near, face.cells) * (near.shape[-1] / face.cells)
+        return np.asarray(between_middles(near, face.cells) * (near.shape[-1] / face.cells))
 
     def by_width(
         self, face: FaceSetting, near: Array, share: Callable[[float, Integers], LoadShare]
@@ -213,10 +213,10 @@ class CellContact:
 
     def line_loads(self, forces: Array) -> Array:
         """Line loads times the face width (..., loaded pairs, cells) [N], of forces on cells of all pairs."""
-        return forces.shape[-1] * forces[..., : self.sides.count, :]
+        return np.asarray(forces.shape[-1] * forces[..., : self.sides.count, :])
 
     def factors(self, loads: Array) -> Array:
-        """Load factors (...) of line loads (..., loaded pairs, cells): of the most loaded pair over that pair's mean."""
+        """Maximum line load (..., loaded pairs, cells) of the most loaded pair over that pair's mean (...)."""
         return face_load_factors(loads)
 
     def largest(self, loads: Array) -> Array:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +22,7 @@ from fem.elasticity.flamant import hertz_half_width
 from fem.laws.contact_candidates import line_gaps
 from fem.laws.local_law import PairLaws
 from fem.pair.line_compliance import gear_lines, lines_compliance
+from fem.pair.wide_contact import NARROW, shares_together
 
 if TYPE_CHECKING:
     from fem.laws.line_candidates import ContactLines, LineCells
@@ -106,22 +106,19 @@ class LineContact(CellContact):
     def by_width(
         self, face: FaceSetting, near: Array, share: Callable[[float, Integers], LoadShare]
     ) -> tuple[LoadShare, Array]:
-        """Share all torques, each with pressure as wide as at an even load, to the next power of two."""
+        """Share all torques: lines as narrow as usual serve all of them, wider ones get strips by powers of two."""
         lines, unit = self.lines, self.pair.face_width / face.cells
         length = np.where(lines.touches, lines.length, 0.0).sum(axis=-1)
         load = (self.whole / length).reshape(len(self.whole), -1).mean(axis=-1)
         modulus = 2.0 / sum(1.0 / gear.law.plane_modulus for gear in (self.bodies.pinion, self.bodies.wheel))
         cosine = self.pair.helix.base_cosine
-        radius = float(np.median(self.sides.radius[lines.touches])) / cosine
-        width = hertz_half_width(load, radius, modulus)
-        strips = self.pair.module / unit * 2.0 ** np.round(np.log2(width / self.pair.module))
-        return self._by_strips(strips, share)
+        radius = np.full_like(load, np.median(self.sides.radius[lines.touches]) / cosine)
+        level = np.ceil(np.log2(np.maximum(NARROW * hertz_half_width(load, radius, modulus) / unit, 1e-3)))
+        return self._by_strips(np.where(level > 0.0, 2.0**level / NARROW, 0.0), share)
 
     def _by_strips(
         self, strips: Array, share: Callable[[float, Integers], LoadShare]
     ) -> tuple[LoadShare, Array]:
-        from fem.pair.wide_contact import shares_together
-
         groups = [np.flatnonzero(strips == strip) for strip in np.unique(strips)]
         shares = [share(float(strips[group[0]]), group) for group in groups]
         return shares_together(shares, np.argsort(np.concatenate(groups))), strips

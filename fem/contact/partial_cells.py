@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, record
-from fem.contact.cell_laws import CellLaws, between_middles
+from fem.contact.cell_laws import between_middles
 from gears.sharing.staying_contacts import JointLaw
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class PartialCells(JointLaw):
 
     Attributes
     ----------
-    laws : CellLaws
+    laws : JointLaw
         Of cells that touch all over.
     rise : (..., n) array
         r [m].
@@ -52,7 +52,7 @@ class PartialCells(JointLaw):
         F* [N].
     """
 
-    laws: CellLaws
+    laws: JointLaw
     rise: Array
     whole: Array
 
@@ -64,7 +64,7 @@ class PartialCells(JointLaw):
         return value + self.rise * (1.0 - (1.0 - root) ** 2), slope + more
 
 
-def partial_cells(laws: CellLaws, coupling: CellCoupling, rise: Array) -> PartialCells:
+def partial_cells(laws: JointLaw, coupling: CellCoupling, rise: Array) -> PartialCells:
     """Laws of cells whose minimum gap falls short of their mean by r (..., n) [m].
 
     F* is found by the laws' secant, then by tangents, to about 1e-3.
@@ -96,5 +96,5 @@ def gap_drops(gaps: Array, bends: Array) -> Array:
 
 
 def drops_within(gaps: Array) -> Array:
-    """By how much the smallest of gaps at equal parts of cells (..., WITHIN + 1) falls short of their mean (...) [m]."""
+    """By how much the smallest gap at equal parts of cells (..., WITHIN + 1) falls short of their mean (...) [m]."""
     return np.asarray(gaps @ MEAN - gaps.min(axis=-1))

@@ -20,8 +20,8 @@ import numpy as np
 
 from base import Array, Booleans, record
 from fem.contact.cell_contact import CellContact
-from fem.contact.line_contact import LineContact
 from fem.contact.face_errors import CellErrors, cell_errors, half_as_many, no_errors
+from fem.contact.line_contact import LineContact
 from fem.laws.local_law import Film, film_yielding
 
 if TYPE_CHECKING:
@@ -163,6 +163,7 @@ def share_staying(bodies: PairCompliance, whole: Array, sides: ContactSides) -> 
     whole = whole + np.zeros(sides.gaps.shape[:-1])
     few, _ = half_as_many(face)
     if sides.setups[0].helical:
+        over: CellContact
         over = lines = LineContact(bodies, whole, sides)
         coarse = over.shared(few, lines.even, held=False)
     else:

@@ -1,4 +1,4 @@
-"""What the lines of contact of a helical pair carry in a mesh cycle: line loads, pressure, centre of the load, moments."""
+"""What lines of contact of a helical pair carry in a mesh cycle: line loads, pressure, centre of the load, moments."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ class LineLoads:
 
     @described("N m", "gear position", no_error=BY_CENTRE)
     def tilting_moment(self) -> Array:
-        """Moment on either gear about the axis that crosses its shaft at mid-face and the line of action at right angles.
+        """Moment on either gear about the normal of shaft and line of action through mid-face.
 
         The sum of F_t (z + rho tan(beta_b)), F_t the force in the section: the load's centre and the axial force.
         """

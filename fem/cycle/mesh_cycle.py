@@ -75,8 +75,8 @@ def mesh_cycle(
     compliance : PairCompliance, optional
         Of this pair; computed to ``tolerance`` in ``plane`` unless given.
     beyond_path : bool or None
-        Whether tip edges may touch outside A..E (``fem.laws.tip_contact``); they do under usual loads. None lets those of
-        spur pairs; lines of contact of helical pairs are held to the path.
+        Whether tip edges may touch outside A..E (``fem.laws.tip_contact``); they do under usual loads. None lets
+        those of spur pairs; lines of contact of helical pairs are held to the path.
     film : Film, optional
         Separation of the flanks by the oil, in series with each pair before the load is shared.
     tolerance, plane
@@ -225,7 +225,9 @@ def _check(
         faults.add("plane", plane, 'must be "strain" where the face has cells', "leave plane out")
     if setup.helical and known is not None and known.left_out:
         allowed = "must be whole with a helix"
-        faults.add("compliance", f"without {', '.join(sorted(known.left_out))}", allowed, "take the whole compliance")
+        faults.add(
+            "compliance", f"without {', '.join(sorted(known.left_out))}", allowed, "take the whole compliance"
+        )
     if setup.helical and film is not None:
         allowed = "must be None with a helix: there are no films on lines of contact across the face"
         faults.add("film", shorten(film), allowed, "give helix_angle = 0 for a spur pair, or leave it out")

@@ -161,7 +161,7 @@ def _of_waves(waves: HelixHarmonics, load: ContactLine, point: ContactLine) -> A
     smooth = np.einsum("iaw,ja->ijw", by_load, points, optimize=True)
     zeta = second.z - first.z[:, None]
     size = np.sqrt(0.5 * (load.length**2 + point.length**2))
-    longest = float(np.ceil(np.abs(zeta).max() + 1.0))
+    longest = 2.0 ** np.ceil(np.log2(np.abs(zeta).max() + 1.0))
     sums = _sums_between(zeta, size, longest)
     last = smooth[..., ::2] @ between_waves(np.array([SHORTEST]))[0]
     moved = np.sum(smooth * sums, axis=-1) * load.length
@@ -174,8 +174,8 @@ def _sums_between(zeta: Array, size: float, longest: float) -> Array:
 
     Means over cells are those over cells of length nil and of a module, in proportion to the square of the length.
     """
-    upper = float(np.ceil(4.0 * size) / 4.0)
-    of_line, of_cell = (_sums(length, longest) for length in (0.0, upper))
+    upper = 2.0 ** np.ceil(np.log2(size))
+    of_line, of_cell = (_sums(float(length), float(longest)) for length in (0.0, upper))
     place = np.abs(zeta) / STEP
     at = np.minimum(place.astype(int), len(of_line) - 4)
     t = (place - at)[..., None]

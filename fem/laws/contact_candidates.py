@@ -229,7 +229,7 @@ def _lines(setup: MeshSetup) -> ContactCandidates:
         leaning=np.zeros_like(rho),
         gap=gap,
         teeth=setup.teeth(steps) % numbers,
-        back_gap=setup.backlash + gap.min(axis=-1).ravel(),
+        back_gap=setup.backlash + gap.min(axis=-1).ravel() + setup.opposite.face.least_gap(pair),
         chamfered=none,
         reach_gap=np.inf,
         lines=lines,

@@ -169,4 +169,3 @@ def contact_lines(setup: MeshSetup, middle: Array) -> ContactLines:
     ends = np.sort(np.stack([(start - middle) / slope, (end - middle) / slope]), axis=0)
     first, last = np.clip(ends, -half, half)
     return ContactLines(first, last, middle, slope, pair.line_of_action, pair.face_width)
-

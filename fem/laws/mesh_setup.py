@@ -93,7 +93,7 @@ class MeshSetup:
 
     @property
     def line_slope(self) -> float:
-        """d rho1/dz along a line of contact: tan(beta_b), positive on front flanks of a right-handed pinion."""
+        """Change of rho1 by z along a line of contact: tan(beta_b), above 0 on front flanks of right-handed pinions."""
         slope = self.pair.helix.base_tangent
         return -slope if self.back else slope
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["check_spur", "require_spur"]
 
 INSTEAD = (
-    "give helix_angle = 0 for a spur pair; of helical pairs there are fem.mesh_cycle and, in gears, geometry, dimensions, "
+    "give helix_angle = 0 for a spur pair; of helical pairs there are fem.mesh_cycle and, in gears, geometry, sizes, "
     "contact_lines and ISO 6336 (closed_form.iso6336, iso6336_2, iso6336_3, iso6336_face_load, iso6336_transverse_load)"
 )
 """What there is of a helical pair."""
