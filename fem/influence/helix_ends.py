@@ -39,22 +39,22 @@ __all__ = ["HelixEnds", "helix_ends"]
 PLACES = 5
 """Places of loads. More of them follow the nodes of the section, where a load is within an edge of the end."""
 
-SECTION = Sizes(flank=0.45, fillet=0.6, root=0.9, corner=0.45, top=1.5, growth=1.0, rim=2.0, layer_growth=2.0)
+SECTION = Sizes(flank=0.45, fillet=0.5, root=0.9, corner=0.45, top=1.5, growth=1.0, rim=2.0, layer_growth=2.0)
 """Of one end."""
 
 COARSE_SECTION = Sizes(
-    flank=0.9, fillet=0.9, root=1.2, corner=0.9, top=2.0, growth=1.0, rim=2.0, layer_growth=2.5
+    flank=0.9, fillet=0.45, root=1.2, corner=0.9, top=2.0, growth=1.0, rim=2.0, layer_growth=2.5
 )
 """Of what one end does to the effect of the other."""
 
 INWARDS, BODY_INWARDS = (0.4, 1.3, 3.5), (1.3, 2.4)
 """Lengths of pieces from an end inwards: in modules, then over the depth of the body."""
 
-OUTWARDS, BODY_OUTWARDS = (0.6, 2.5), (1.0, 2.4)
+OUTWARDS, BODY_OUTWARDS = (0.6, 2.5), (3.0,)
 """Lengths of pieces beyond a lengthened end, the same way."""
 
-FURTHER = (1.5,)
-"""Modules of the piece beyond a lengthened end where one end's effect on the other is looked at, before the body's."""
+FURTHER = (3.0,)
+"""Those before the body's where one end's effect on the other is looked at [modules]."""
 
 ACROSS = (0.25, 0.5, 0.25)
 """Lengths of its pieces over the face width."""
@@ -62,7 +62,7 @@ ACROSS = (0.25, 0.5, 0.25)
 LEAST_DEPTH = 4.0
 """Depth of the body that counts where it is less [modules]: teeth feel a load as far."""
 
-WIDE = 4.5
+WIDE = 4.0
 """Face width over the depth of the body from which one end does nothing to the effect of the other."""
 
 

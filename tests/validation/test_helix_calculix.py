@@ -17,8 +17,13 @@ from fem.elasticity.free_ends import half_face
 from fem.elasticity.line_load import flank_points
 from fem.elasticity.plane_elasticity import PlaneElasticity
 from fem.elasticity.prism import Face, prism, section
+from fem.influence.gear_face import section_of
+from fem.influence.gear_shape import MeshedShape, shapes
+from fem.influence.helix_ends import helix_ends
+from fem.influence.helix_waves import helix_harmonics
 from gears import STEEL, Gear, GearPair
 from meshes import Sizes, gear_mesh, mesh_sector
+from tests.even_helices import by_ends, of_half_space, without_ends
 from tests.validation.wedges import CCX, REQUIRED, displacements, heights_of, line_forces, wedges
 
 pytestmark = [
@@ -48,6 +53,20 @@ def test_a_line_load_on_a_gear_with_free_ends(tmp_path, degrees, within):
     mine, theirs = ours(sector, twist, at), calculix(sector, int(ends[best]), twist, at, tmp_path)
     print(f"{degrees} degrees: twice the energy {1e9 * mine:.4f} against {1e9 * theirs:.4f} nm N")
     assert mine == pytest.approx(theirs, rel=within)
+    parts = without_ends_and_ends(twist, float(at.rho[0]))
+    print(f"without ends {1e9 * parts[0]:.4f}, with what free ends add {1e9 * sum(parts):.4f} nm N")
+    assert sum(parts) == pytest.approx(theirs, rel=0.01)
+
+
+def without_ends_and_ends(twist, rho):
+    """Twice the energy by 1 N/mm, of a gear without ends and what free ends add [N m]; nodal forces on this mesh."""
+    meshed = MeshedShape(shapes(PAIR, PAIR.teeth_profiles, "strain")[0], Sizes(), 1)
+    turn, place, width = twist * MODULE, rho / MODULE, WIDTH / MODULE
+    endless = without_ends(helix_harmonics(meshed, turn), place, width)
+    endless -= of_half_space(section_of(meshed, SIZES, 0, turn), meshed.shape, place)
+    ends = by_ends(helix_ends(meshed, turn, width), place, width)
+    unit = 1e6 * WIDTH / LAW.plane_modulus
+    return unit * endless, unit * ends
 
 
 def ours(sector, twist, at):

@@ -1,0 +1,42 @@
+"""Mean displacement of a helix of a flank, at one curvature radius, by an even load along it: in modules and E*.
+
+The neighbourhood of the load is that of the half-space, where the local law begins (``fem.influence.helix_lines``), or
+that of nodal forces on the mesh of a section.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fem.elasticity.line_load import flank_points, line_loads
+from fem.elasticity.prism import Face, Section, prism, section
+from fem.elasticity.ring import ring_of
+from fem.influence.gear_shape import GearShape
+from fem.influence.helix_ends import HelixEnds
+from fem.influence.helix_lines import ContactLine
+from fem.influence.helix_waves import HelixHarmonics
+
+
+def without_ends(waves: HelixHarmonics, rho: float, width: float) -> float:
+    """Of a body without ends, over a width that is loaded."""
+    k, place = np.linspace(0.0, 100.0, 40001), np.array([rho])
+    answer = waves.own_at(place, place, k)[0].real * width * np.sinc(0.5 * k * width / np.pi) ** 2 / np.pi
+    return float(waves.even_own.at(place)[0] + np.sum(0.5 * (answer[1:] + answer[:-1]) * np.diff(k)))
+
+
+def by_ends(ends: HelixEnds, rho: float, width: float) -> float:
+    """What free ends add, over the whole face."""
+    z = width * ((np.arange(40) + 0.5) / 40 - 0.5)
+    line = ContactLine(0, z, np.full(40, rho), width / 40)
+    return float(ends.between(line, line).sum(axis=0).mean())
+
+
+def of_half_space(over: Section, shape: GearShape, rho: float) -> float:
+    """What nodal forces lack: as in the plane on the same mesh, for lengths that the helix leaves."""
+    at, twist = flank_points(over.mesh, np.array([rho])), over.twist
+    regular = float(line_loads(ring_of(over.mesh, shape.law), at).regular_at_load()[0])
+    straight = float(prism(section(over.mesh, over.law), Face.wave(0.0)).influence(at, 0)[0][0, 0, 0])
+    radius = over.mesh.base_radius
+    helix = np.sqrt(1.0 + twist**2 * (radius**2 + rho**2))
+    shorter = np.sqrt(1.0 + (twist * radius) ** 2) / helix**2
+    return float((regular - straight + 2.0 / np.pi * np.log(shorter)) / helix)
