@@ -1,6 +1,6 @@
 """Free ends of a twisted solid: the body as it is against the same body lengthened beyond its ends.
 
-A helix has no plane of symmetry at mid-face, and no walls that leave its waves as they are. What free ends add to the
+A helix has no plane of symmetry at mid-face, and no wall that leaves its waves alone. What free ends add to the
 answer of a body without ends is
 
     E = C(free) - C(lengthened)

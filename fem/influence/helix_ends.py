@@ -219,9 +219,9 @@ class _Solver:
 
     def __call__(self, body: FacePieces, seen: FacePieces) -> tuple[Array, Array]:
         """Answers on the left and on the right flank (teeth, loads, psi, points, psi)."""
-        both = answers(self.over, body, seen, self.at, self.teeth)
+        on_flanks = answers(self.over, body, seen, self.at, self.teeth)
         left, right = slice(0, PLACES), slice(PLACES, None)
-        return both[:, left, :, left], both[:, right, :, right]
+        return on_flanks[:, left, :, left], on_flanks[:, right, :, right]
 
     def tables(self, samples: Array) -> Mapping[int, Array]:
         """Coefficients of each tooth (places functions, places functions) from samples at the places."""
