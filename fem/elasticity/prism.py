@@ -271,7 +271,8 @@ class Prism:
             [m per N/m]; first the loads, then what is observed.
         """
         loads, pull = self._condensed(at)
-        points, observed = (loads, pull) if seen is at else self._condensed(seen)
+        # copies: a product of an array by itself would be summed in another order
+        points, observed = (loads.copy(), pull.copy()) if seen is at else self._condensed(seen)
         moved = np.array([self.links.at_ends(pull, tooth).T @ observed for tooth in teeth])
         moved[np.asarray(teeth) % self.mesh.teeth == 0] += self.condensed.modulus * (loads.T @ points)
         return moved.reshape(len(teeth), len(at.rho), self.psi, len(seen.rho), self.psi)
