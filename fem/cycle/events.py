@@ -27,6 +27,10 @@ __all__ = ["ContactProblem", "measured_less"]
 NAMES = (*CURVES, "moment_pinion", "moment_wheel", "slope_pinion", "slope_wheel")
 """Curves on the arcs: those of every mesh cycle, N_g/F, and dN_g/dD of pinion and wheel (``fem.pair.references``)."""
 
+LINES = 30.0
+"""Times the tolerance of arcs that those of lines of contact have: their curves range over some hundredths of their
+size, while a doubled one moves means by less than 1e-5."""
+
 GRADING = 6.0
 """Growth of the arcs away from a tip corner."""
 
@@ -125,6 +129,8 @@ class ContactProblem:
     def _divided(self, bodies: PairCompliance) -> Division:
         """Arcs with a mesh."""
         sample, tolerance = self._sampler(bodies), self.setup.options.sampling * self.tolerance
+        if self.setup.helical:
+            tolerance *= LINES
         return arcs_between_events(sample, NAMES, self._corners(bodies), self.setup.pitches, tolerance)
 
     def _corners(self, bodies: PairCompliance) -> Array:

@@ -12,6 +12,8 @@ from the ends inwards. Waves in place of the lengthened body would leave in E wh
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.polynomial import legendre
 
@@ -61,7 +63,7 @@ class FacePieces:
         length : float
             Of each cell [m].
         """
-        s, weight = legendre.leggauss(ORDER + 1)
+        s, weight = _quadrature()
         low, high = self.ends[:-1], self.ends[1:]
         # of each cell (rows) what is on each piece (columns)
         start = np.clip((middle - 0.5 * length)[:, None], low, high)
@@ -75,6 +77,13 @@ class FacePieces:
         columns = ORDER * piece[:, None] + np.arange(ORDER + 1)
         np.add.at(means, (cell[:, None], columns), values * (half / length)[:, None])
         return means
+
+
+@cache
+def _quadrature() -> tuple[Array, Array]:
+    """Places and weights by which a piece's functions are integrated exactly."""
+    s, weight = legendre.leggauss(ORDER + 1)
+    return np.asarray(s, dtype=float), np.asarray(weight, dtype=float)
 
 
 def answers(over: Section, body: FacePieces, seen: FacePieces, at: FlankPoints, teeth: Integers) -> Array:

@@ -90,16 +90,22 @@ class _Effect:
     place: FlankVariable
     tables: Mapping[int, Array]
 
-    def between(self, load: ContactLine, point: ContactLine) -> Array:
-        """Means over cells of ``point`` by unit line loads on cells of ``load`` (loads, points)."""
-        tooth = point.tooth - load.tooth
+    def between(self, load: Array, point: Array, tooth: int) -> Array:
+        """Means over cells by unit line loads on cells, over their length (loads, points).
+
+        Parameters
+        ----------
+        load, point : (cells, places functions) arrays
+            As of ``on``.
+        tooth : int
+            Observed one, counted from the loaded one.
+        """
         table = self.tables.get(abs(tooth))
         if table is None:  # too far away to feel an end
-            return np.zeros((len(load.z), len(point.z)))
-        seen = (table.T if tooth < 0 else table) @ self._on(point).T
-        return np.asarray(load.length * (self._on(load) @ seen))
+            return np.zeros((len(load), len(point)))
+        return np.asarray(load @ ((table.T if tooth < 0 else table) @ point.T))
 
-    def _on(self, line: ContactLine) -> Array:
+    def on(self, line: ContactLine) -> Array:
         """Means of all functions over cells (cells, places functions)."""
         along = self.pieces.means(self.sense * (line.z - self.start), line.length)
         places = self.place.basis(line.rho, PLACES - 1)
@@ -118,6 +124,23 @@ class HelixEnds:
 
     effects: tuple[_Effect, ...]
 
+    def on(self, line: ContactLine) -> tuple[Array, ...]:
+        """Means over cells of a line of what every effect is known by, as `joining` asks for them."""
+        return tuple(effect.on(line) for effect in self.effects)
+
+    def joining(self, load: tuple[Array, ...], point: tuple[Array, ...], tooth: int) -> Array:
+        """Mean displacements by unit forces on cells (loads, points), in modules and E*.
+
+        Parameters
+        ----------
+        load, point : tuples of arrays
+            As of `on`: of the loaded and of the observed line.
+        tooth : int
+            Observed one, counted from the loaded one to the side of growing rho.
+        """
+        each = zip(self.effects, load, point, strict=True)
+        return np.asarray(sum(effect.between(here, there, tooth) for effect, here, there in each))
+
     def between(self, load: ContactLine, point: ContactLine) -> Array:
         """Mean displacements of cells of a line by unit line loads on cells of one (loads, points).
 
@@ -129,7 +152,7 @@ class HelixEnds:
         load, point : ContactLine
             Of cells within the face, z from its middle.
         """
-        return np.asarray(sum(effect.between(load, point) for effect in self.effects))
+        return load.length * self.joining(self.on(load), self.on(point), point.tooth - load.tooth)
 
 
 def helix_ends(meshed: MeshedShape, twist: float, face_width: float) -> HelixEnds:

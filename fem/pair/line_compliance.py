@@ -28,10 +28,18 @@ if TYPE_CHECKING:
     from fem.pair.face_setting import FaceSetting
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["GearLines", "gear_lines", "lines_compliance"]
+__all__ = ["FeltLine", "GearLines", "gear_lines", "lines_compliance"]
 
 WIDE = 1.5
 """Half-widths of the pressure below which a cell's load is felt over as much: it is no line any more."""
+
+
+@record
+class FeltLine:
+    """Cells of a line of contact on one gear, and how its ends feel them."""
+
+    line: ContactLine
+    ends: tuple[Array, ...]
 
 
 @record
@@ -60,29 +68,31 @@ class GearLines:
     side: int
     offset: float
 
-    def line(self, tooth: int, z: Array, rho: Array, length: float) -> ContactLine:
+    def line(self, tooth: int, z: Array, rho: Array, length: float) -> FeltLine:
         """A line of contact in modules, with places and lengths in metres."""
         module = self.flexible.module
-        return ContactLine(self.side * tooth, (z - self.offset) / module, rho / module, length / module)
+        line = ContactLine(self.side * tooth, (z - self.offset) / module, rho / module, length / module)
+        return FeltLine(line, () if self.ends is None else self.ends.on(line))
 
-    def between(self, load: ContactLine, point: ContactLine, half_width: float) -> Array:
+    def between(self, load: FeltLine, point: FeltLine, half_width: float) -> Array:
         """Mean displacements of cells by unit forces on cells (loads, points) [m/N], but for the local law.
 
         Parameters
         ----------
-        load, point : ContactLine
+        load, point : FeltLine
         half_width : float
             Of the pressure, in modules.
         """
-        module, modulus = self.flexible.module, self.flexible.law.plane_modulus
+        module, modulus, line = self.flexible.module, self.flexible.law.plane_modulus, load.line
         if load is point:
-            in_plane = self.flexible.own(load.rho * module) * modulus
-            moved = along_line(self.waves, self.poisson, load, in_plane, half_width)
+            in_plane = self.flexible.own(line.rho * module) * modulus
+            moved = along_line(self.waves, self.poisson, line, in_plane, half_width)
         else:
-            moved = between_lines(self.waves, load, point)
+            moved = between_lines(self.waves, line, point.line)
+        moved = moved / line.length
         if self.ends is not None:
-            moved = moved + self.ends.between(load, point)
-        return np.asarray(moved / (modulus * module * load.length))
+            moved = moved + self.ends.joining(load.ends, point.ends, point.line.tooth - line.tooth)
+        return np.asarray(moved / (modulus * module))
 
 
 def gear_lines(bodies: PairCompliance, slope: float, face: FaceSetting) -> tuple[GearLines, GearLines]:
