@@ -6,6 +6,8 @@ from .pair.hertz import half_width as half_width
 from .pair.hertz import peak_pressure as peak_pressure
 from .pair.inspection import Dimensions as Dimensions
 from .pair.inspection import dimensions as dimensions
+from .pair.mesh_forces import MeshForces as MeshForces
+from .pair.mesh_forces import mesh_forces as mesh_forces
 from .pair.meshing import MeshingCheck as MeshingCheck
 from .pair.meshing import check_meshing as check_meshing
 from .pair.path import PathOfContact as PathOfContact

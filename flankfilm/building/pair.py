@@ -17,6 +17,7 @@ from flankfilm.scene.sections.gears import GEARS, GearSection, PairSection
 from flankfilm.scene.sections.ground import in_keys, under_keys
 from flankfilm.scene.sections.rack import under_tool
 from flankfilm.scene.sections.section import Section, required
+from gears.tooth.helix import Helix
 
 S = TypeVar("S", bound=Section)
 B = TypeVar("B")
@@ -81,8 +82,9 @@ def _gear(pair: PairSection, name: str, rack: gears.BasicRack) -> gears.Gear:
     section: GearSection = getattr(pair, name)
     module = pair.value("module_mm")
     width = section.value("face_width_mm") or pair.value("face_width_mm")
-    base_radius = 0.5 * module * section.teeth * math.cos(rack.alpha)
-    return section.gear(module, rack, measured_lead(section, name, width, base_radius))
+    helix = Helix(pair.value("helix_angle_deg"), rack.alpha)
+    base_radius = 0.5 * module * section.teeth * math.cos(rack.alpha) / helix.base_cosine
+    return section.gear(module, rack, measured_lead(section, name, width, base_radius), helix.cosine)
 
 
 @contextmanager

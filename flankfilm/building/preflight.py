@@ -17,6 +17,7 @@ from flankfilm.building.followed_speeds import faults_of_ranges
 from flankfilm.building.pair import pinion_torque, supports, tip_roundings, warm_pair
 from flankfilm.scene import Scene
 from flankfilm.scene.needs import faults_between_sections
+from flankfilm.scene.needs_of_helix import wants_load
 from flankfilm.scene.sections.dynamics import DynamicsSection
 from flankfilm.scene.sections.gears import GEARS
 from flankfilm.scene.sections.ground import in_keys, under_keys
@@ -99,7 +100,7 @@ def _undriven(section: DynamicsSection) -> Iterator[Fault]:
 
 def _held(scene: Scene, pair: gears.GearPair) -> tuple[Fault, ...]:
     """Faults of hubs and tip edges that do not fit the gears, where finite elements have them."""
-    if scene.stiffness.model == "given":
+    if scene.stiffness.model == "given" or (pair.helix_angle and not wants_load(scene.wants)):
         return ()
     from fem.elasticity.support import held_profiles
     from fem.laws.mesh_setup import MeshSetup

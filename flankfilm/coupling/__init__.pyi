@@ -41,6 +41,8 @@ from .mesh.root_stress import root_stresses as root_stresses
 from .mesh.single_pairs import SinglePairs as SinglePairs
 from .mesh.single_pairs import single_pair_stiffness as single_pair_stiffness
 from .mesh.single_pairs import single_pairs as single_pairs
+from .mesh.standards import Standards as Standards
+from .mesh.standards import standards as standards
 from .mesh.torque_curves import TorqueCurves as TorqueCurves
 from .mesh.torque_curves import revolution as revolution
 from .mesh.torque_curves import torque_curves as torque_curves

@@ -58,6 +58,7 @@ def traction_of(
     import ehl
     from flankfilm.building.heat import shearing_oil
     from flankfilm.building.pair import gear_pair
+    from flankfilm.scene.needs_of_helix import refuse_helix
     from flankfilm.scene.sections.section import required
     from gears.pair.hertz import peak_pressure
 
@@ -65,6 +66,7 @@ def traction_of(
         required(getattr(scene, name), f"[{name}]", "a traction curve")
     running = required(scene.operating, "[operating]", "a traction curve")
     required(scene.lubricant, "[lubricant]", "a traction curve")
+    refuse_helix(scene, "a traction curve of its contacts")
     pair, oil = gear_pair(scene), shearing_oil(scene)
     at_pitch = pair.path_at(pair.points.C)
     radius = at_pitch.radius.item()

@@ -40,6 +40,7 @@ from .orbits import basins as basins
 from .orbits import exponents as exponents
 from .orbits import locus as locus
 from .orbits import trajectory as trajectory
+from .plane_of_action import lines_of_contact as lines_of_contact
 from .rendering.animation import Frame as Frame
 from .rendering.animation import animate_cycle as animate_cycle
 from .rendering.animation import teeth_scene as teeth_scene

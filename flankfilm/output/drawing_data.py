@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,13 +19,22 @@ if TYPE_CHECKING:
     from flankfilm.coupling.speeds.speed_sweep import Portrait
     from gears import GearPair
 
-__all__ = ["SLIDING", "near_mesh", "outlines", "path", "points", "portraits"]
+__all__ = ["SLIDING", "lines_of_contact", "near_mesh", "outlines", "path", "points", "portraits"]
 
 OUTLINE = 12
 """Points of each part of a tooth's outline: straight sides between them do not show."""
 
 STATIONS = 81
 """Points of the path of contact at which velocities are given, both ends included."""
+
+CYCLE = 201
+"""Positions of the mesh cycle at which the lines of contact are measured, both ends included."""
+
+SHOWN = (0.0, 0.25, 0.5, 0.75)
+"""Positions [base pitches] at which lines of contact are drawn."""
+
+ORDERS = 5
+"""Harmonics of their total length."""
 
 PICTURED = 2.7
 """Half-width of the pictured part of the mesh, in pitches."""
@@ -98,6 +108,31 @@ def path(pair: GearPair, speed: float | None = None) -> Iterator[Quantity]:
         mean = along.entrainment(speed)
         yield figure_of("entrainment", "m/s", "entrainment, (u1 + u2)/2", "station", mean, no_error=EXACT)
         yield Quantity("sliding", SLIDING, along.sliding(speed))
+
+
+def lines_of_contact(pair: GearPair) -> Iterator[Quantity]:
+    """Follow the lines of contact of a helical pair: their total length, and where they lie at some positions."""
+    from gears import contact_lines
+
+    lines, position, orders = contact_lines(pair), np.linspace(0.0, 1.0, CYCLE), np.arange(1, ORDERS + 1)
+    middle = "position of mid-face, base pitches from A"
+    yield figure_of("position", "1", middle, "position", position, no_error=EXACT)
+    length = lines.length(position)
+    yield figure_of(
+        "length", "m", "total length of the lines of contact", "position", length, shown="mm", no_error=EXACT
+    )
+    yield figure_of("harmonic", "1", "order of the mesh", "harmonic", orders, no_error=EXACT)
+    over_mean = "amplitude of the total length of the lines of contact over its mean"
+    yield figure_of("harmonics", "1", over_mean, "harmonic", lines.harmonics(ORDERS), no_error=EXACT)
+    found = [(at, *ends) for at in SHOWN for ends in zip(*lines.segments(at), strict=True)]
+    at, travel, along = (np.array(part) for part in zip(*found, strict=True))
+    hand = math.copysign(1.0, pair.helix_angle)  # a right-handed pinion touches nearer to A at larger z
+    yield figure_of("shown_position", "1", "position of a line that is drawn", "line", at, no_error=EXACT)
+    for name, meaning, values in (
+        ("shown_travel", "travel of its ends along the path of contact, from A", pair.base_pitch * travel),
+        ("shown_face", "place of its ends along the face, from mid-face", -hand * pair.face_width * along),
+    ):
+        yield figure_of(name, "m", meaning, "line end", values, shown="mm", no_error=EXACT)
 
 
 def near_mesh(pair: GearPair, fields: tuple[GearField, GearField]) -> tuple[Quantity, ...]:

@@ -9,11 +9,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from base.results import figures
 from base.units import factor
 from flankfilm.output.tables import read_in
+from flankfilm.output.variables import joined, of_record
+from gears.pair.pair_geometry import OF_HELICES
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from gears import GearPair
+
+OF_HELICAL = {"module": "normal module", "backlash": "normal backlash", "base_pitch": "transverse base pitch"}
+"""What figures are called of a pair that has two sections."""
+
+RECORDS = ("dimensions_", "pair_", "contact_lines_", "mesh_force_")
+"""Beginnings of the variables of which the table is made."""
 
 LEFT_OUT = "_radii"
 """Ending of figures of the pair that stand in the table as diameters."""
@@ -39,10 +50,26 @@ class Row:
     values: tuple[float, ...]
 
 
+def pair_figures(prefix: str, pair: GearPair) -> xr.Dataset:
+    """Variables of a pair; those of its normal and transverse sections where these differ.
+
+    Parameters
+    ----------
+    prefix : str
+    pair : GearPair
+    """
+    if not pair.helix_angle:
+        return of_record(prefix, pair, figures(type(pair)).keys() - {*OF_HELICES})
+    data = of_record(prefix, pair)
+    for name, meaning in OF_HELICAL.items():
+        data[joined(prefix, name)].attrs["long_name"] = meaning
+    return data
+
+
 def geometry_rows(data: xr.Dataset) -> Iterator[Row]:
     """Figures of a run's pair: of the pair itself, then of both gears; none without a pair."""
     variables = [str(name) for name in data.data_vars]
-    names = [name for start in ("dimensions_", "pair_") for name in variables if name.startswith(start)]
+    names = [name for start in RECORDS for name in variables if name.startswith(start)]
     for dims in ((), ("gear",)):
         for name in names:
             about = data[name]

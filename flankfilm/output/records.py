@@ -12,6 +12,7 @@ from base.results import EXACT, Figure
 from flankfilm.output import drawing_data as drawn
 from flankfilm.output import drives, heat
 from flankfilm.output.branches import branch_tables, diagram_tables
+from flankfilm.output.geometry import pair_figures
 from flankfilm.output.passages import passage
 from flankfilm.output.variables import figure_of, of_list, of_models, of_quantities, of_record
 
@@ -46,7 +47,7 @@ def comparison(prefix: str, verification: Verification) -> Parts:
 
     models = {model.label: model for model in verification.models if model.single_stiffness.size}
     like = {"units": "1", "long_name": "reference without what closed forms lack", "error_note": EXACT}
-    yield of_record("pair", verification.pair)
+    yield pair_figures("pair", verification.pair)
     yield of_quantities("outline", drawn.outlines(verification.pair))
     yield of_quantities("path", drawn.points(verification.pair))
     yield of_record("path", verification, ("rho1",))
@@ -71,7 +72,7 @@ def series(prefix: str, record: Any) -> Parts:
 
 def pair(prefix: str, gear_pair: gears.GearPair) -> Parts:
     """Figures of a pair, both outlines, and the points of the path of contact."""
-    yield of_record(prefix, gear_pair)
+    yield pair_figures(prefix, gear_pair)
     yield of_quantities("outline", drawn.outlines(gear_pair))
     yield of_quantities("path", drawn.points(gear_pair))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Set
 from dataclasses import replace
 from functools import partial
@@ -10,20 +11,24 @@ from operator import methodcaller
 from typing import TYPE_CHECKING, Any
 
 import gears
-from base import Figure
+from base import Figure, RangeWarning
+from base.results import figures
 from flankfilm import coupling
 from flankfilm.building.face import even_along_face
 from flankfilm.building.pair import pinion_torque
 from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS as FORMS
-from flankfilm.output.variables import of_record
+from flankfilm.output.variables import of_list, of_record
 from flankfilm.products.output import Named, in_result, output_of
-from flankfilm.products.product import CurveTable, Product, when
-from flankfilm.report import stiffness_parts
+from flankfilm.products.product import CurveTable, Product, section_of, together, when
+from flankfilm.report import standards_parts, stiffness_parts
 from flankfilm.scene import Scene
+from flankfilm.scene.sections.ground import under_keys
 from flankfilm.stages.engine import Engine, Stage, stage
 from flankfilm.stages.mesh import COMPLIANCE, PAIR, PLAN, TEETH_DECIDED
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from flankfilm.coupling.mesh.verification import Verification
 
 
@@ -45,6 +50,16 @@ def CLOSED_FORMS(run: Engine) -> coupling.SinglePairs:
         reference=run.scene.reference or "body",
         bore_inertia=run.scene.bore_inertia,
     )
+
+
+@stage("standards", "ISO 6336", "operating", PAIR)
+def STANDARDS(run: Engine) -> coupling.Standards:
+    """ISO 6336, which knows helical pairs."""
+    with under_keys(run.scene.pair, "pair"):
+        found = coupling.standards(run[PAIR], pinion_torque(run.scene))
+    if found.root is None:
+        warnings.warn(f"ISO 6336-3 gives no result: {found.root_fault}", RangeWarning, stacklevel=2)
+    return found
 
 
 @stage(
@@ -69,10 +84,19 @@ def VERIFICATION(run: Engine) -> coupling.Verification:
 
 
 def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
-    """Closed forms where they are wanted, and beside a stiffness that is reported."""
+    """Closed forms where they are wanted, and beside a stiffness that is reported; of helical pairs the standard's."""
     beside = wants >= {"report", "stiffness"} and scene.stiffness.model != "given"
     if "closed-forms" in wants or beside:
-        yield CLOSED_FORMS
+        yield STANDARDS if scene.pair is not None and scene.pair.helical else CLOSED_FORMS
+
+
+def _by_standards(found: coupling.Standards) -> Iterator[xr.Dataset]:
+    """Stiffness, contact and root stress by ISO 6336."""
+    yield of_record("iso6336_1", found.stiffness, ("c_th", "c_prime", "c_gamma", "c_gamma_beta", "C_R", "C_B"))
+    yield of_record("iso6336_2", found.contact)
+    if found.root is not None:
+        yield of_record("iso6336_3", found.root)
+        yield of_list("iso6336_3", "gear", found.root.sections)
 
 
 def _differences() -> Iterator[Named]:
@@ -104,6 +128,20 @@ def outputs() -> tuple[Named, ...]:
                 engine[PAIR], abs(engine[PAIR].normal_force(pinion_torque(engine.scene)))
             ).stresses[0],
         ),
+        output_of(
+            "iso_mesh_stiffness",
+            Figure("N/(mm um)", "mesh stiffness c_gamma_alpha by ISO 6336-1"),
+            "closed-forms",
+            lambda engine: gears.closed_form.iso6336(
+                engine[PAIR], abs(engine[PAIR].normal_force(pinion_torque(engine.scene)))
+            ).c_gamma,
+        ),
+        output_of(
+            "iso_helix_factor",
+            figures(gears.closed_form.Iso6336ContactStress)["Z_beta"],
+            "closed-forms",
+            lambda engine: gears.closed_form.iso6336_2(engine[PAIR], 1.0).Z_beta,
+        ),
         *_differences(),
     )
 
@@ -111,11 +149,16 @@ def outputs() -> tuple[Named, ...]:
 PRODUCT = Product(
     name="closed-forms",
     goals=goals,
-    variables=when(
-        CLOSED_FORMS,
-        lambda single: (of_record("single_pair", single), of_record("iso6336_2", single.contact)),
+    variables=together(
+        when(
+            CLOSED_FORMS,
+            lambda single: (of_record("single_pair", single), of_record("iso6336_2", single.contact)),
+        ),
+        when(STANDARDS, _by_standards),
     ),
-    solved={"single_pair": CLOSED_FORMS, "iso6336_2": CLOSED_FORMS},
+    solved={"single_pair": CLOSED_FORMS, "iso6336_2": CLOSED_FORMS, "iso6336_1": STANDARDS},
+    headlines=when(STANDARDS, standards_parts.headlines),
+    sections=section_of(STANDARDS, lambda found, _: standards_parts.section(found)),
     tables={"single_pair_stiffness": CurveTable("single_pair", "rho1", axis="path")},
     pictures=stiffness_parts.SINGLE_PAIRS,
     outputs=outputs,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
 from operator import attrgetter
@@ -25,6 +25,7 @@ from flankfilm.products.output import Named, Of, Take, in_result, model_error_of
 from flankfilm.products.product import CurveTable, Product, ranked, section_of, wanting, when
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.run_parts import Work
+from flankfilm.report.standards_parts import root_table
 from flankfilm.report.text import counted, number, of_both, percent, plus_minus
 from flankfilm.scene.plain_gears import held_on_hubs, plain_flanks
 from flankfilm.stages.computed import Computed
@@ -35,17 +36,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from fem.stress.root_peaks import RootPeak
-    from gears.closed_form import Iso6336RootStress
-
-OF_EACH_SECTION = {
-    "form factor Y_F": "Y_F",
-    "stress correction factor Y_S": "Y_S",
-    "chord of the root s_Fn": "s_Fn",
-    "bending moment arm h_Fe": "h_Fe",
-    "root fillet radius rho_F": "rho_F",
-    "notch parameter q_s": "q_s",
-}
-"""Figures of the root of either gear by ISO 6336-3."""
 
 EVEN = "{}; nan where the load is even along the face"
 
@@ -136,7 +126,7 @@ def section(stage: coupling.RootStresses, results: xr.Dataset) -> Part:
         tables.append(_over_face(stage))
     note = f"ISO 6336-3 gives no result: {stage.iso_fault}"
     if stage.iso is not None:
-        tables.append(_iso(stage.iso))
+        tables.append(root_table(stage.iso))
         places = "at D for the pinion and at B for the wheel"
         note = said("iso6336_3", where="at the tip" if stage.iso.load_at == "tip" else places)
     drawn = pictures(results, PICTURES)
@@ -158,18 +148,6 @@ def _over_face(stage: coupling.RootStresses) -> Table:
         rows.append(("ISO 6336-1, method C: K_Hbeta of the load", number(iso.K_Hbeta)))
         rows.append((f"K_Fbeta = K_Hbeta^N_F of the root, N_F = {number(iso.N_F, 3)}", number(iso.K_Fbeta)))
     return Table(("root stress over the face", "value"), tuple(rows))
-
-
-def _iso(iso: Iso6336RootStress) -> Table:
-    rows: dict[str, Sequence[float]] = {
-        label: [getattr(section, name) for section in iso.sections] for label, name in OF_EACH_SECTION.items()
-    }
-    rows |= {
-        "rim thickness factor Y_B": iso.Y_B,
-        "nominal root stress sigma_F0 [MPa]": [1e-6 * value for value in iso.stresses],
-    }
-    cells = tuple((name, *(number(value, 5) for value in values)) for name, values in rows.items())
-    return Table(("ISO 6336-3, lengths in modules", "pinion", "wheel"), cells)
 
 
 def headlines(stage: coupling.RootStresses) -> list[Headline]:

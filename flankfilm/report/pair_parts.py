@@ -12,7 +12,7 @@ import numpy as np
 from base.results import quantities
 from flankfilm.figures.reading import Pictures, read, read_figure, travel
 from flankfilm.output.geometry import Row, geometry_rows
-from flankfilm.report.page import Drawing, Headline, Part, Table, pictures
+from flankfilm.report.page import Drawing, Headline, Part, Table, pictures, said
 from flankfilm.report.text import number
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from gears import GearPair, WarmPair
 
-DECIMALS = {"mm": 4, "µm": 2, "um": 2}
-"""Lengths: to a tenth of a micrometre; deviations: to a hundredth; other figures have five decimals."""
+DECIMALS = {"mm": 4, "µm": 2, "um": 2, "N": 1, "N m": 2}
+"""Lengths: to a tenth of a micrometre; deviations: to a hundredth; forces: to 0.1 N; other figures: five decimals."""
 
 OF_BLANKS = ("pair_rim_thicknesses", "pair_web_thicknesses")
 """Figures that are left out for gears that are discs."""
@@ -31,6 +31,7 @@ HEADLINES = ("contact_ratio", "working_centre_distance", "working_pressure_angle
 
 IN_MESH: Pictures = {"gears_in_mesh": "outline_pinion"}
 PATH: Pictures = {"kinematics": "path_rho2"}
+LINES: Pictures = {"lines_of_contact": "contact_lines_length"}
 
 
 def headlines(pair: GearPair) -> list[Headline]:
@@ -56,13 +57,25 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
     path = ("path of contact A to E [mm]", *_aligned("mm", [float(travel(results, "path_point_rho1")[-1])]))
     common = (*(row for row in cells if len(row) == 2), path)
     of_gears = (*(row for row in cells if len(row) == 3), ("undercut", *undercut))
-    drawn = pictures(results, PATH)
-    tables = Table(("pair", ""), common), Table(("", "pinion", "wheel"), of_gears)
+    drawn = pictures(results, {**PATH, **LINES})
+    tables = [Table(("pair", ""), common), Table(("", "pinion", "wheel"), of_gears)]
     note = (
         "Thicknesses, span and size over pins include the thinning of the teeth; spans and pins touch near d + 2 x m, "
         "on the involute below any tip relief."
     )
-    return Part("geometry", "Geometry", figures=drawn, tables=tables, notes=(note,), seen=0)
+    notes = [note]
+    if pair.helix_angle:
+        tables.append(_length_harmonics(results))
+        pinion, wheel = ("right", "left") if pair.helix_angle > 0.0 else ("left", "right")
+        notes.append(said("of_helix", pinion=pinion, wheel=wheel))
+    return Part("geometry", "Geometry", figures=drawn, tables=tuple(tables), notes=tuple(notes), seen=0)
+
+
+def _length_harmonics(results: xr.Dataset) -> Table:
+    """Harmonics of the total length of the lines of contact."""
+    orders, amplitudes = (read(results, f"contact_lines_{name}") for name in ("harmonic", "harmonics"))
+    rows = zip(map(str, orders.values.tolist()), (number(a, 4) for a in amplitudes.values.tolist()), strict=True)
+    return Table(("harmonic of the total length of the lines of contact", "over the mean"), tuple(rows))
 
 
 def drawing(results: xr.Dataset) -> Drawing:

@@ -160,19 +160,20 @@ def _harmonics(cycle: MeshCycle) -> Table:
     return Table(tuple(heads), tuple(zip(*columns, strict=True)), f"Harmonics of the mesh: {cycle.label}.")
 
 
-def iso_table(iso: Any) -> Table:
-    """Mean stiffnesses by ISO 6336-1."""
+def iso_table(iso: Any, *, along_face: bool = False) -> Table:
+    """Mean stiffnesses by ISO 6336-1, with that along the face where it is asked for."""
     rows = (
         ("theoretical single stiffness c'th", number(iso.c_th, 5)),
         ("single stiffness c'", number(iso.c_prime, 5)),
         ("mesh stiffness c_gamma", number(iso.c_gamma, 5)),
+        *((("mesh stiffness along the face c_gamma_beta", number(iso.c_gamma_beta, 5)),) if along_face else ()),
     )
     return Table(("ISO 6336-1", "N/(mm µm)"), rows)
 
 
 def contact_table(contact: Iso6336ContactStress, loaded: fem.MeshCycle | None) -> Table:
     """Nominal contact stress of both gears by ISO 6336-2, and the maximum Hertz pressure by finite elements."""
-    common = ("Z_H", "Z_E", "Z_eps")
+    common = ("Z_H", "Z_E", "Z_eps", *(("Z_beta",) if contact.Z_beta != 1.0 else ()))
     rows: list[tuple[str, ...]] = []
     for name in common:
         figure = read_figure(contact, name)

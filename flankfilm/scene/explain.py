@@ -46,6 +46,9 @@ MOST_FAULTS = 90
 HELICAL = ("helix", "beta")
 """How keys of helical gears begin."""
 
+HELIX = "pair.helix_angle_deg"
+"""The key that a scene has for it."""
+
 PLAIN = ("bool", "int", "float", "str")
 """What a union of plain values adds to the path of a finding."""
 
@@ -142,13 +145,8 @@ def _unknown_key(dotted_key: str, location: tuple[Any, ...], model: type[Section
     fields = _model_at(location[:-1], model).model_fields
     keys = [field.alias or name for name, field in fields.items()]
     if key.startswith(HELICAL):
-        allowed = "is not supported yet: gears are spur gears"
-        return Fault(
-            dotted_key,
-            shorten(value),
-            allowed,
-            "Leave it out for spur gears; helical gears cannot be computed",
-        )
+        remedy = f"Give {HELIX}, of both gears: above 0 the pinion is right-handed"
+        return Fault(dotted_key, shorten(value), f"is not a key of {model.called}", remedy)
     if key.endswith(INCHES) and (lengths := [k for k in keys if k in _in_metric(key)]):
         return Fault(
             dotted_key, shorten(value), "is in inches, which are not read", _converted(value, lengths[0])

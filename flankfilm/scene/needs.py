@@ -7,6 +7,7 @@ from functools import reduce
 from typing import Any
 
 from base import Fault, shorten
+from flankfilm.scene.needs_of_helix import faults_of_helix
 from flankfilm.scene.needs_of_shafts import faults_of_shafts
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.sections.gears import GEARS, faults_of_leads
@@ -38,6 +39,7 @@ def faults_between_sections(raw: Raw) -> list[Fault]:
         *_missing_keys(raw, listed),
         *_models_that_do_not_fit(raw, listed),
         *faults_of_shafts(raw, listed),
+        *faults_of_helix(raw, listed),
         *faults_of_leads(raw),
     ]
 

@@ -19,6 +19,7 @@ from flankfilm.processes.progress import Progress, in_steps, silent
 from flankfilm.products.closed_forms import VERIFICATION
 from flankfilm.products.face import FACE_MODELS
 from flankfilm.scene import Scene
+from flankfilm.scene.needs_of_helix import refuse_helix
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import PAIR
 from flankfilm.verification.page import write_verification_page
@@ -110,6 +111,7 @@ def verification_outcome(
             Fault(name, "", "is required to verify", f"Add the section {name}") for name in lacking
         )
 
+    refuse_helix(scene, "a verification of the closed forms of single pairs")
     with occupied(folder, VerificationOutcome.data):
         verification = _verified(scene, use_cache, progress)
         return concluded(VerificationOutcome(verification, scene=scene), folder)

@@ -6,6 +6,7 @@ import math
 import warnings
 
 from base import Faults, RangeWarning, quantity, record
+from base.results import EXACT
 from gears.closed_form.record import STANDARD
 from gears.pair.gear_pair import GearPair
 from gears.pair.hertz import NORMAL_FORCE
@@ -20,13 +21,7 @@ LARGEST_RATIO = 4.0
 
 @record
 class Iso6336ContactStress:
-    """Nominal contact stress of both gears after ISO 6336-2.
-
-    Attributes
-    ----------
-    Z_beta : float
-        Helix angle factor, 1 of spur gears.
-    """
+    """Nominal contact stress of both gears after ISO 6336-2."""
 
     Z_H: float = quantity("1", "zone factor Z_H")
     Z_E: float = quantity("Pa^0.5", "elasticity factor Z_E", shown="MPa^0.5")
@@ -43,7 +38,9 @@ class Iso6336ContactStress:
         shown="MPa",
     )
 
-    Z_beta: float = 1.0
+    Z_beta: float = quantity(
+        "1", "helix angle factor Z_beta of the contact stress, 1 of spur gears", no_error=EXACT, default=1.0
+    )
 
     no_error = STANDARD
     headline = ("stresses", "Z_H", "Z_E", "Z_eps", "Z_B", "Z_D")

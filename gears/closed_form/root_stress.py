@@ -6,6 +6,7 @@ import math
 import warnings
 
 from base import Faults, RangeWarning, described, part, quantity, record
+from base.results import EXACT
 from gears.closed_form.record import STANDARD
 from gears.closed_form.virtual_gear import VirtualGear, virtual_gear
 from gears.pair.gear_pair import GearPair
@@ -50,19 +51,15 @@ class RootSection:
 
 @record
 class Iso6336RootStress:
-    """Nominal tooth-root stress sigma_F0 of both gears after ISO 6336-3.
-
-    Attributes
-    ----------
-    Y_beta : float
-        Helix angle factor, 1 of spur gears.
-    """
+    """Nominal tooth-root stress sigma_F0 of both gears after ISO 6336-3."""
 
     sections: tuple[RootSection, RootSection] = part("tooth form of pinion and wheel, with Y_F and Y_S")
     Y_B: tuple[float, float] = quantity("1", "rim-thickness factors", "gear")
     stresses: tuple[float, float] = quantity("Pa", "tooth-root stress sigma_F0", "gear", shown="MPa")
     load_at: str = quantity("", "where the load was taken to act, D or tip")
-    Y_beta: float = 1.0
+    Y_beta: float = quantity(
+        "1", "helix angle factor Y_beta of the root stress, 1 of spur gears", no_error=EXACT, default=1.0
+    )
 
     no_error = STANDARD
 

@@ -45,9 +45,9 @@ class Iso6336Stiffness:
     no_error = STANDARD
     headline = ("c_th", "c_prime", "c_gamma", "C_R", "C_B")
 
-    @property
+    @described("N/(mm um)")
     def c_gamma_beta(self) -> float:
-        """Mesh stiffness along the face, 0.85 c_gamma_alpha [N/(mm um)]."""
+        """Mesh stiffness c_gamma_beta along the face, 0.85 c_gamma_alpha."""
         return FACE_STIFFNESS * self.c_gamma
 
     @described("N/m")

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from base import Array, Faults, quantity, record
+from base import Array, Faults, described, quantity, record
 from base.results import EXACT
 from gears.tooth.errors import GeometryError
 
@@ -38,7 +38,7 @@ class ContactLines:
 
     contact_ratio: float = quantity("1", "transverse contact ratio eps_alpha")
     overlap_ratio: float = quantity("1", "overlap ratio eps_beta")
-    across: float = quantity("m", "length of a line over the whole face, b / cos beta_b", shown="mm")
+    across: float = quantity("m", "length of a line of contact over the whole face, b / cos beta_b", shown="mm")
 
     no_error = EXACT
 
@@ -70,20 +70,43 @@ class ContactLines:
         ended = np.clip(0.5 + (place - self.contact_ratio) * slope, 0.0, 1.0)
         return np.asarray(self.across * (started - ended).sum(axis=-1))
 
-    @property
+    @described("m", shown="mm")
     def mean(self) -> float:
-        """Mean over the mesh cycle, b eps_alpha / cos beta_b [m]."""
+        """Mean total length of the lines of contact, b eps_alpha / cos beta_b."""
         return self.across * self.contact_ratio
 
-    @property
+    @described("m", shown="mm")
     def minimum(self) -> float:
-        """Minimum of the total length in the mesh cycle [m]."""
+        """Minimum total length in the mesh cycle."""
         return float(self.length(self._turns).min())
 
-    @property
+    @described("m", shown="mm")
     def maximum(self) -> float:
-        """Maximum of the total length in the mesh cycle [m]."""
+        """Maximum total length in the mesh cycle."""
         return float(self.length(self._turns).max())
+
+    def segments(self, position: float) -> tuple[Array, Array]:
+        """Lines that touch at one position, each from end to end.
+
+        Parameters
+        ----------
+        position : float
+            t as of `length`.
+
+        Returns
+        -------
+        (lines, 2) array, (lines, 2) array
+            Place x/p_bt on the path of contact, 0 to eps_alpha, and place z/b along the face, -1/2 to 1/2, at the ends
+            of each line, by z; x grows with z: mirror z of a right-handed pinion. Together they are `length` long.
+        """
+        reach = 0.5 * self.overlap_ratio
+        line = np.arange(-math.ceil(reach) - 1, math.ceil(self.contact_ratio + reach) + 1)
+        middle = position % 1.0 + line[:, None]
+        slope = 1.0 / max(self.overlap_ratio, LEAST_OVERLAP)
+        along = np.clip((np.array([0.0, self.contact_ratio]) - middle) * slope, -0.5, 0.5)
+        touches = along[:, 1] > along[:, 0]
+        place = middle + self.overlap_ratio * along
+        return place[touches], along[touches]
 
     def harmonics(self, number: int) -> Array:
         """Amplitudes of the first harmonics of the total length over its mean.

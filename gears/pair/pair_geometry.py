@@ -22,6 +22,18 @@ from gears.tooth.rack import ISO_53_A, BasicRack
 ROUNDING = 1e-13
 """Backlash over the module that rounding leaves of none."""
 
+OF_HELICES = (
+    "helix_angle",
+    "base_helix_angle",
+    "normal_pressure_angle",
+    "transverse_module",
+    "transverse_pressure_angle",
+    "overlap_ratio",
+    "total_contact_ratio",
+    "transverse_backlash",
+)
+"""Figures that say nothing new of a spur pair, whose normal section is the transverse one."""
+
 
 def _of_both(name: str, meaning: str) -> Described[tuple[float, float]]:
     """Length that each tooth has, of pinion and wheel [m]."""
@@ -48,7 +60,9 @@ class PairGeometry:
     material: Material | tuple[Material, Material] = STEEL
     centre_distance: float | None = None  # a, m
     tight: bool = False
-    helix_angle: float = 0.0  # beta, rad
+    helix_angle: float = field(  # beta, rad
+        default=0.0, metadata={"figure": Figure("rad", "helix angle on the reference cylinder", shown="deg")}
+    )
 
     @cached_property
     def helix(self) -> Helix:
@@ -160,19 +174,24 @@ class PairGeometry:
         """
         return math.pi * self.module * math.cos(self.rack.alpha) / self.helix.base_cosine
 
-    @property
+    @described("m", shown="mm")
     def transverse_module(self) -> float:
-        """Transverse module, m_t = m_n / cos beta [m]."""
+        """Transverse module, m_t = m_n / cos beta."""
         return self.module / self.helix.cosine
 
-    @property
+    @described("rad", shown="deg")
+    def normal_pressure_angle(self) -> float:
+        """Normal pressure angle, alpha_n of the rack."""
+        return float(self.rack.alpha)
+
+    @described("rad", shown="deg")
     def transverse_pressure_angle(self) -> float:
-        """Transverse pressure angle, tan alpha_t = tan alpha_n / cos beta [rad]."""
+        """Transverse pressure angle, tan alpha_t = tan alpha_n / cos beta."""
         return self.helix.transverse_pressure_angle
 
-    @property
+    @described("rad", shown="deg")
     def base_helix_angle(self) -> float:
-        """Helix angle on the base cylinder, sin beta_b = sin beta cos alpha_n [rad]; its sign is the hand."""
+        """Helix angle on the base cylinder, sin beta_b = sin beta cos alpha_n; its sign is the hand."""
         return self.helix.base_angle
 
     @cached_property
@@ -195,12 +214,12 @@ class PairGeometry:
         """Transverse contact ratio, length of the path over the base pitch."""
         return (self.points.E - self.points.A) / self.base_pitch
 
-    @property
+    @described("1")
     def overlap_ratio(self) -> float:
         """Overlap ratio, eps_beta = b sin beta / (pi m_n) = b tan beta_b / p_bt."""
         return self.face_width * abs(self.helix.base_tangent) / self.base_pitch
 
-    @property
+    @described("1")
     def total_contact_ratio(self) -> float:
         """Total contact ratio, eps_gamma = eps_alpha + eps_beta."""
         return self.contact_ratio + self.overlap_ratio
@@ -214,9 +233,9 @@ class PairGeometry:
         """
         return self._rounded(self._least_backlash + self._allowed_backlash)
 
-    @property
+    @described("m", shown="um")
     def transverse_backlash(self) -> float:
-        """Backlash as an arc of the working pitch circles, j_wt = j_bn / (cos alpha_wt cos beta_b) [m]."""
+        """Transverse backlash, arc of the working pitch circles j_wt = j_bn / (cos alpha_wt cos beta_b)."""
         return self.backlash * math.hypot(1.0, self._working_tangent) / self.helix.base_cosine
 
     def _rounded(self, backlash: float) -> float:

@@ -226,19 +226,23 @@ class GearSection(Section):
             raise InputError(faults)
         return self
 
-    def gear(self, module: float, rack: gears.BasicRack, measured: gears.Lead) -> gears.Gear:
+    def gear(
+        self, module: float, rack: gears.BasicRack, measured: gears.Lead, helix_cosine: float = 1.0
+    ) -> gears.Gear:
         """Gear in SI.
 
         Parameters
         ----------
         module : float
-            [m]
+            Of the normal section [m].
         rack : gears.BasicRack
         measured : gears.Lead
             Measured lead and topography, over the whole face.
+        helix_cosine : float
+            Normal over transverse module, cos(beta).
         """
         return gears.Gear(
-            **self.si() | self._tip(module, rack),
+            **self.si() | self._tip(module, rack, helix_cosine),
             tip_relief=None if self.tip_relief is None else self.tip_relief.relief(),
             blank=None if self.blank is None else self.blank.blank(),
             lead=self._lead(measured),
@@ -249,12 +253,12 @@ class GearSection(Section):
         lead = self.si_of("lead")
         return replace(measured, **lead if self.end_relief_um else lead | {"end_relief_length": 0.0})
 
-    def _tip(self, module: float, rack: gears.BasicRack) -> dict[str, float]:
+    def _tip(self, module: float, rack: gears.BasicRack, helix_cosine: float) -> dict[str, float]:
         """Tip alteration of a gear whose tip diameter is given; nothing where it is not."""
         diameter = self.value("tip_diameter_mm")
         if diameter is None:
             return {}
-        above_reference = 0.5 * (diameter / module - self.teeth)
+        above_reference = 0.5 * (diameter / module - self.teeth / helix_cosine)
         return {"tip_alteration": round(above_reference - rack.h_aP - self.profile_shift, TIP_DIGITS)}
 
     def support(self) -> fem.Support:
@@ -267,8 +271,14 @@ class PairSection(Section):
 
     ground = PAIR
 
-    module_mm: float = key("module of both gears", example=2.0)
+    module_mm: float = key("module of both gears, of a helical pair that of the normal section", example=2.0)
     face_width_mm: float = key("width of the teeth in contact", example=40.0)
+    helix_angle_deg: float = key(
+        "helix angle on the reference cylinder; above 0 the pinion is right-handed and the wheel left-handed, and "
+        "rack, shifts and backlash are those of the normal section",
+        0.0,
+        shown=True,
+    )
     rack: Literal["ISO 53 A", "ISO 53 B", "ISO 53 C", "ISO 53 D"] | RackSection = key(
         "basic rack of both gears, or a table of its dimensions", "ISO 53 A", of=None, shown=True
     )
@@ -305,6 +315,11 @@ class PairSection(Section):
     def each(self) -> tuple[GearSection, GearSection]:
         """Pinion and wheel."""
         return self.pinion, self.wheel
+
+    @property
+    def helical(self) -> bool:
+        """Whether the pair has a helix."""
+        return self.helix_angle_deg != 0.0
 
     def basic_rack(self) -> gears.BasicRack:
         """Rack of both gears, with dedendum and fillet radius by the tool where there is one."""

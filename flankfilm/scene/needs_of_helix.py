@@ -1,0 +1,211 @@
+"""What a scene cannot want, nor give, of a helical pair: one table, of which a row goes when its model takes a helix.
+
+`WANTS_OF_SPUR` lists wants. `KEYS_OF_SPUR` lists keys: those that ask for a model of spur gears in any case, and those
+that count only where loaded teeth are wanted. Everything else of a helical pair is answered: sizes, inspection, lines
+of contact, forces of the mesh, stiffness and stresses by ISO 6336.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING, Any
+
+from base import Fault, InputError, shorten
+from flankfilm.scene.traits import given_keys, named
+from flankfilm.scene.wants import UNLOADED, WANTS
+
+if TYPE_CHECKING:
+    from flankfilm.scene.schema import Scene
+
+__all__ = ["HELIX", "KEYS_OF_SPUR", "WANTS_OF_SPUR", "faults_of_helix", "refuse_helix", "wants_load"]
+
+HELIX = "pair.helix_angle_deg"
+"""Key of the helix."""
+
+_CYCLE = "loaded contact on oblique lines"
+_MOTION = "motion with axial forces and tilting gears"
+_FILM = "films along oblique lines"
+
+WANTS_OF_SPUR: Mapping[str, str] = {
+    "stiffness": _CYCLE,
+    "torques": _CYCLE,
+    "revolution": "loaded contact on oblique lines with deviations of each tooth",
+    "root-stress": "stress at the roots under oblique lines",
+    "film": _FILM,
+    "losses": "friction and heat of films along oblique lines",
+    "fourier": _CYCLE,
+    "sweep": _MOTION,
+    "diagram": _MOTION,
+    "spectrum": _MOTION,
+    "run-up": _MOTION,
+    "dynamic-map": _MOTION,
+    "vtk": "fields of twisted teeth",
+}
+"""Wants that only spur pairs have, each with what is missing for a helical one."""
+
+ANSWERED = tuple(want for want in WANTS if want not in WANTS_OF_SPUR)
+"""Wants that helical pairs have."""
+
+
+def _anything(value: Any) -> bool:
+    """Whether a key is given at all: a number or a text that is not 0, or a table."""
+    return isinstance(value, Mapping) or bool(value)
+
+
+def _negative(value: Any) -> bool:
+    return isinstance(value, int | float) and value < 0
+
+
+def _other_than(*words: Any) -> Callable[[Any], bool]:
+    return lambda value: value not in words
+
+
+@dataclass(frozen=True)
+class SpurKey:
+    """Key, or several by a pattern, that only a spur pair may have.
+
+    Attributes
+    ----------
+    path : str
+        Dotted; ``*`` stands for either gear.
+    missing : str
+        What there is not of helical pairs.
+    allowed, remedy : str
+        What must hold, and what to do, beside taking a spur pair.
+    refuses : callable
+        Whether a given value is refused.
+    always : bool
+        Whether it is refused whatever is wanted; else only where loaded teeth are.
+    left_out : Any
+        Value that stands where the key is not given; None for one that is not refused then.
+    """
+
+    path: str
+    missing: str
+    allowed: str = "must be left out"
+    remedy: str = "Leave it out"
+    refuses: Callable[[Any], bool] = _anything
+    always: bool = False
+    left_out: Any = None
+
+
+KEYS_OF_SPUR: tuple[SpurKey, ...] = (
+    # what asks for a model of spur teeth, whatever is wanted
+    SpurKey(
+        "stiffness.model",
+        "closed forms of single pairs",
+        'must be "fem"',
+        'Leave it out: the wanted "closed-forms" gives ISO 6336',
+        _other_than("fem", "auto", "given"),
+        always=True,
+    ),
+    SpurKey(
+        "stiffness.pairs",
+        "pairs of teeth that bear independently",
+        'must be "coupled"',
+        'Take "coupled"',
+        _other_than("coupled"),
+        always=True,
+    ),
+    SpurKey("stiffness.moving_contact", "contacts that the deflection moves", "must be false", always=True),
+    SpurKey("pair.*.deviations", "deviations of twisted flanks", always=True),
+    SpurKey("pair.*.wear", "wear of twisted flanks", always=True),
+    # what loaded teeth on oblique lines do not know
+    SpurKey(
+        "operating.pinion_torque_Nm",
+        "mesh cycle on the back flanks",
+        "must be above 0",
+        "Give the torque of a driving pinion",
+        _negative,
+    ),
+    SpurKey("operating.friction", "friction on oblique lines", "must be 0"),
+    SpurKey(
+        "stiffness.plane",
+        "plane stress of twisted teeth",
+        'must be "strain"',
+        'Take "strain"',
+        _other_than("strain"),
+    ),
+    SpurKey(
+        "stiffness.contact_beyond_path",
+        "contact with tip edges outside the path",
+        "must be false",
+        "Give contact_beyond_path = false",
+        left_out=True,
+    ),
+    SpurKey("film.model", _FILM, 'must be "none"', 'Take film.model = "none"', _other_than("none")),
+    SpurKey("alignment", "axes out of parallel"),
+    SpurKey("shafts", "shafts under axial forces and tilting moments"),
+    SpurKey("pair.tight", "twisted teeth that bear on both sides", "must be false", "Give more backlash"),
+    SpurKey("pair.*.hub", "rigid hubs in twisted bodies"),
+    SpurKey("pair.*.blank", "webs of twisted bodies"),
+    SpurKey("pair.*.face_width_mm", "faces wider than that in contact"),
+    SpurKey("pair.*.face_offset_mm", "faces wider than that in contact", "must be 0"),
+    SpurKey("pair.*.tip_rounding_um", "contact with tip edges outside the path", "must be 0"),
+    *(
+        SpurKey(f"pair.*.{lead}", "leads of twisted flanks", "must be 0")
+        for lead in ("crowning_um", "lead_slope_um", "end_relief_um")
+    ),
+)
+"""Keys, each with what is missing for a helical pair."""
+
+
+def faults_of_helix(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault]:
+    """Faults of a helical pair for what only spur pairs have; of the unchecked file, and of what it wants."""
+    angle = _helix_angle(raw)
+    if not angle:
+        return
+    lacking = f"at {HELIX} = {angle:g}: helical pairs have no"
+    answered = ", ".join(f'"{want}"' for want in ANSWERED)
+    refused = [want for want in WANTS if want in listed and want in WANTS_OF_SPUR]
+    for missing in dict.fromkeys(WANTS_OF_SPUR[want] for want in refused):
+        value = ", ".join(f'"{want}"' for want in refused if WANTS_OF_SPUR[want] == missing)
+        allowed = f"must be any of {answered} {lacking} {missing}"
+        yield Fault("wants", value, allowed, f"Leave it out of wants, or give {HELIX} = 0")
+    for path, value, row in _given(raw):
+        if (row.always or wants_load(listed)) and row.refuses(value):
+            shown = "" if isinstance(value, Mapping) else shorten(value).lower() if isinstance(value, bool) else shorten(value)
+            remedy = f"{row.remedy}, or give {HELIX} = 0"
+            yield Fault(named(path), shown, f"{row.allowed} {lacking} {row.missing}", remedy)
+
+
+def wants_load(wants: Iterable[str]) -> bool:
+    """Whether loaded teeth are wanted, beyond sizes and standards' formulas."""
+    return bool(set(wants) - UNLOADED - {"closed-forms"})
+
+
+def _helix_angle(raw: Mapping[str, Any]) -> float:
+    """Helix angle of an unchecked scene [deg]; 0 where there is none, or no number."""
+    pair = raw.get("pair")
+    angle = pair.get("helix_angle_deg") if isinstance(pair, Mapping) else None
+    known = isinstance(angle, int | float) and not isinstance(angle, bool) and math.isfinite(angle)
+    return float(angle) if known and angle is not None else 0.0
+
+
+def _given(raw: Mapping[str, Any]) -> Iterator[tuple[str, Any, SpurKey]]:
+    """Keys of the table that a scene gives, or that stand there by default; each with its value and its row."""
+    from flankfilm.scene.schema import Scene
+
+    values = {path: value for path, _, value in given_keys(raw, Scene)}
+    for row in KEYS_OF_SPUR:
+        found = [path for path in values if path.count(".") == row.path.count(".") and fnmatchcase(path, row.path)]
+        yield from ((path, values[path], row) for path in found)
+        if not found and row.left_out is not None:
+            yield row.path, row.left_out, row
+
+
+def refuse_helix(scene: Scene, what: str) -> None:
+    """Refuse the helix of a scene where `what`, in words, knows spur pairs alone.
+
+    Raises
+    ------
+    InputError
+        Of a helical pair, under the scene's key.
+    """
+    if scene.pair is not None and scene.pair.helical:
+        value = f"{scene.pair.helix_angle_deg:g}"
+        remedy = f"Give {HELIX} = 0; of a helical pair there are {', '.join(ANSWERED)}"
+        raise InputError.at(HELIX, value, f"must be 0 for {what}, made for spur pairs", remedy)
