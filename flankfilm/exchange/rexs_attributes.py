@@ -1,4 +1,4 @@
-"""Names and units of the REXS attributes that a pair of spur gears has, for reading and for writing.
+"""Names and units of the REXS attributes that a pair of cylindrical gears has, for reading and for writing.
 
 Values are in the scene's units: millimetres, degrees, GPa, kg/m3, coefficients times the module.
 """
@@ -60,6 +60,15 @@ PRESSURE_ANGLE = Attribute("normal_pressure_angle", ANGLE)
 
 TEETH = Attribute("number_of_teeth", PURE)
 HELIX_ANGLE = Attribute("helix_angle_reference_diameter", ANGLE)
+"""Of each gear; its sign is the hand, above 0 right, so that the gears of an external pair have opposite signs."""
+
+TRANSVERSE_MODULE = Attribute("transverse_module", LENGTH)
+TRANSVERSE_PRESSURE_ANGLE = Attribute("pressure_angle_in_the_transverse_section", ANGLE)
+REFERENCE_DIAMETER = Attribute("reference_circle_diameter", LENGTH)
+BASE_HELIX_ANGLE = (
+    Attribute("helix_angle_base_circle", ANGLE),
+    Attribute("helix_angle_base_diameter", ANGLE),  # the name of version 2.0
+)
 FACE_WIDTH = Attribute("face_width", LENGTH)
 TIP_DIAMETER = Attribute("tip_diameter", LENGTH)
 ROOT_DIAMETER = Attribute("root_diameter", LENGTH)

@@ -18,9 +18,13 @@ from flankfilm.exchange import rexs_attributes as rexs
 from flankfilm.exchange.draft import GEARS, OPEN, Draft
 from flankfilm.exchange.rexs_attributes import Attribute
 from flankfilm.exchange.rexs_model import Component, Model, Relation
+from flankfilm.exchange.rexs_sections import Sections
 
 SAME = 1e-9
 """Relative difference within which two numbers of a file are one number."""
+
+ROUNDED = 1e-4
+"""Relative difference of a figure of the transverse section from what follows that is rounding."""
 
 MOST_STAGES = 12
 """Stages that a message lists."""
@@ -56,8 +60,9 @@ def draft_of(model: Model, source: str, stage: str | None = None) -> Draft:
     Raises
     ------
     InputError
-        Where there is no such stage, or with everything that the scene cannot have: helical or internal
-        gears, flanks that differ, tools with protuberance, two tools in one pair.
+        Where there is no such stage, or with everything that the scene cannot have: internal gears, hands that do
+        not fit, figures of normal and transverse section that disagree, flanks that differ, tools with protuberance,
+        two tools in one pair.
     """
     relation = _chosen(model, source, stage)
     reader = _StageReader(model, source, relation)
@@ -77,7 +82,7 @@ def _chosen(model: Model, source: str, stage: str | None) -> Relation:
         kinds = sorted({c.type for c in model.components.values() if c.type.endswith("stage")})
         shown = ", ".join(kind[:60] for kind in kinds[:MOST_STAGES])
         allowed = "holds no stage of cylindrical gears" + (f", but {shown}" if kinds else "")
-        raise InputError.at(source, "", allowed, "Pairs of external spur gears are read alone")
+        raise InputError.at(source, "", allowed, "Pairs of external spur and helical gears are read alone")
     if stage is None and len(relations) > 1:
         raise InputError.at(source, f"{len(relations)} stages", "choose one", listed)
     if stage is not None and stage not in relations:
@@ -100,20 +105,21 @@ class _StageReader:
         gears = self._gears(stage)
         if gears is None:
             return Draft("", self.source, ("", ""))
-        for gear in gears:
-            self._refuse_helical(gear)
-        module = self._common(rexs.MODULE, gears)
         flanks = [self.model.others("flank", "gear", gear.id, "left", "right") for gear in gears]
+        beta = self._helix_angle(gears)
         alpha = self._common(rexs.PRESSURE_ANGLE, [f for pair in flanks for f in pair])
+        module = self._module(gears, beta)
+        self._check_sections(gears, flanks, Sections(module, alpha, beta))
         rack = self._rack(gears, flanks, module, alpha)
         pair = {
             "module_mm": module,
             "face_width_mm": self._face_width(stage, gears),
+            "helix_angle_deg": beta,
             "rack": rack,
             "centre_distance_mm": self._number(stage, rexs.CENTRE_DISTANCE),
         }
         for role, gear, own in zip(GEARS, gears, flanks, strict=True):
-            pair[role] = self._gear(gear, own, module, rack)
+            pair[role] = self._gear(gear, own, module, rack, math.cos(math.radians(beta)))
         material = self._material(gears)
         self._modifications(gears, flanks)
         first, second = gears
@@ -177,13 +183,51 @@ class _StageReader:
             self.notes.append(f"The file does not say which gear drives: gear 1, {first}, is the pinion.")
         return first, second
 
-    def _refuse_helical(self, gear: Component) -> None:
-        helix = self._number(gear, rexs.HELIX_ANGLE)
-        if helix is None and rexs.HELIX_ANGLE.name not in gear.attributes:
-            self.notes.append(f"{gear} has no helix angle in the file: a spur gear.")
-        elif helix:
-            allowed = "must be 0: helical gears are out of scope"
-            self._refuse(gear, rexs.HELIX_ANGLE, f"{helix:g} deg", allowed)
+    def _helix_angle(self, gears: tuple[Component, Component]) -> float:
+        """Helix angle of the pinion [deg], above 0 right-handed; the wheel has the other hand."""
+        pinion, wheel = (self._number(gear, rexs.HELIX_ANGLE) for gear in gears)
+        said = [gear for gear in gears if rexs.HELIX_ANGLE.name in gear.attributes]
+        if pinion is None or wheel is None:
+            for gear in gears:
+                if gear not in said:
+                    hand = f"of the other hand than {said[0]}" if said else "a spur gear"
+                    self.notes.append(f"{gear} has no helix angle in the file: {hand}.")
+            return pinion if pinion is not None else -wheel + 0.0 if wheel is not None else 0.0
+        if abs(pinion + wheel) > SAME * max(abs(pinion), abs(wheel)):
+            allowed = f"must be {-pinion + 0.0:g} deg: an external pair has one helix angle, and opposite hands"
+            remedy = "Above 0 is right-handed; without signs the file says no hands"
+            self._refuse(gears[1], rexs.HELIX_ANGLE, f"{wheel:g} deg", allowed, remedy)
+        return pinion + 0.0
+
+    def _module(self, gears: tuple[Component, Component], beta: float) -> float:
+        """Normal module [mm]; by the transverse one where the file gives that alone."""
+        module = self._common(rexs.MODULE, gears)
+        if math.isnan(module) and not self.faults.found:
+            transverse = self._common(rexs.TRANSVERSE_MODULE, gears)
+            if not math.isnan(transverse):
+                module = float(f"{transverse * math.cos(math.radians(beta)):.12g}")
+                self.notes.append(f"The file has no normal_module: m_t cos(beta) = {module:g} mm is taken.")
+        return module
+
+    def _check_sections(
+        self, gears: tuple[Component, Component], flanks: list[list[Component]], sections: Sections
+    ) -> None:
+        """Refuse figures of the transverse section that disagree with those of the normal one."""
+        for gear, own in zip(gears, flanks, strict=True):
+            teeth = self._number(gear, rexs.TEETH)
+            for attribute, follows, law in sections.of_gear(math.nan if teeth is None else teeth):
+                self._agrees(gear, attribute, follows, law)
+            for flank in own:
+                self._agrees(flank, *sections.of_flank())
+
+    def _agrees(self, component: Component, attribute: Attribute, follows: float, law: str) -> None:
+        """Refuse a figure that is another than what follows from the normal section, but for rounding."""
+        value = self._number(component, attribute)
+        if value is not None and abs(abs(value) - abs(follows)) > ROUNDED * abs(follows) + SAME:
+            unit = next(iter(attribute.unit.scales))
+            allowed = f"must be {follows:.7g} {unit} by the normal section and the helix angle, {law}"
+            remedy = "One of them is of the other section: normal_module is m_t cos(beta)"
+            self._refuse(component, attribute, f"{value:g} {unit}", allowed, remedy)
 
     def _common(self, attribute: Attribute, components: Sequence[Component]) -> float:
         """The one number that all components have that say it."""
@@ -199,7 +243,12 @@ class _StageReader:
         return values[0]
 
     def _gear(
-        self, gear: Component, flanks: list[Component], module: float, rack: dict[str, float]
+        self,
+        gear: Component,
+        flanks: list[Component],
+        module: float,
+        rack: dict[str, float],
+        helix_cosine: float,
     ) -> dict[str, Any]:
         teeth = self._number(gear, rexs.TEETH)
         shift = self._common(rexs.PROFILE_SHIFT, flanks)
@@ -209,11 +258,11 @@ class _StageReader:
         tip = self._number(gear, rexs.TIP_DIAMETER)
         alteration = OPEN
         if tip is not None and teeth is not None:
-            exact = 0.5 * (tip / module - teeth) - rack["h_aP"] - shift
+            exact = 0.5 * (tip / module - teeth / helix_cosine) - rack["h_aP"] - shift
             alteration = 0.0 if abs(exact) < 1e-9 else float(f"{exact:.12g}")
         root = self._number(gear, rexs.ROOT_DIAMETER)
         if root is not None and teeth is not None:
-            own = module * (teeth + 2.0 * ((shift if cut is None else cut) - rack["h_fP"]))
+            own = module * (teeth / helix_cosine + 2.0 * ((shift if cut is None else cut) - rack["h_fP"]))
             if abs(own - root) > 0.01 * module:
                 self.notes.append(
                     f"{gear}: root_diameter {root:g} mm in the file, {own:g} mm by shift and tool: the file's "

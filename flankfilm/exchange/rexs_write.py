@@ -15,7 +15,6 @@ from flankfilm.exchange import rexs_attributes as rexs
 from flankfilm.exchange.rexs_archive import packed
 from flankfilm.exchange.rexs_attributes import Attribute
 from flankfilm.exchange.rexs_json import json_text
-from gears.pair.spur_only import require_spur
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -58,13 +57,7 @@ def rexs_text(pair: GearPair, title: str) -> tuple[str, tuple[str, ...]]:
     -------
     (str, tuple of str)
         The file's text; what REXS has no place for or is left out here.
-
-    Raises
-    ------
-    GeometryError
-        Of helical pairs, which scenes do not have.
     """
-    require_spur(pair, "export as REXS")
     writer = _Writer(title)
     size = {
         rexs.CENTRE_DISTANCE: 1e3 * pair.working_centre_distance,
@@ -134,7 +127,7 @@ class _Writer:
         module, angle = {rexs.MODULE: 1e3 * pair.module}, {rexs.PRESSURE_ANGLE: math.degrees(pair.rack.alpha)}
         shift = float(gear.profile_shift)
         size = {
-            rexs.HELIX_ANGLE: 0.0,
+            rexs.HELIX_ANGLE: math.degrees((1.0, -1.0)[index] * pair.helix_angle) + 0.0,  # no -0.0
             rexs.FACE_WIDTH: 1e3 * pair.face_widths[index],
             rexs.TIP_DIAMETER: 2e3 * profile.tip_radius,
             rexs.ROOT_DIAMETER: 2e3 * profile.root_radius,

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 HELICAL = "run a scene whose pair has a helix angle"
 NAMES = ("length", "position", "mean", "shown_position", "shown_travel", "shown_face")
 
+LEVEL = 1e-9
+"""Change of the total length over its mean below which it is level, as at a whole overlap ratio."""
+
 
 def lines_of_contact(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """Draw the lines of contact over path and face at some positions, and their total length over the mesh cycle.
@@ -48,6 +51,8 @@ def lines_of_contact(results: xr.Dataset, *, style: Style | None = None) -> Figu
             annotation_clip=False,
         )  # fmt: skip
         cycle.set(xlabel=position.label, ylabel=length.label, xlim=(0.0, 1.0))
+        if np.ptp(length.values) < LEVEL * float(mean.values):  # no scale of rounding
+            cycle.set_ylim(0.95 * float(mean.values), 1.05 * float(mean.values))
     return drawn
 
 
