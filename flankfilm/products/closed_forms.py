@@ -17,6 +17,7 @@ from flankfilm import coupling
 from flankfilm.building.face import even_along_face
 from flankfilm.building.pair import pinion_torque
 from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS as FORMS
+from flankfilm.figures.reading import PER_FACE
 from flankfilm.output.variables import of_list, of_record
 from flankfilm.products.output import Named, in_result, output_of
 from flankfilm.products.product import CurveTable, Product, section_of, together, when
@@ -130,11 +131,11 @@ def outputs() -> tuple[Named, ...]:
         ),
         output_of(
             "iso_mesh_stiffness",
-            Figure("N/(mm um)", "mesh stiffness c_gamma_alpha by ISO 6336-1"),
+            Figure("N/m", "mesh stiffness c_gamma_alpha by ISO 6336-1", shown=PER_FACE),
             "closed-forms",
             lambda engine: gears.closed_form.iso6336(
                 engine[PAIR], abs(engine[PAIR].normal_force(pinion_torque(engine.scene)))
-            ).c_gamma,
+            ).mesh_stiffness / engine[PAIR].face_width,
         ),
         output_of(
             "iso_helix_factor",

@@ -256,7 +256,7 @@ def test_the_tools_tip_radius_has_several_names(tmp_path, name, unit, value):
             'id="machining_allowance_din_3972_1952"',
             "must be in mm",
         ),
-        ('unit="°">-0.0<', 'unit="°">-15.0<', "helical gears are out of scope"),
+        ('unit="°">-0.0<', 'unit="°">-15.0<', "must be 0 deg: an external pair has one helix angle"),
         (
             '"cylindrical_gear">\n      <attribute id="face_width"',
             '"ring_gear">\n      <attribute id="face_width"',

@@ -228,7 +228,12 @@ def test_every_key_has_a_meaning(model: type[BaseModel]):
 def test_a_key_is_converted_by_the_unit_in_which_it_ends():
     scene = parse_scene(template())
     assert scene.pair is not None
-    assert scene.pair.si() == {"module": 2e-3, "face_width": 40e-3, "tight": False}
+    assert scene.pair.si() == {
+        "module": 2e-3,
+        "face_width": 40e-3,
+        "helix_angle": 0.0,
+        "tight": False,
+    }
     assert scene.pair.pinion.si()["bore_radius"] == 0.5e-3 * 33.5
     assert scene.operating is not None
     assert scene.operating.value("pinion_speed_rpm") == pytest.approx(2000 * math.pi / 30, rel=1e-15)

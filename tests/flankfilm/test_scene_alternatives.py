@@ -86,9 +86,9 @@ def test_a_power_needs_a_speed():
         ("module_mm = 2.0", 'module_in = "a"', "pair.module_in", "1 inch is 25.4 mm"),
         (
             "module_mm = 2.0",
-            "module_mm = 2.0\nhelix_angle_deg = 12",
-            "pair.helix_angle_deg",
-            "not supported yet",
+            "module_mm = 2.0\nbeta_deg = 12",
+            "pair.beta_deg",
+            "Give pair.helix_angle_deg",
         ),
     ],
 )

@@ -1,4 +1,4 @@
-"""Loaded teeth, films, motion and exchange refuse helical pairs, whatever the model of their stiffness."""
+"""Loaded teeth, films and motion refuse helical pairs, whatever the model of their stiffness."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from base import InputError
 from ehl import Lubricant
 from flankfilm import coupling
 from flankfilm.coupling.films.line_contacts import line_contacts
-from flankfilm.exchange.rexs_write import rexs_text
 from gears import Gear, GearPair
 
 PAIR = GearPair(Gear(teeth=24), Gear(teeth=31), 2e-3, 20e-3, helix_angle=math.radians(15.0))
@@ -31,7 +30,6 @@ ASKED = {
     "oscillator": lambda: coupling.pair_oscillator(PAIR, SERIES, 100.0, 200.0),
     "unloaded error": lambda: coupling.unloaded_error(PAIR),
     "closed forms beside": lambda: coupling.compare_closed_forms(PAIR, 100.0),
-    "exchange": lambda: rexs_text(PAIR, "stage"),
 }
 
 

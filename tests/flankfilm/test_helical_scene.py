@@ -1,0 +1,373 @@
+"""Scenes of helical pairs: what is answered, against formulas by hand; what spur pairs alone have, refused at once."""
+
+from __future__ import annotations
+
+import csv
+import math
+from fnmatch import fnmatchcase
+
+import numpy as np
+import pytest
+
+from base import InputError
+from flankfilm.building.pair import gear_pair, warm_pair
+from flankfilm.files.cache import Cache
+from flankfilm.runs.check import check_scene
+from flankfilm.runs.run_scene import run_scene
+from flankfilm.scene import parse_scene, template
+from flankfilm.scene.needs_of_helix import HELIX, KEYS_OF_SPUR, WANTS_OF_SPUR
+from flankfilm.scene.reader import parse_toml, validated
+from flankfilm.scene.schema import Scene
+from flankfilm.scene.sections.key import key_of
+from flankfilm.scene.wants import WANTS
+from flankfilm.stages.engine import Engine
+from flankfilm.studies.outputs import OUTPUTS
+from gears import Gear, GearPair
+from tests.flankfilm.program import command
+from tests.flankfilm.test_traits import put
+
+SCENE = """
+title = "Helical"
+wants = [WANTS]
+[pair]
+module_mm = 2.0
+face_width_mm = 40.0
+helix_angle_deg = 20
+pinion = { teeth = 36 }
+wheel = { teeth = 40 }
+[material]
+youngs_modulus_GPa = 206
+poisson_ratio = 0.3
+[operating]
+pinion_torque_Nm = 600
+pinion_speed_rpm = 2000
+"""
+ANSWERED = '"geometry", "closed-forms"'
+
+# by hand: m_n 2, z 36/40, b 40, beta 20 deg, 600 N m
+BETA, ALPHA_N = math.radians(20.0), math.radians(20.0)
+M_T = 2e-3 / math.cos(BETA)
+ALPHA_T = math.atan(math.tan(ALPHA_N) / math.cos(BETA))
+BETA_B = math.atan(math.tan(BETA) * math.cos(ALPHA_T))
+R_1, R_2 = 18 * M_T, 20 * M_T
+R_B1, R_B2 = R_1 * math.cos(ALPHA_T), R_2 * math.cos(ALPHA_T)
+PITCH = math.pi * M_T * math.cos(ALPHA_T)
+EPS_ALPHA = (
+    math.sqrt((R_1 + 2e-3) ** 2 - R_B1**2)
+    + math.sqrt((R_2 + 2e-3) ** 2 - R_B2**2)
+    - (R_1 + R_2) * math.sin(ALPHA_T)
+) / PITCH
+EPS_BETA = 40e-3 * math.sin(BETA) / (math.pi * 2e-3)
+
+
+def scene(wants: str = ANSWERED, old: str = "", new: str = "") -> Scene:
+    text = SCENE.replace("WANTS", wants)
+    assert old in text
+    return parse_scene(text.replace(old, new, 1))
+
+
+def faults(text: str) -> dict[str, str]:
+    with pytest.raises(InputError) as caught:
+        check_scene(parse_scene(text))
+    return {fault.where: str(fault) for fault in caught.value.faults}
+
+
+class TestKey:
+    def test_the_template_shows_it(self):
+        assert "helix_angle_deg = 0.0\n" in template()
+        raw = parse_toml(template(), "scene")
+        assert raw["pair"]["helix_angle_deg"] == 0.0
+
+    def test_a_template_with_a_helix_is_answered(self):
+        text = template().replace("helix_angle_deg = 0.0", "helix_angle_deg = -12.5", 1)
+        start = text.index("wants = [")
+        text = f'{text[:start]}wants = ["geometry", "report"]{text[text.index("]", start) + 1 :]}'
+        assert gear_pair(parse_scene(text)).helix_angle == pytest.approx(math.radians(-12.5), rel=1e-15)
+        assert check_scene(parse_scene(text))
+
+    @pytest.mark.parametrize("angle", [45.0, -45.0, 1e-9])
+    def test_ends_of_the_range_are_gears(self, angle):
+        pair = gear_pair(scene(old="helix_angle_deg = 20", new=f"helix_angle_deg = {angle!r}"))
+        assert pair.helix_angle == pytest.approx(math.radians(angle), rel=1e-15)
+
+    @pytest.mark.parametrize(
+        ("value", "said"),
+        [("45.1", "-45 and at most 45 deg"), ("-50", "-45"), ("nan", "finite"), ("true", "number"), ('"20"', "number")],
+    )
+    def test_what_is_no_angle_is_refused_by_its_key(self, value, said):
+        text = SCENE.replace("WANTS", '"geometry"').replace("deg = 20", f"deg = {value}")
+        found = faults(text)
+        assert list(found) == [HELIX]
+        assert said in found[HELIX]
+
+    @pytest.mark.parametrize(
+        ("old", "new", "where"),
+        [
+            ("helix_angle_deg", "beta_deg", "pair.beta_deg"),
+            ("{ teeth = 36 }", "{ teeth = 36, helix_angle_deg = 20 }", "pair.pinion.helix_angle_deg"),
+        ],
+    )
+    def test_other_spellings_are_told_the_key(self, old, new, where):
+        found = faults(SCENE.replace("WANTS", '"geometry"').replace(old, new, 1))
+        assert "Give pair.helix_angle_deg" in found[where]
+
+    def test_a_tip_diameter_is_that_of_the_transverse_section(self):
+        given = scene('"geometry"', "{ teeth = 36 }", "{ teeth = 36, tip_diameter_mm = 80.5 }")
+        pair = gear_pair(given)
+        assert 2e3 * pair.teeth_profiles[0].tip_radius == pytest.approx(80.5, rel=1e-12)
+
+    def test_backlash_is_normal(self):
+        pair = gear_pair(scene('"geometry"', "face_width_mm", "backlash_um = 50\nface_width_mm"))
+        assert pair.backlash == pytest.approx(50e-6, rel=1e-9)
+
+    def test_gears_and_housing_that_grow_alike_keep_every_angle(self):
+        heat = "[heat]\nhousing_expansion_per_K = 12e-6\n" + "".join(
+            f"{part}_temperature_C = 120\n" for part in ("pinion", "wheel", "housing")
+        )
+        text = SCENE.replace("WANTS", '"geometry"').replace("face_width_mm", "backlash_um = 50\nface_width_mm")
+        text = text.replace("poisson_ratio", "thermal_expansion_per_K = 12e-6\npoisson_ratio")
+        warm = warm_pair(parse_scene(text + heat))
+        grown = 1.0 + 100.0 * 12e-6
+        assert warm.backlash == pytest.approx(50e-6 * grown, rel=1e-6)
+        assert warm.pair.helix_angle == pytest.approx(BETA, rel=1e-15)
+        assert warm.pair.contact_ratio == pytest.approx(EPS_ALPHA, rel=1e-9)
+
+
+class TestTable:
+    def test_rows_are_wants_and_keys_of_the_scene(self):
+        assert set(WANTS) > set(WANTS_OF_SPUR)
+
+        def paths(model, start=""):
+            from flankfilm.scene.explain import model_in
+
+            for name, field in model.model_fields.items():
+                assert key_of(field) is not None
+                yield f"{start}{name}"
+                if (inner := model_in(field.annotation)) is not None:
+                    yield from paths(inner, f"{start}{name}.")
+
+        known = list(paths(Scene))
+        for row in KEYS_OF_SPUR:
+            assert any(fnmatchcase(path, row.path) for path in known), row.path
+
+    @pytest.mark.parametrize("want", WANTS)
+    def test_each_want_is_answered_or_refused(self, want):
+        text = SCENE.replace("WANTS", f'"{want}"')
+        if want not in WANTS_OF_SPUR:
+            assert check_scene(parse_scene(text))
+            return
+        found = faults(text)
+        assert f'wants = "{want}"' in found["wants"]
+        assert f"pair.helix_angle_deg = 20: helical pairs have no {WANTS_OF_SPUR[want]}" in found["wants"]
+        assert '"geometry", "closed-forms", "report"' in found["wants"]
+
+    GIVEN = (
+        ("stiffness.model", "weber-banaschek", True),
+        ("stiffness.model", "ishikawa", True),
+        ("stiffness.model", "potential-energy", True),
+        ("stiffness.pairs", "independent", True),
+        ("stiffness.moving_contact", True, True),
+        ("pair.pinion.deviations", {"single_pitch_um": [0.0] * 36}, True),
+        ("pair.wheel.wear", {"roll_deg": [10.0, 28.0], "depth_um": [1.0, 0.0]}, True),
+        ("operating.pinion_torque_Nm", -600.0, False),
+        ("operating.friction", 0.05, False),
+        ("stiffness.plane", "stress", False),
+        ("stiffness.contact_beyond_path", True, False),
+        ("film.model", "dowson", False),
+        ("alignment", {"in_plane_um": 20.0}, False),
+        ("shafts", {"pinion": {"inertia_kg_m2": 1.0}}, False),
+        ("pair.tight", True, False),
+        ("pair.wheel.hub", {"hub_mm": 40.0}, False),
+        ("pair.pinion.blank", {"rim_thickness_mm": 6.0, "web_thickness_mm": 12.0}, False),
+        ("pair.pinion.face_width_mm", 45.0, False),
+        ("pair.pinion.face_offset_mm", 2.0, False),
+        ("pair.wheel.tip_rounding_um", 20.0, False),
+        ("pair.pinion.crowning_um", 10.0, False),
+        ("pair.pinion.lead_slope_um", 10.0, False),
+        ("pair.pinion.end_relief_um", 8.0, False),
+    )
+
+    @pytest.mark.parametrize(("path", "value", "always"), GIVEN)
+    def test_each_key_is_refused_beside_loaded_teeth(self, path, value, always):
+        for wants, refused in ((["stiffness"], True), (["geometry", "closed-forms"], always)):
+            raw = put(parse_toml(SCENE.replace("WANTS", '"geometry"'), "scene"), path, value) | {"wants": wants}
+            if path.endswith("end_relief_um"):
+                raw = put(raw, "pair.pinion.end_relief_length_mm", 5.0)
+            try:
+                validated(raw)
+                found = {}
+            except InputError as error:
+                found = {fault.where.strip("[]"): str(fault) for fault in error.faults}
+            assert ("helical pairs have no" in found.get(path, "")) == refused, (wants, found)
+            if refused:
+                assert "must be" in found[path]
+                assert found[path].endswith("or give pair.helix_angle_deg = 0")
+        spur = put(put(raw, HELIX, 0.0), "wants", ["stiffness"])
+        with pytest.raises(InputError) if path == "film.model" else _nothing() as caught:
+            validated(spur)
+        assert "helical" not in str(caught.value if caught is not None else "")
+
+    def test_every_row_has_its_case(self):
+        for row in KEYS_OF_SPUR:
+            assert any(fnmatchcase(path, row.path) for path, _, _ in self.GIVEN), row.path
+
+    def test_contact_beyond_the_path_is_given_up_in_words(self):
+        assert "stiffness.contact_beyond_path" in faults(SCENE.replace("WANTS", '"stiffness"'))
+        said = SCENE.replace("WANTS", '"stiffness"') + "[stiffness]\ncontact_beyond_path = false\n"
+        assert list(faults(said)) == ["wants"]
+
+    def test_all_at_once_with_status_2_before_anything_is_computed(self, tmp_path):
+        text = SCENE.replace("WANTS", '"stiffness", "film", "sweep"').replace("= 600", "= -600")
+        text += '[stiffness]\nmodel = "weber-banaschek"\nmoving_contact = true\n'
+        (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+        for arguments in (("check", "scene.toml"), ("run", "scene.toml", "--out", "out")):
+            done = command(*arguments, cwd=tmp_path, status=2)
+            for said in (
+                'wants = "stiffness"', 'wants = "film"', 'wants = "sweep"', "operating.pinion_torque_Nm = -600",
+                "stiffness.model = 'weber-banaschek'", "stiffness.moving_contact = true",
+            ):  # fmt: skip
+                assert said in done.stderr
+            assert not (tmp_path / "out").exists()
+
+    @pytest.mark.parametrize(
+        "arguments",
+        [("verify", "scene.toml", "--out", "out"), ("export-table", "scene.toml"), ("export-traction", "scene.toml")],
+        ids=lambda arguments: arguments[0],
+    )
+    def test_commands_of_spur_pairs_say_so(self, tmp_path, arguments):
+        oil = "[lubricant]\nviscosity_Pa_s = 0.075\npressure_viscosity_per_GPa = 19.6\n"
+        (tmp_path / "scene.toml").write_text(SCENE.replace("WANTS", '"geometry"') + oil, encoding="utf-8")
+        done = command(*arguments, cwd=tmp_path, status=2)
+        assert "pair.helix_angle_deg = 20: must be 0 for" in done.stderr
+
+
+class _nothing:
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, *_: object) -> None:
+        return None
+
+
+@pytest.fixture(scope="module")
+def answered(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("helical")
+    return run_scene(scene(f'{ANSWERED}, "report"'), folder, use_cache=False)
+
+
+class TestAnswers:
+    def test_sizes_forces_and_lines_of_contact(self, answered):
+        by_hand = {
+            "pair_helix_angle": BETA,
+            "pair_base_helix_angle": BETA_B,
+            "pair_module": 2e-3,
+            "pair_transverse_module": M_T,
+            "pair_normal_pressure_angle": ALPHA_N,
+            "pair_transverse_pressure_angle": ALPHA_T,
+            "pair_contact_ratio": EPS_ALPHA,
+            "pair_overlap_ratio": EPS_BETA,
+            "pair_total_contact_ratio": EPS_ALPHA + EPS_BETA,
+            "contact_lines_mean": 40e-3 * EPS_ALPHA / math.cos(BETA_B),
+            "contact_lines_across": 40e-3 / math.cos(BETA_B),
+            "mesh_force_normal": 600 / R_B1 / math.cos(BETA_B),
+            "mesh_force_tangential": 600 / R_1,
+            "mesh_force_radial": 600 / R_1 * math.tan(ALPHA_T),
+            "mesh_force_axial": 600 / R_1 * math.tan(BETA),
+            "iso6336_2_Z_beta": 1 / math.sqrt(math.cos(BETA)),
+            "iso6336_3_Y_beta": 1 - 20 / 120,
+        }
+        data = answered.dataset
+        for name, value in by_hand.items():
+            assert float(data[name]) == pytest.approx(value, rel=1e-12), name
+            assert data[name].attrs.get("error_note"), name
+        assert data["pair_module"].attrs["long_name"] == "normal module"
+        moments = 600 / R_1 * math.tan(BETA) * np.array([R_1, R_2])  # V-0: working are reference circles
+        assert data["mesh_force_tilting_moment"].values == pytest.approx(moments, rel=1e-12)
+        # ISO's values of the table in physics, met to its digits
+        assert float(data["iso6336_1_c_gamma"]) == pytest.approx(18.485, abs=5e-4)
+        assert float(data["iso6336_1_c_gamma_beta"]) == pytest.approx(0.85 * 18.485, abs=5e-4)
+
+    def test_the_length_over_the_cycle_has_the_harmonics_by_quadrature(self, answered):
+        data = answered.dataset
+        n = np.arange(1, 6)
+        amplitudes = 2 * np.abs(np.sinc(n * EPS_ALPHA) * np.sinc(n * EPS_BETA))
+        assert data["contact_lines_harmonics"].values == pytest.approx(amplitudes, rel=1e-9)
+        length = data["contact_lines_length"].values[:-1]
+        waves = np.exp(-2j * math.pi * np.outer(n, data["contact_lines_position"].values[:-1]))
+        assert 2 * np.abs(waves @ length) / length.sum() == pytest.approx(amplitudes, abs=2e-5)
+        assert float(data["contact_lines_minimum"]) <= length.min() * (1 + 1e-12)
+        assert length.max() <= float(data["contact_lines_maximum"]) * (1 + 1e-12)
+
+    def test_drawn_lines_are_as_long_as_the_sum_and_of_the_hand(self, answered):
+        data = answered.dataset
+        travel, face = (data[f"contact_lines_shown_{name}"].values for name in ("travel", "face"))
+        at = data["contact_lines_shown_position"].values
+        for place in np.unique(at):
+            own = at == place
+            total = np.hypot(np.diff(travel[own]), np.diff(face[own])).sum()
+            there = np.interp(place, data["contact_lines_position"], data["contact_lines_length"])
+            assert total == pytest.approx(there, rel=1e-3)
+        # rho1 = rho1(0) - z tan(beta_b) on a right-handed pinion
+        assert np.diff(travel) / np.diff(face) == pytest.approx(-math.tan(BETA_B), rel=1e-9)
+        other = run_scene(scene('"geometry"', "= 20", "= -20"), None, use_cache=False).dataset
+        slope = np.diff(other["contact_lines_shown_travel"]) / np.diff(other["contact_lines_shown_face"])
+        assert slope == pytest.approx(math.tan(BETA_B), rel=1e-9)
+        assert float(other["mesh_force_axial"]) == pytest.approx(-float(data["mesh_force_axial"]), rel=1e-12)
+
+    def test_tables_and_page_follow(self, answered):
+        folder = answered.folder
+        assert folder is not None
+        with (folder / "csv" / "geometry.csv").open(encoding="utf-8", newline="") as file:
+            rows = {row["figure"].split(",")[0]: row for row in csv.DictReader(file)}
+        assert float(rows["overlap ratio"]["pair"]) == pytest.approx(EPS_BETA, rel=1e-12)
+        assert float(rows["axial force F_a on the pinion; above 0 along the axis about which it turns"]["pair"]) > 0
+        assert rows["tilting moment of the axial force"]["wheel"]
+        assert (folder / "csv" / "contact_lines.csv").exists()
+        page = (folder / "report.html").read_text(encoding="utf-8")
+        for said in (
+            "helix angle on the base cylinder", "total contact ratio", "The pinion is right-handed",
+            "flankfilm.figures.lines_of_contact", "Z_beta", "Y_beta", "c_gamma_beta", "axial force F_a",
+        ):  # fmt: skip
+            assert said in page, said
+
+    def test_study_outputs(self):
+        engine = Engine(scene(ANSWERED), Cache(None))
+        by_hand = {
+            "overlap_ratio": EPS_BETA,
+            "total_contact_ratio": EPS_ALPHA + EPS_BETA,
+            "base_helix_angle_deg": math.degrees(BETA_B),
+            "transverse_module_mm": 1e3 * M_T,
+            "transverse_pressure_angle_deg": math.degrees(ALPHA_T),
+            "axial_force_N": 600 / R_1 * math.tan(BETA),
+            "mean_contact_length_mm": 40 * EPS_ALPHA / math.cos(BETA_B),
+            "minimum_contact_length_mm": 63.9677,
+            "maximum_contact_length_mm": 67.4086,
+            "contact_length_harmonic_1": 2 * abs(np.sinc(EPS_ALPHA) * np.sinc(EPS_BETA)),
+            "contact_length_harmonic_5": 2 * abs(np.sinc(5 * EPS_ALPHA) * np.sinc(5 * EPS_BETA)),
+            "iso_helix_factor": 1 / math.sqrt(math.cos(BETA)),
+        }
+        for name, value in by_hand.items():
+            assert OUTPUTS[name].value(engine) == pytest.approx(value, rel=1e-6), name
+        assert OUTPUTS["iso_mesh_stiffness_N_per_mm_um"].value(engine) == pytest.approx(18.485, abs=1e-3)
+
+
+class TestSpur:
+    def test_a_helix_of_nothing_is_no_key_at_all(self):
+        spur = run_scene(scene('"geometry"', "= 20", "= 0"), None, use_cache=False).dataset
+        plain = run_scene(scene('"geometry"', "helix_angle_deg = 20\n", ""), None, use_cache=False).dataset
+        assert list(spur.variables) == list(plain.variables)
+        for name in plain.variables:
+            assert np.array_equal(spur[name].values, plain[name].values), name
+            assert spur[name].attrs == plain[name].attrs, name
+
+    def test_reports_of_spur_pairs_say_nothing_of_helices(self, tmp_path):
+        run_scene(scene('"geometry", "report"', "= 20", "= 0"), tmp_path, use_cache=False)
+        page = (tmp_path / "report.html").read_text(encoding="utf-8").split("Inputs")[0]
+        table = (tmp_path / "csv" / "geometry.csv").read_text(encoding="utf-8")
+        for word in ("overlap", "helix angle on", "lines of contact", "axial force", "transverse module"):
+            assert word not in table
+            assert word not in page
+        assert not (tmp_path / "csv" / "contact_lines.csv").exists()
+        pair = GearPair(Gear(36), Gear(40), 2e-3, 40e-3)
+        assert pair.overlap_ratio == 0.0
+        assert pair.transverse_module == pair.module
