@@ -194,7 +194,9 @@ class _StageReader:
                     self.notes.append(f"{gear} has no helix angle in the file: {hand}.")
             return pinion if pinion is not None else -wheel + 0.0 if wheel is not None else 0.0
         if abs(pinion + wheel) > SAME * max(abs(pinion), abs(wheel)):
-            allowed = f"must be {-pinion + 0.0:g} deg: an external pair has one helix angle, and opposite hands"
+            allowed = (
+                f"must be {-pinion + 0.0:g} deg: an external pair has one helix angle, and opposite hands"
+            )
             remedy = "Above 0 is right-handed; without signs the file says no hands"
             self._refuse(gears[1], rexs.HELIX_ANGLE, f"{wheel:g} deg", allowed, remedy)
         return pinion + 0.0

@@ -35,7 +35,9 @@ def lines_of_contact(results: xr.Dataset, *, style: Style | None = None) -> Figu
         rcParams that overrule the house's.
     """
     need(results, HELICAL, *(f"contact_lines_{name}" for name in NAMES), "pair_face_width")
-    position, length, mean = (read(results, f"contact_lines_{name}") for name in ("position", "length", "mean"))
+    position, length, mean = (
+        read(results, f"contact_lines_{name}") for name in ("position", "length", "mean")
+    )
     shown = np.unique(read(results, "contact_lines_shown_position").values)
     with sheet(style, 2, height=5.2, sharex=False, height_ratios=(3, 2)) as (drawn, panels):
         plane, cycle = panels

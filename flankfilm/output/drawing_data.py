@@ -124,8 +124,8 @@ def lines_of_contact(pair: GearPair) -> Iterator[Quantity]:
     yield figure_of("harmonic", "1", "order of the mesh", "harmonic", orders, no_error=EXACT)
     over_mean = "amplitude of the total length of the lines of contact over its mean"
     yield figure_of("harmonics", "1", over_mean, "harmonic", lines.harmonics(ORDERS), no_error=EXACT)
-    found = [(at, *ends) for at in SHOWN for ends in zip(*lines.segments(at), strict=True)]
-    at, travel, along = (np.array(part) for part in zip(*found, strict=True))
+    segments = [(at, *ends) for at in SHOWN for ends in zip(*lines.segments(at), strict=True)]
+    at, travel, along = (np.array(part) for part in zip(*segments, strict=True))
     hand = math.copysign(1.0, pair.helix_angle)  # a right-handed pinion touches nearer to A at larger z
     yield figure_of("shown_position", "1", "position of a line that is drawn", "line", at, no_error=EXACT)
     for name, meaning, values in (

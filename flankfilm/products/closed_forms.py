@@ -57,10 +57,10 @@ def CLOSED_FORMS(run: Engine) -> coupling.SinglePairs:
 def STANDARDS(run: Engine) -> coupling.Standards:
     """ISO 6336, which knows helical pairs."""
     with under_keys(run.scene.pair, "pair"):
-        found = coupling.standards(run[PAIR], pinion_torque(run.scene))
-    if found.root is None:
-        warnings.warn(f"ISO 6336-3 gives no result: {found.root_fault}", RangeWarning, stacklevel=2)
-    return found
+        iso = coupling.standards(run[PAIR], pinion_torque(run.scene))
+    if iso.root is None:
+        warnings.warn(f"ISO 6336-3 gives no result: {iso.root_fault}", RangeWarning, stacklevel=2)
+    return iso
 
 
 @stage(
@@ -91,13 +91,13 @@ def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
         yield STANDARDS if scene.pair is not None and scene.pair.helical else CLOSED_FORMS
 
 
-def _by_standards(found: coupling.Standards) -> Iterator[xr.Dataset]:
+def _by_standards(iso: coupling.Standards) -> Iterator[xr.Dataset]:
     """Stiffness, contact and root stress by ISO 6336."""
-    yield of_record("iso6336_1", found.stiffness, ("c_th", "c_prime", "c_gamma", "c_gamma_beta", "C_R", "C_B"))
-    yield of_record("iso6336_2", found.contact)
-    if found.root is not None:
-        yield of_record("iso6336_3", found.root)
-        yield of_list("iso6336_3", "gear", found.root.sections)
+    yield of_record("iso6336_1", iso.stiffness, ("c_th", "c_prime", "c_gamma", "c_gamma_beta", "C_R", "C_B"))
+    yield of_record("iso6336_2", iso.contact)
+    if iso.root is not None:
+        yield of_record("iso6336_3", iso.root)
+        yield of_list("iso6336_3", "gear", iso.root.sections)
 
 
 def _differences() -> Iterator[Named]:
@@ -133,9 +133,12 @@ def outputs() -> tuple[Named, ...]:
             "iso_mesh_stiffness",
             Figure("N/m", "mesh stiffness c_gamma_alpha by ISO 6336-1", shown=PER_FACE),
             "closed-forms",
-            lambda engine: gears.closed_form.iso6336(
-                engine[PAIR], abs(engine[PAIR].normal_force(pinion_torque(engine.scene)))
-            ).mesh_stiffness / engine[PAIR].face_width,
+            lambda engine: (
+                gears.closed_form.iso6336(
+                    engine[PAIR], abs(engine[PAIR].normal_force(pinion_torque(engine.scene)))
+                ).mesh_stiffness
+                / engine[PAIR].face_width
+            ),
         ),
         output_of(
             "iso_helix_factor",
@@ -159,7 +162,7 @@ PRODUCT = Product(
     ),
     solved={"single_pair": CLOSED_FORMS, "iso6336_2": CLOSED_FORMS, "iso6336_1": STANDARDS},
     headlines=when(STANDARDS, standards_parts.headlines),
-    sections=section_of(STANDARDS, lambda found, _: standards_parts.section(found)),
+    sections=section_of(STANDARDS, lambda iso, _: standards_parts.section(iso)),
     tables={"single_pair_stiffness": CurveTable("single_pair", "rho1", axis="path")},
     pictures=stiffness_parts.SINGLE_PAIRS,
     outputs=outputs,

@@ -74,7 +74,9 @@ def geometry(pair: GearPair, results: xr.Dataset) -> Part:
 def _length_harmonics(results: xr.Dataset) -> Table:
     """Harmonics of the total length of the lines of contact."""
     orders, amplitudes = (read(results, f"contact_lines_{name}") for name in ("harmonic", "harmonics"))
-    rows = zip(map(str, orders.values.tolist()), (number(a, 4) for a in amplitudes.values.tolist()), strict=True)
+    rows = zip(
+        map(str, orders.values.tolist()), (number(a, 4) for a in amplitudes.values.tolist()), strict=True
+    )
     return Table(("harmonic of the total length of the lines of contact", "over the mean"), tuple(rows))
 
 

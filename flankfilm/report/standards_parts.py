@@ -42,25 +42,28 @@ def root_table(iso: Iso6336RootStress) -> Table:
     return Table(("ISO 6336-3, lengths in modules", "pinion", "wheel"), cells)
 
 
-def section(found: Standards) -> Part:
+def section(iso: Standards) -> Part:
     """Stiffness, contact stress and root stress of a pair by ISO 6336."""
-    tables, notes = [iso_table(found.stiffness, along_face=True), contact_table(found.contact, None)], [said("standards")]
-    if found.root is None:
-        notes.append(f"ISO 6336-3 gives no result: {found.root_fault}")
+    tables, notes = (
+        [iso_table(iso.stiffness, along_face=True), contact_table(iso.contact, None)],
+        [said("standards")],
+    )
+    if iso.root is None:
+        notes.append(f"ISO 6336-3 gives no result: {iso.root_fault}")
     else:
-        tables.append(root_table(found.root))
+        tables.append(root_table(iso.root))
         notes.append(said("iso6336_3", where="at D for the pinion and at B for the wheel"))
     return Part("standards", "ISO 6336", tables=tuple(tables), notes=tuple(notes))
 
 
-def headlines(found: Standards) -> list[Headline]:
+def headlines(iso: Standards) -> list[Headline]:
     """Mesh stiffness and nominal stresses for the page's head."""
-    stiffness, contact = read_figure(found.stiffness, "c_gamma"), read_figure(found.contact, "stresses")
+    stiffness, contact = read_figure(iso.stiffness, "c_gamma"), read_figure(iso.contact, "stresses")
     shown = [
         Headline("c_gamma_alpha of ISO 6336-1", number(float(stiffness.values), 5), UNKNOWN, stiffness.unit),
         Headline("nominal contact stress of ISO 6336-2", number(contact.values[0], 5), UNKNOWN, contact.unit),
     ]
-    if found.root is not None:
+    if iso.root is not None:
         name = "nominal root stress of ISO 6336-3, pinion and wheel"
-        shown.append(Headline(name, of_both(found.root.stresses), UNKNOWN, "MPa"))
+        shown.append(Headline(name, of_both(iso.root.stresses), UNKNOWN, "MPa"))
     return shown

@@ -166,7 +166,11 @@ def iso_table(iso: Any, *, along_face: bool = False) -> Table:
         ("theoretical single stiffness c'th", number(iso.c_th, 5)),
         ("single stiffness c'", number(iso.c_prime, 5)),
         ("mesh stiffness c_gamma", number(iso.c_gamma, 5)),
-        *((("mesh stiffness along the face c_gamma_beta", number(iso.c_gamma_beta, 5)),) if along_face else ()),
+        *(
+            (("mesh stiffness along the face c_gamma_beta", number(iso.c_gamma_beta, 5)),)
+            if along_face
+            else ()
+        ),
     )
     return Table(("ISO 6336-1", "N/(mm µm)"), rows)
 

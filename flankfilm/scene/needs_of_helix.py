@@ -167,14 +167,20 @@ def faults_of_helix(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault]
         yield Fault("wants", value, allowed, f"Leave it out of wants, or give {HELIX} = 0")
     for path, value, row in _given(raw):
         if (row.always or wants_load(listed)) and row.refuses(value):
-            shown = "" if isinstance(value, Mapping) else shorten(value).lower() if isinstance(value, bool) else shorten(value)
             remedy = f"{row.remedy}, or give {HELIX} = 0"
-            yield Fault(named(path), shown, f"{row.allowed} {lacking} {row.missing}", remedy)
+            yield Fault(named(path), _shown(value), f"{row.allowed} {lacking} {row.missing}", remedy)
+
+
+def _shown(value: Any) -> str:
+    """Value as a file has it; nothing of a section."""
+    if isinstance(value, Mapping):
+        return ""
+    return str(value).lower() if isinstance(value, bool) else shorten(value)
 
 
 def wants_load(wants: Iterable[str]) -> bool:
     """Whether loaded teeth are wanted, beyond sizes and standards' formulas."""
-    return bool(set(wants) - UNLOADED - {"closed-forms"})
+    return bool(set(wants) & set(WANTS) - UNLOADED - {"closed-forms"})
 
 
 def _helix_angle(raw: Mapping[str, Any]) -> float:
@@ -191,9 +197,11 @@ def _given(raw: Mapping[str, Any]) -> Iterator[tuple[str, Any, SpurKey]]:
 
     values = {path: value for path, _, value in given_keys(raw, Scene)}
     for row in KEYS_OF_SPUR:
-        found = [path for path in values if path.count(".") == row.path.count(".") and fnmatchcase(path, row.path)]
-        yield from ((path, values[path], row) for path in found)
-        if not found and row.left_out is not None:
+        paths = [
+            path for path in values if path.count(".") == row.path.count(".") and fnmatchcase(path, row.path)
+        ]
+        yield from ((path, values[path], row) for path in paths)
+        if not paths and row.left_out is not None:
             yield row.path, row.left_out, row
 
 

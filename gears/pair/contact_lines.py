@@ -38,7 +38,9 @@ class ContactLines:
 
     contact_ratio: float = quantity("1", "transverse contact ratio eps_alpha")
     overlap_ratio: float = quantity("1", "overlap ratio eps_beta")
-    across: float = quantity("m", "length of a line of contact over the whole face, b / cos beta_b", shown="mm")
+    across: float = quantity(
+        "m", "length of a line of contact over the whole face, b / cos beta_b", shown="mm"
+    )
 
     no_error = EXACT
 

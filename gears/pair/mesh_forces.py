@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from base import Faults, Limit, quantity, record
@@ -40,8 +39,8 @@ class MeshForces:
 def mesh_forces(pair: PairGeometry, torque: float) -> MeshForces:
     """Forces of the mesh of a pair by a torque on its pinion.
 
-    F_bn = T/(r_b1 cos beta_b), F_t = T/r_1, F_r = F_t tan alpha_t, F_a = F_t tan beta, and the moment F_a r_w that tilts
-    either gear about the axis across both shafts, in the same sense.
+    F_bn = T/(r_b1 cos beta_b), F_t = T/r_1, F_r = F_t tan alpha_t, F_a = F_t tan beta, and the moment F_a r_w that
+    tilts either gear about the axis across both shafts, in the same sense.
 
     Parameters
     ----------
@@ -65,6 +64,7 @@ def mesh_forces(pair: PairGeometry, torque: float) -> MeshForces:
 
     Examples
     --------
+    >>> import math
     >>> from gears import Gear, GearPair
     >>> pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3, helix_angle=math.radians(20.0))
     >>> mesh_forces(pair, 600.0)

@@ -86,7 +86,9 @@ PUBLISHED = {
 
 def stage(teeth, module, beta, shifts, width, distance, signs=(1, -1)):
     """A file of version 1.1 with the numbers of a published stage."""
-    text = OLD.replace(">17<", f">{teeth[0]}<").replace(">22<", f">{teeth[1]}<").replace(">4.0<", f">{module}<")
+    text = (
+        OLD.replace(">17<", f">{teeth[0]}<").replace(">22<", f">{teeth[1]}<").replace(">4.0<", f">{module}<")
+    )
     text = text.replace(">0.0</attribute>\n      <attribute id=\"normal_module", f">{signs[0] * beta}</attribute>\n"
                         "      <attribute id=\"normal_module")  # fmt: skip
     text = text.replace('unit="°">-0.0<', f'unit="°">{signs[1] * beta}<').replace(">50.0<", f">{width}<")
@@ -142,7 +144,9 @@ def test_angles_that_differ_are_refused(tmp_path):
 
 def test_a_mate_without_an_angle_has_the_other_hand(tmp_path):
     for sign in (21.0, -21.0):
-        text = HELICAL.replace(f'<attribute id="helix_angle_reference_diameter" unit="°">{sign}</attribute>', "")
+        text = HELICAL.replace(
+            f'<attribute id="helix_angle_reference_diameter" unit="°">{sign}</attribute>', ""
+        )
         found = brought(tmp_path, text)
         assert math.degrees(gear_pair(parse_scene(found.text)).helix_angle) == pytest.approx(21.0)
         assert any("of the other hand" in note for note in found.notes)

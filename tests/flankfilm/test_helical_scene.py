@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from contextlib import nullcontext
 from fnmatch import fnmatchcase
 
 import numpy as np
@@ -92,7 +93,13 @@ class TestKey:
 
     @pytest.mark.parametrize(
         ("value", "said"),
-        [("45.1", "-45 and at most 45 deg"), ("-50", "-45"), ("nan", "finite"), ("true", "number"), ('"20"', "number")],
+        [
+            ("45.1", "-45 and at most 45 deg"),
+            ("-50", "-45"),
+            ("nan", "finite"),
+            ("true", "number"),
+            ('"20"', "number"),
+        ],
     )
     def test_what_is_no_angle_is_refused_by_its_key(self, value, said):
         text = SCENE.replace("WANTS", '"geometry"').replace("deg = 20", f"deg = {value}")
@@ -124,7 +131,9 @@ class TestKey:
         heat = "[heat]\nhousing_expansion_per_K = 12e-6\n" + "".join(
             f"{part}_temperature_C = 120\n" for part in ("pinion", "wheel", "housing")
         )
-        text = SCENE.replace("WANTS", '"geometry"').replace("face_width_mm", "backlash_um = 50\nface_width_mm")
+        text = SCENE.replace("WANTS", '"geometry"').replace(
+            "face_width_mm", "backlash_um = 50\nface_width_mm"
+        )
         text = text.replace("poisson_ratio", "thermal_expansion_per_K = 12e-6\npoisson_ratio")
         warm = warm_pair(parse_scene(text + heat))
         grown = 1.0 + 100.0 * 12e-6
@@ -190,7 +199,9 @@ class TestTable:
     @pytest.mark.parametrize(("path", "value", "always"), GIVEN)
     def test_each_key_is_refused_beside_loaded_teeth(self, path, value, always):
         for wants, refused in ((["stiffness"], True), (["geometry", "closed-forms"], always)):
-            raw = put(parse_toml(SCENE.replace("WANTS", '"geometry"'), "scene"), path, value) | {"wants": wants}
+            raw = put(parse_toml(SCENE.replace("WANTS", '"geometry"'), "scene"), path, value) | {
+                "wants": wants
+            }
             if path.endswith("end_relief_um"):
                 raw = put(raw, "pair.pinion.end_relief_length_mm", 5.0)
             try:
@@ -203,7 +214,7 @@ class TestTable:
                 assert "must be" in found[path]
                 assert found[path].endswith("or give pair.helix_angle_deg = 0")
         spur = put(put(raw, HELIX, 0.0), "wants", ["stiffness"])
-        with pytest.raises(InputError) if path == "film.model" else _nothing() as caught:
+        with pytest.raises(InputError) if path == "film.model" else nullcontext() as caught:
             validated(spur)
         assert "helical" not in str(caught.value if caught is not None else "")
 
@@ -231,7 +242,11 @@ class TestTable:
 
     @pytest.mark.parametrize(
         "arguments",
-        [("verify", "scene.toml", "--out", "out"), ("export-table", "scene.toml"), ("export-traction", "scene.toml")],
+        [
+            ("verify", "scene.toml", "--out", "out"),
+            ("export-table", "scene.toml"),
+            ("export-traction", "scene.toml"),
+        ],
         ids=lambda arguments: arguments[0],
     )
     def test_commands_of_spur_pairs_say_so(self, tmp_path, arguments):
@@ -239,14 +254,6 @@ class TestTable:
         (tmp_path / "scene.toml").write_text(SCENE.replace("WANTS", '"geometry"') + oil, encoding="utf-8")
         done = command(*arguments, cwd=tmp_path, status=2)
         assert "pair.helix_angle_deg = 20: must be 0 for" in done.stderr
-
-
-class _nothing:
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(self, *_: object) -> None:
-        return None
 
 
 @pytest.fixture(scope="module")
@@ -320,7 +327,10 @@ class TestAnswers:
         with (folder / "csv" / "geometry.csv").open(encoding="utf-8", newline="") as file:
             rows = {row["figure"].split(",")[0]: row for row in csv.DictReader(file)}
         assert float(rows["overlap ratio"]["pair"]) == pytest.approx(EPS_BETA, rel=1e-12)
-        assert float(rows["axial force F_a on the pinion; above 0 along the axis about which it turns"]["pair"]) > 0
+        assert (
+            float(rows["axial force F_a on the pinion; above 0 along the axis about which it turns"]["pair"])
+            > 0
+        )
         assert rows["tilting moment of the axial force"]["wheel"]
         assert (folder / "csv" / "contact_lines.csv").exists()
         page = (folder / "report.html").read_text(encoding="utf-8")

@@ -42,7 +42,9 @@ def test_halves_of_a_double_helical_pair_push_against_each_other():
     halves = [mesh_forces(pair(angle), 120.0) for angle in (0.5, -0.5)]
     assert sum(half.axial for half in halves) == 0.0
     assert sum(half.tilting_moment[0] for half in halves) == 0.0
-    assert sum(half.tangential for half in halves) == pytest.approx(240.0 / pair(0.5).reference_radii[0], rel=1e-12)
+    assert sum(half.tangential for half in halves) == pytest.approx(
+        240.0 / pair(0.5).reference_radii[0], rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("torque", [math.nan, math.inf, 1e10, "600"])
