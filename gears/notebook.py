@@ -58,6 +58,9 @@ def pair_html(pair: GearPair) -> str:
         ("normal backlash", f"{1e6 * pair.backlash + 0.0:.1f} µm"),
     ]
     data = table(("", "", "pinion", "wheel"), gear_rows) + table((), common)
+    if pair.helix_angle:
+        common.insert(1, ("helix angle", f"{math.degrees(pair.helix_angle):.6g} deg"))
+        common.append(("overlap ratio", f"{pair.overlap_ratio:.4f}"))
     return f'<div style="display: flex; gap: 1em; flex-wrap: wrap"><div>{data}</div>{_drawing(pair)}</div>'
 
 

