@@ -15,7 +15,7 @@ from flankfilm.building.pair import gear_pair, warm_pair
 from flankfilm.files.cache import Cache
 from flankfilm.runs.check import check_scene
 from flankfilm.runs.run_scene import run_scene
-from flankfilm.scene import parse_scene, template
+from flankfilm.scene import parse_scene, read_scene, template
 from flankfilm.scene.needs_of_helix import HELIX, KEYS_OF_SPUR, WANTS_OF_SPUR
 from flankfilm.scene.reader import parse_toml, validated
 from flankfilm.scene.schema import Scene
@@ -24,7 +24,8 @@ from flankfilm.scene.wants import WANTS
 from flankfilm.stages.engine import Engine
 from flankfilm.studies.outputs import OUTPUTS
 from gears import Gear, GearPair
-from tests.flankfilm.program import command
+from tests.flankfilm.explained import unexplained
+from tests.flankfilm.program import EXAMPLES, command
 from tests.flankfilm.test_traits import put
 
 SCENE = """
@@ -350,6 +351,15 @@ class TestAnswers:
             "face 40 mm, helix angle 20°",
         ):  # fmt: skip
             assert said in page, said
+
+    def test_every_figure_is_explained(self, answered):
+        assert not unexplained(answered.dataset)
+
+    def test_the_example_runs(self):
+        found = run_scene(read_scene(EXAMPLES / "helical.toml"), None, use_cache=False)
+        assert not found.failures
+        assert float(found.dataset["pair_backlash"]) == pytest.approx(50e-6, rel=1e-9)
+        assert float(found.dataset["iso6336_1_c_gamma"]) == pytest.approx(18.485, abs=5e-4)
 
     def test_check_says_hand_overlap_and_lengths(self):
         lines = check_scene(scene(old="= 20", new="= -20"))

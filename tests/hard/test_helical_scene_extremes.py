@@ -78,6 +78,15 @@ def test_any_overlap_is_drawn(overlap):
     plt.close(drawn)
 
 
+def test_rounding_of_a_level_length_is_not_drawn():
+    found = answered(20.0, 1e3 * 2.0 * math.pi * 2e-3 / math.sin(math.radians(20.0)))
+    wave = np.sin(np.arange(found["contact_lines_length"].size))
+    rounded = found.assign(contact_lines_length=found["contact_lines_length"] * (1.0 + 1e-12 * wave))
+    drawn = figures.lines_of_contact(rounded)
+    assert np.ptp(drawn.axes[1].get_ylim()) > 0.05e3 * float(found["contact_lines_mean"])
+    plt.close(drawn)
+
+
 def test_a_double_helical_pair_is_two_halves():
     right, left = answered(30.0, 20.0, 300.0), answered(-30.0, 20.0, 300.0)
     assert float(right["mesh_force_axial"]) + float(left["mesh_force_axial"]) == 0.0
