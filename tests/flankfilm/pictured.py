@@ -110,6 +110,17 @@ model = "dowson"
 """
 """Friction, losses and temperatures."""
 
+HELICAL = """
+wants = ["geometry"]
+[pair]
+module_mm = 2.0
+face_width_mm = 40.0
+helix_angle_deg = 20
+pinion = { teeth = 36 }
+wheel = { teeth = 40 }
+"""
+"""Lines of contact."""
+
 
 @cache
 def run(text: str) -> Results:
@@ -186,6 +197,11 @@ def of_run(made: Callable[[], Results], stage: str) -> Callable[[], Any]:
 def face() -> Results:
     """Run a crowned pair that is out of line."""
     return run(FACE)
+
+
+def helical() -> Results:
+    """Sizes of a helical pair."""
+    return run(HELICAL)
 
 
 def losses() -> Results:

@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 from base import InputError
+from flankfilm import figures
 from flankfilm.building.pair import gear_pair, warm_pair
+from flankfilm.figures.style import narrow
 from flankfilm.files.cache import Cache
 from flankfilm.runs.check import check_scene
 from flankfilm.runs.run_scene import run_scene
@@ -25,6 +27,7 @@ from flankfilm.stages.engine import Engine
 from flankfilm.studies.outputs import OUTPUTS
 from gears import Gear, GearPair
 from tests.flankfilm.explained import unexplained
+from tests.flankfilm.pictured import faults_of
 from tests.flankfilm.program import EXAMPLES, command
 from tests.flankfilm.test_traits import put
 
@@ -351,6 +354,14 @@ class TestAnswers:
             "face 40 mm, helix angle 20°",
         ):  # fmt: skip
             assert said in page, said
+
+    def test_the_picture_keeps_to_what_pictures_keep_to(self, answered):
+        assert faults_of(figures.lines_of_contact(answered.dataset)) == []
+        with narrow():
+            assert faults_of(figures.lines_of_contact(answered.dataset)) == []
+        other = run_scene(scene('"geometry"', "= 20", "= 0"), None, use_cache=False).dataset
+        with pytest.raises(ValueError, match="run a scene whose pair has a helix angle"):
+            figures.lines_of_contact(other)
 
     def test_every_figure_is_explained(self, answered):
         assert not unexplained(answered.dataset)
