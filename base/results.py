@@ -28,6 +28,9 @@ EXACT = "exact: it follows from what is given"
 ITSELF = "it is an error, or the measure of one, itself"
 """Why a figure has no error: it says what others err by."""
 
+BY_RECORD = "not known beforehand: it depends on how the figure was computed, and the record says so"
+"""Why figures of a class have no error, where each record says it by itself."""
+
 WORST = 0.2
 """Relative error from which a solver has not converged; below it figures are kept, with their error."""
 
@@ -312,7 +315,8 @@ def why_no_error(record: object, name: str) -> str:
         return known[name].no_error
     if name == "error" or any(figure.error == name for figure in known.values()):
         return ITSELF
-    return str(getattr(record, "no_error", ""))
+    said = getattr(record, "no_error", "")
+    return said if isinstance(said, str) else BY_RECORD
 
 
 def headline(result: object) -> str:

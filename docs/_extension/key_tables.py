@@ -129,9 +129,18 @@ class Outputs(_Parsed):
 
     def lines(self) -> list[str]:
         """Lines of the table."""
-        outputs = import_module("flankfilm.studies.outputs").OUTPUTS
-        body = [(f"`{name}`", o.unit, o.meaning, ", ".join(o.wants)) for name, o in outputs.items()]
-        return _table(("output", "unit", "meaning", "wants"), body)
+        studied = import_module("flankfilm.studies.outputs")
+        body = [
+            (f"`{name}`", o.unit, o.meaning, ", ".join(o.wants), _error(studied, name))
+            for name, o in studied.OUTPUTS.items()
+        ]
+        return _table(("output", "unit", "meaning", "wants", "error"), body)
+
+
+def _error(studied: Any, name: str) -> str:
+    """Name of the output that holds the error of another, or why it has none."""
+    held = studied.ERROR_OF.get(name)
+    return f"`{held}`" if held else str(studied.error_said(name))
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

@@ -16,7 +16,16 @@ import math
 
 from base import Limit
 
-__all__ = ["BOUNDARY", "BOUNDARY_FRICTION", "MEASURED", "NUMBERS", "REGIMES", "regime", "regime_number"]
+__all__ = [
+    "BOUNDARY",
+    "BOUNDARY_FRICTION",
+    "CLASS",
+    "MEASURED",
+    "NUMBERS",
+    "REGIMES",
+    "regime",
+    "regime_number",
+]
 
 REGIMES = ("boundary", "mixed", "full film")
 """Below a film ratio of 1, below 3, and from there on."""
@@ -25,6 +34,9 @@ BOUNDS = (1.0, 3.0)
 
 NUMBERS = "1 boundary, 2 mixed, 3 full film"
 """What numbers of regimes mean."""
+
+CLASS = "a class, exact but at its bounds: it follows from the film ratio, which has an error"
+"""Why the number of a regime has no error."""
 
 MEASURED = (
     "Measurements show no step at 1 or 3: rough surfaces raised the friction of a mineral and of PAO gear oils at film "

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from base import Array, described, part, quantity, record
+from base import Array, Booleans, described, part, quantity, record
 from base.results import EXACT
 from fem.contact.face_errors import face_load_factors
 from fem.cycle.face_cells import IN_SINGLE_CELLS, FaceCells
@@ -138,10 +138,36 @@ class FaceLoads(FaceCells):
         radius = self.curvature_radius[..., None]
         return np.asarray(peak_pressure(self.line_load, radius, reduced_modulus(self.pair, self.plane)))
 
-    @described("1")
+    @described("Pa", shown="MPa", error="greatest_hertz_pressure_error")
+    def greatest_hertz_pressure(self) -> float:
+        """Maximum Hertz pressure of all positions, pairs and cells; tip edges left out."""
+        return float(np.nanmax(self.hertz_pressure))
+
+    @property
+    def greatest_hertz_pressure_error(self) -> float:
+        """Relative error of the maximum Hertz pressure: half that of the line load, of which it is the root."""
+        return 0.5 * self.line_load_error
+
+    @described("1", error="contact_pattern_error")
     def contact_pattern(self) -> float:
         """Part of the face that is touched at some position of the cycle."""
-        return float(np.mean(np.any(self.line_load > 0.0, axis=(0, 1))))
+        return float(np.mean(self._touched))
+
+    @property
+    def contact_pattern_error(self) -> float:
+        """Relative error of the contact pattern: a cell wherever flanks begin, or cease, to touch along the face."""
+        touched, load = self._touched, self.line_load
+        ends = [
+            touched[end] and np.max(3.0 * load[..., end] - load[..., beside]) <= 0.0
+            for end, beside in ((0, 1), (-1, -2))
+        ]
+        edges = np.count_nonzero(np.diff(touched)) + sum(ends)
+        return float(edges / touched.sum()) if touched.any() else 0.0
+
+    @property
+    def _touched(self) -> Booleans:
+        """Cells that are touched at some position (cells,)."""
+        return np.asarray(np.any(self.line_load > 0.0, axis=(0, 1)))
 
 
 def face_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str) -> FaceLoads | None:

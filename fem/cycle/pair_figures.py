@@ -138,7 +138,10 @@ class PairFigures:
         slip = np.abs(self.sliding(speed))
         return np.asarray(np.sum(self.friction * self.forces * slip, axis=1, where=np.isfinite(slip)))
 
-    @described("1")
+    @described(
+        "1",
+        no_error="not estimated: by forces in single positions, in which their error is not known; 1 without friction",
+    )
     def efficiency(self) -> float:
         """Power put in less the mean power lost by sliding, over the power put in; 1 without friction."""
         return float(1.0 - np.mean(self.friction_loss(1.0)) / abs(self.torque))

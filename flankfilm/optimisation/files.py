@@ -20,10 +20,10 @@ from flankfilm.optimisation.words import claims
 from flankfilm.outcome.outcome import Outcome, Picture, concluded
 from flankfilm.output.files import provenance, write_csv, write_text
 from flankfilm.scene.toml import toml_lines
+from flankfilm.studies.columns import write_columns
 from flankfilm.studies.execution import Execution, Progress
 from flankfilm.studies.files import listed, of_rows
 from flankfilm.studies.kept import kept_rows
-from flankfilm.studies.outputs import ERROR_OF
 from flankfilm.studies.table import ROWS
 
 if TYPE_CHECKING:
@@ -41,6 +41,10 @@ def phases(optimum: Optimum) -> tuple[float, float, float] | None:
         return None
     whole = fine.mean() * (coarse.size + fine.size)
     return float(coarse.mean()), float(fine.mean()), float(1.0 - (coarse.sum() + fine.sum()) / whole)
+
+
+FLAG = "exact for the outputs as computed: by them and their errors"
+"""Why what is claimed of a point has no error."""
 
 
 def dataset(optimum: Optimum) -> xr.Dataset:
@@ -64,11 +68,6 @@ def dataset(optimum: Optimum) -> xr.Dataset:
     }
     values, results = [point.values for point in points], [point.result for point in points]
     data = of_rows("point", task.keys, values, task.outputs, results)
-    for name in task.objectives:
-        if (error := ERROR_OF.get(name)) is not None:
-            data[name].attrs["error_variable"] = error
-        else:
-            data[name].attrs["error"] = optimum.error_of(name, results[optimum.best[0]])
     flags = {
         "best": (np.isin(places, optimum.best), "1 for the optimum, or for the front"),
         "fine": (fine, "1 at the scene's own tolerance"),
@@ -81,7 +80,11 @@ def dataset(optimum: Optimum) -> xr.Dataset:
     return (
         data.assign(
             {
-                name: ("point", np.asarray(flag, dtype=np.int8), {"units": "1", "long_name": meaning})
+                name: (
+                    "point",
+                    np.asarray(flag, dtype=np.int8),
+                    {"units": "1", "long_name": meaning, "error_note": FLAG},
+                )
                 for name, (flag, meaning) in flags.items()
             }
         )
@@ -102,10 +105,17 @@ def _start(optimum: Optimum, data: xr.Dataset) -> dict[str, tuple[tuple[()], flo
             {
                 "units": data[name].attrs["units"],
                 "long_name": f"{data[name].attrs['long_name']}: scene as it stands",
+                **_error_of_start(data[name].attrs),
             },
         )
         for name, value in zip(names, (*optimum.start.values, *optimum.start.result.values), strict=True)
     }
+
+
+def _error_of_start(about: dict[str, str]) -> dict[str, str]:
+    """What a figure of the scene as it stands says of its error: as the points do."""
+    held = about.get("error_variable")
+    return {"error_variable": f"start_{held}"} if held else {"error_note": about["error_note"]}
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +167,7 @@ class OptimumOutcome(Outcome[Optimum]):
         write_csv(table, dict(zip((*task.keys, *task.outputs), rows, strict=True)))
         raw = task.raw_scene(chosen[0].values, task.tolerances[1])
         write_text(scene, "\n".join(toml_lines(raw)) + "\n")
-        return [folder / ROWS, table, scene]
+        return [folder / ROWS, write_columns(folder, task.keys, task.outputs), table, scene]
 
     @property
     def pictures(self) -> dict[str, Picture]:

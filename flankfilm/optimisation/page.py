@@ -12,8 +12,8 @@ from flankfilm.optimisation.words import gained, tied
 from flankfilm.report.page import Fact, Head, Headline, Part, picture, said, write_page
 from flankfilm.report.run_parts import inputs_of, work_of
 from flankfilm.report.text import counted, number, percent, plus_minus
-from flankfilm.studies.outputs import ERROR_OF, exact
-from flankfilm.studies.page import MOST_ROWS, cell, rows_table
+from flankfilm.studies.outputs import ERROR_OF, OUTPUTS, exact
+from flankfilm.studies.page import MOST_ROWS, cell, error_noted, rows_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -87,8 +87,8 @@ def _best_cards(optimum: Optimum, data: xr.Dataset) -> list[Headline]:
             continue
         note = []
         if name in task.objectives:
-            error = plus_minus(optimum.error_of(name, first.result))
-            note.append("exact" if exact(name) else error)
+            own = plus_minus(optimum.error_of(name, first.result)) if name in ERROR_OF else ""
+            note.append(own or ("exact" if exact(name) else error_noted(OUTPUTS[name].no_error)))
         else:
             note.append(f"limit: {_bounds(task, name)}")
         if (gain := gains.get(name)) is not None and len(optimum.best) == 1:

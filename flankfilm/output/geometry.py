@@ -42,12 +42,15 @@ class Row:
         What it is, and the unit that people read.
     values : tuple of float
         One of the pair, or those of pinion and wheel.
+    error : str
+        What the figure errs by, relative, or why it has no error.
     """
 
     name: str
     meaning: str
     unit: str
     values: tuple[float, ...]
+    error: str
 
 
 def pair_figures(prefix: str, pair: GearPair) -> xr.Dataset:
@@ -78,11 +81,12 @@ def geometry_rows(data: xr.Dataset) -> Iterator[Row]:
                 values = np.atleast_1d(
                     about.values / factor(unit) if about.attrs["units"] != unit else about.values
                 )
-                yield Row(name, str(about.attrs["long_name"]), unit, tuple(values.tolist()))
+                error = str(about.attrs.get("error", about.attrs.get("error_note", "")))
+                yield Row(name, str(about.attrs["long_name"]), unit, tuple(values.tolist()), error)
 
 
 def geometry_columns(data: xr.Dataset) -> dict[str, NDArray[np.object_]]:
-    """Columns of ``csv/geometry.csv``: figure, unit, and its value of the pair or of pinion and wheel."""
+    """Columns of ``csv/geometry.csv``: figure, unit, its value of the pair or of pinion and wheel, and its error."""
     rows = list(geometry_rows(data))
     of_pair = [row.values[0] if len(row.values) == 1 else "" for row in rows]
     pinion, wheel = ([row.values[i] if len(row.values) == 2 else "" for row in rows] for i in (0, 1))
@@ -92,6 +96,7 @@ def geometry_columns(data: xr.Dataset) -> dict[str, NDArray[np.object_]]:
         "pair": of_pair,
         "pinion": pinion,
         "wheel": wheel,
+        "error": [row.error for row in rows],
     }
     # of objects: cells that a figure does not have stay empty beside numbers
     return {name: np.array(cells, dtype=np.object_) for name, cells in columns.items()}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -40,27 +40,63 @@ def columns(
         Called ``<figure>_<unit>``, and by the entry where several stand beside each other.
     """
     held = data.variables  # data[name] would look through all variables for the coordinates of one
+    heads = list(_heads(data, prefix, names, axis))
+    rows = {
+        dim: data.sizes[dim]
+        for _, name, _ in heads
+        for dim in map(str, held[name].dims)
+        if not _aside(dim, prefix)
+    }
+    return {
+        head: _shown(data, name, held[name].isel(picked).set_dims(rows).values.ravel())
+        for head, name, picked in heads
+    }
+
+
+def _heads(
+    data: xr.Dataset, prefix: str, names: Sequence[str], axis: str
+) -> Iterator[tuple[str, str, dict[str, int]]]:
+    """Name of every column, its variable, and the entry that it is of those that stand beside each other."""
+    held = data.variables
     wanted = [joined(prefix, name) for name in names if joined(prefix, name) in held]
     if axis:
         wanted = [n for n in map(str, held) if held[n].dims[:1] == (joined(prefix, axis),)]
     older = [n for n in map(str, held) if held[n].attrs.get("alias_of") in wanted]
-    wanted = [*(n for n in wanted if n not in older), *older]
-    rows = {
-        dim: data.sizes[dim]
-        for name in wanted
-        for dim in map(str, held[name].dims)
-        if not _aside(dim, prefix)
-    }
-    cells = {}
-    for name in wanted:
-        variable = held[name]
-        aside = [str(dim) for dim in variable.dims if _aside(str(dim), prefix)]
+    for name in [*(n for n in wanted if n not in older), *older]:
+        aside = [str(dim) for dim in held[name].dims if _aside(str(dim), prefix)]
         head = spelt(name.removeprefix(f"{prefix}_"), read_in(data, name))
         for places in product(*(range(data.sizes[dim]) for dim in aside)):
             picked = dict(zip(aside, places, strict=True))
             label = "".join(f"_{_entry(data, dim, place, prefix)}" for dim, place in picked.items())
-            cells[head + label] = _shown(data, name, variable.isel(picked).set_dims(rows).values.ravel())
-    return cells
+            yield head + label, name, picked
+
+
+def column_errors(
+    data: xr.Dataset, table: str, prefix: str, names: Sequence[str] = (), axis: str = ""
+) -> list[dict[str, object]]:
+    """Rows of ``csv/columns.csv`` about a table: what each column is, and what it errs by or why that is not known.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+    table : str
+        Name of the file.
+    prefix, names, axis
+        As of `columns`.
+    """
+    held = data.variables
+    return [
+        {
+            "table": table,
+            "column": head,
+            "figure": held[name].attrs["long_name"],
+            "unit": read_in(data, name),
+            "relative_error": held[name].attrs.get("error", ""),
+            "error_variable": held[name].attrs.get("error_variable", ""),
+            "error_note": held[name].attrs.get("error_note", ""),
+        }
+        for head, name, _ in _heads(data, prefix, names, axis)
+    ]
 
 
 def uncertainties(data: xr.Dataset) -> dict[str, NDArray[np.object_]]:

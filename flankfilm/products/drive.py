@@ -7,6 +7,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from base import Figure, InputError
+from base.results import ITSELF
 from flankfilm import coupling
 from flankfilm.coupling.vibration.part_loads import PARTS
 from flankfilm.output import drives
@@ -99,13 +100,14 @@ def outputs() -> tuple[Named, ...]:
             Figure(
                 "1",
                 "estimated relative error of that force by search, samples and the band of the shafts' damping",
+                no_error=ITSELF,
             ),
             "sweep",
             in_result(DRIVE_SWEEP, attrgetter("greatest_bearing_error")),
         ),
         output_of(
             "greatest_shaft_torque_error",
-            Figure("1", "estimated relative error of that torque, likewise"),
+            Figure("1", "estimated relative error of that torque, likewise", no_error=ITSELF),
             "sweep",
             in_result(DRIVE_SWEEP, attrgetter("greatest_shaft_error")),
         ),
@@ -128,6 +130,7 @@ def outputs() -> tuple[Named, ...]:
                 "1",
                 "estimated relative error of forces and torques of a drive train, by samples and the series' order; "
                 "nan for a given series",
+                no_error=ITSELF,
             ),
             "sweep",
             in_result(DRIVE_SWEEP, attrgetter("carried_error")),

@@ -16,7 +16,16 @@ from flankfilm.coupling.mesh.face_models import LABELS
 from flankfilm.figures.reading import GEARS
 from flankfilm.output.uncertainty import uncertainty
 from flankfilm.output.variables import of_record
-from flankfilm.products.output import Held, Named, Take, holds_error, model_error_of, output_of
+from flankfilm.products.output import (
+    Held,
+    Named,
+    Of,
+    Take,
+    figure_of_kind,
+    holds_error,
+    model_error_of,
+    output_of,
+)
 from flankfilm.products.product import CurveTable, Product, ranked
 from flankfilm.report import face_parts
 from flankfilm.report.page import Headline, Part
@@ -24,6 +33,7 @@ from flankfilm.scene import Scene
 from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine, Stage, stage
 from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, PAIR, TEETH, loaded_teeth
+from gears.closed_form.record import STANDARD
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -97,22 +107,22 @@ def _of_face(name: str, figure: str, take: Take = float, said: str = EVEN, **hel
         return None if face is None else uncertainty(face, figure).numerical
 
     known = take is float and holds_error(fem.FaceLoads, figure)
-    about = figures(fem.FaceLoads)[figure]
+    about = figure_of_kind(fem.FaceLoads, figure)
     return output_of(name, about, "stiffness", value, said, error if known else None, **held)
 
 
-def _by_model(name: str, about: Figure, value: Take) -> Named:
+def _by_model(name: str, about: Figure, value: Take, error: Take | None = None) -> Named:
     """Figure of the comparison with other models."""
 
-    def of(engine: Engine) -> Any:
-        return value(engine[FACE_MODELS]) if varies_by(engine.scene) else None
+    def of(take: Take) -> Of:
+        return lambda engine: take(engine[FACE_MODELS]) if varies_by(engine.scene) else None
 
-    return output_of(name, about, "stiffness", of)
+    return output_of(name, about, "stiffness", of(value), error=None if error is None else of(error))
 
 
-def _factor_of(model: str) -> Take:
-    """Factor at the pitch point by a model."""
-    return lambda models: dict(zip(models.model, models.pitch_point_factor, strict=True))[model]
+def _of_model(model: str, figure: str = "pitch_point_factor") -> Take:
+    """Figure by a model, the factor at the pitch point unless another one is asked for."""
+    return lambda models: dict(zip(models.model, getattr(models, figure), strict=True))[model]
 
 
 def _over_tolerance(name: str, about: Figure, figure: str, **held: Unpack[Held]) -> Named:
@@ -169,9 +179,8 @@ def outputs() -> tuple[Named, ...]:
         ),
         _of_face(
             "face_pressure",
-            "hertz_pressure",
-            np.nanmax,
-            "maximum Hertz pressure; nan where even",
+            "greatest_hertz_pressure",
+            said="maximum Hertz pressure; nan where even",
         ),
         _of_face("contact_pattern", "contact_pattern"),
         _of_face("face_load_factor_error", "error"),
@@ -198,15 +207,17 @@ def outputs() -> tuple[Named, ...]:
             "face_load_factor_at_C",
             Figure("1", f"{at_c}, nan where even"),
             lambda face_models: face_models.pitch_point_factor[0],
+            lambda face_models: face_models.face_load_factor_error[0],
         ),
         _by_model(
             "slices_face_load_factor",
             Figure("1", f"{at_c} by independent slices, nan where even"),
-            _factor_of(LABELS["slices"]),
+            _of_model(LABELS["slices"]),
+            _of_model(LABELS["slices"], "face_load_factor_error"),
         ),
         _by_model(
             "iso_face_load_factor",
-            Figure("1", "face-load factor by ISO 6336-1, method C, nan where even"),
+            Figure("1", "face-load factor by ISO 6336-1, method C, nan where even", no_error=STANDARD),
             lambda face_models: face_models.pitch_point_factor[-1],
         ),
         *_of_shafts(),

@@ -11,7 +11,7 @@ import numpy as np
 
 from base import Figure, Quantity
 from base.results import figures, why_no_error
-from ehl.discrete.regimes import NUMBERS, regime_number
+from ehl.discrete.regimes import CLASS, NUMBERS, regime_number
 from flankfilm import coupling
 from flankfilm.output.variables import figure_of, of_models, of_quantities, of_record
 from flankfilm.products.output import Named, Of, Take, in_result, output_of, outputs_from
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
 THROUGH = ("x", "pressure", "thickness", "central_thickness", "minimum_thickness")
 """Figures of whole films."""
-
-HERTZ = "not estimated: Hertz's law of the contact's force, whose error is not known in single positions"
 
 UNRESOLVED = "nan where it is narrower than grids resolve"
 
@@ -81,7 +79,7 @@ def _whole_pressure(film: ehl.Film, modulus: float, rough: bool) -> Iterator[Qua
         "",
         greatest,
         shown="GPa",
-        no_error=HERTZ,
+        no_error=why_no_error(coupling.FilmAlongPath, "hertz_pressure"),
     )
     if rough:
         whole = film.pressure / part
@@ -177,6 +175,8 @@ def _regime(cycle: coupling.LubricatedCycle) -> float | None:
 
 def outputs() -> tuple[Named, ...]:
     """Numbers that a study can ask for."""
+    from ehl import Spike
+
     of_film = outputs_from(lambda engine: engine[FILM].film, coupling.FilmAlongPath, "film")
     of_lubricated = outputs_from(lambda engine: engine[FILM], coupling.LubricatedCycle, "film")
     return (
@@ -219,17 +219,29 @@ def outputs() -> tuple[Named, ...]:
         ),
         _through(
             "spike_position",
-            Figure("1", f"place of the pressure spike at C, in half-widths after the middle; {UNRESOLVED}"),
+            Figure(
+                "1",
+                f"place of the pressure spike at C, in half-widths after the middle; {UNRESOLVED}",
+                no_error=why_no_error(Spike, "position"),
+            ),
             _of_spike(lambda spike, contact: spike.position / contact.half_width),
         ),
         _through(
             "neck_position",
-            Figure("1", "place of the minimum film at C, in half-widths after the middle"),
+            Figure(
+                "1",
+                "place of the minimum film at C, in half-widths after the middle",
+                no_error="not estimated: a film is flat at its minimum; the film itself has an error there",
+            ),
             lambda film: film.minimum_position / film.contact.half_width,
         ),
         _through(
             "neck_depth",
-            Figure("1", "minimum over central film of the contact at C"),
+            Figure(
+                "1",
+                "minimum over central film of the contact at C",
+                no_error="not estimated: the ratio of two films that have an error and err alike",
+            ),
             lambda film: film.minimum_thickness / film.central_thickness,
         ),
         of_film(
@@ -240,11 +252,16 @@ def outputs() -> tuple[Named, ...]:
         ),
         output_of(
             "regime",
-            Figure("1", f"regime at the minimum film ratio: {NUMBERS}; nan if smooth"),
+            Figure("1", f"regime at the minimum film ratio: {NUMBERS}; nan if smooth", no_error=CLASS),
             "film",
             in_result(FILM, _regime),
         ),
-        of_film("asperity_share", np.max, said="largest {} along the path; nan if smooth"),
+        of_film(
+            "asperity_share",
+            np.max,
+            said="largest {} along the path; nan if smooth",
+            error="greatest_asperity_share_error",
+        ),
         of_film("starvation", np.min, said="minimum {} along the path; nan if flooded"),
         output_of(
             "least_film_error",

@@ -10,7 +10,7 @@ import numpy as np
 
 from base import Figure
 from base.results import figures
-from ehl.discrete.regimes import NUMBERS, regime_number
+from ehl.discrete.regimes import CLASS, NUMBERS, regime_number
 from flankfilm import coupling
 from flankfilm.output import heat
 from flankfilm.products.output import Named, Take, in_result, model_error_of, output_of, outputs_from
@@ -90,10 +90,11 @@ def _gears() -> list[Named]:
             Figure("K", meaning.format(gear)),
             "losses",
             in_result(LOSSES, _of_gear(at, k)),
-            error_output=error,
+            error=None if held else in_result(LOSSES, _of_gear(f"{at}_error", k)),
+            error_output=held,
         )
         for k, gear in enumerate(("pinion", "wheel"))
-        for name, meaning, at, error in meant
+        for name, meaning, at, held in meant
     ]
 
 
@@ -122,14 +123,21 @@ def _boundary() -> Iterator[Named]:
             said,
             error_output="losses_error",
         )
-    part = Figure("1", "part of the losses that the asperities' friction makes; nan if smooth", shown="%")
+    part = Figure(
+        "1",
+        "part of the losses that the asperities' friction makes; nan if smooth",
+        shown="%",
+        no_error="not estimated: it errs as the asperities' share of the load does, which has an error along the path",
+    )
     yield output_of("boundary_friction_part", part, "losses", in_result(LOSSES, of(attrgetter("loss_part"))))
 
     def regime_of(losses: coupling.MeshLosses) -> float | None:
         ratio = losses.path.least_film_ratio
         return None if ratio is None else regime_number(ratio)
 
-    about = Figure("1", f"regime at the minimum film ratio with heat: {NUMBERS}; nan if smooth")
+    about = Figure(
+        "1", f"regime at the minimum film ratio with heat: {NUMBERS}; nan if smooth", no_error=CLASS
+    )
     yield output_of("regime_with_heat", about, "losses", in_result(LOSSES, regime_of))
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 
 from base import Figure
-from base.results import figures
+from base.results import EXACT, ITSELF, figures, why_no_error
 from base.units import factor, suffix
 from flankfilm.output.tables import spelt
 from flankfilm.output.uncertainty import uncertainty
@@ -31,6 +31,8 @@ class Output:
         Gives its estimated relative error likewise; none where that is not known, or is an output by itself.
     error_output, model_output : str
         Outputs that hold its estimated relative error, and what its model leaves open; empty without such ones.
+    no_error : str
+        Why it has no error, or why where its record has none in a row: exact, an error itself, or the reason.
     """
 
     unit: str
@@ -40,6 +42,7 @@ class Output:
     error: Callable[[Engine], float] | None = None
     error_output: str = ""
     model_output: str = ""
+    no_error: str = ""
 
 
 class Held(TypedDict, total=False):
@@ -65,7 +68,10 @@ def output_of(
     error_output: str = "",
     model_output: str = "",
 ) -> Named:
-    """An output by its name, from functions that give its value in SI and its relative error; None stands for nan."""
+    """An output by its name, from functions that give its value in SI and its relative error; None stands for nan.
+
+    Why it has no error is what its figure says of it.
+    """
     meaning = sentence(figure.meaning)
     if said != "{}":
         meaning = said.format(re.split("[:,;]", meaning, maxsplit=1)[0])
@@ -78,6 +84,7 @@ def output_of(
         known,
         error_output,
         model_output,
+        figure.no_error,
     )
 
 
@@ -92,15 +99,23 @@ def _number(value: Of, unit: float) -> Callable[[Engine], float]:
 
 
 def with_errors(outputs: Mapping[str, Output]) -> dict[str, Output]:
-    """Outputs, and after them the errors of those that know theirs and whose error no other output holds."""
+    """Outputs, and after them the errors of those that know theirs and whose error no other output holds.
+
+    What holds the error of another output is an error itself.
+    """
     added = {
         error_name(name, output): Output(
-            "1", f"estimated relative error: {output.meaning}", output.wants, output.error
+            "1", f"estimated relative error: {output.meaning}", output.wants, output.error, no_error=ITSELF
         )
         for name, output in outputs.items()
         if output.error is not None and not output.error_output
     }
-    return {**outputs, **added}
+    holding = {held for output in outputs.values() for held in (output.error_output, output.model_output)}
+    own = {
+        name: replace(output, no_error=ITSELF) if name in holding else output
+        for name, output in outputs.items()
+    }
+    return {**own, **added}
 
 
 def error_name(name: str, output: Output) -> str:
@@ -118,30 +133,48 @@ def outputs_from(stage: Callable[[Engine], Any], kind: type, want: str) -> Calla
         name: str = "",
         said: str = "{}",
         *,
+        error: str = "",
         error_output: str = "",
         model_output: str = "",
     ) -> Named:
-        about = figures(kind)[figure]
+        about = figure_of_kind(kind, figure)
 
         def value(engine: Engine) -> Any:
             quantity = getattr(stage(engine), figure)
             return None if quantity is None else take(quantity)
 
-        # of curves the error of one entry is not that of another
-        known = take is float and want != "geometry" and holds_error(kind, figure)
-        error = error_in(stage, figure) if known else None
+        # of curves the error of one entry is not that of another: it has a name that the caller gives
+        known = take is float and about.no_error != EXACT and holds_error(kind, figure)
+        held: Of | None = error_in(stage, figure) if known else None
+        if error:
+            held = _attribute(stage, error)
         return output_of(
             name or figure,
             about,
             want,
             value,
             said,
-            error,
+            held,
             error_output=error_output,
             model_output=model_output,
         )
 
     return make
+
+
+def _attribute(record: Of, name: str) -> Of:
+    """An attribute of a record; None without a record."""
+
+    def of(engine: Engine) -> Any:
+        there = record(engine)
+        return None if there is None else getattr(there, name)
+
+    return of
+
+
+def figure_of_kind(kind: type, figure: str) -> Figure:
+    """Figure of records of a kind, with why it has no error where the record says this of all its figures."""
+    return replace(figures(kind)[figure], no_error=why_no_error(kind, figure))
 
 
 def holds_error(kind: type, figure: str) -> bool:
@@ -167,7 +200,8 @@ def model_error_of(name: str, said: str, want: str, record: Callable[[Engine], A
         stage_record = record(engine)
         return None if stage_record is None else uncertainty(stage_record, figure).model
 
-    about = Figure("1", f"what the model leaves open of {said}, relative; nan where it is not estimated")
+    meaning = f"what the model leaves open of {said}, relative; nan where it is not estimated"
+    about = Figure("1", meaning, no_error=ITSELF)
     return output_of(name, about, want, of)
 
 

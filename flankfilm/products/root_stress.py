@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import product
 from operator import attrgetter
@@ -21,7 +22,15 @@ from flankfilm.output.model_errors import entry
 from flankfilm.output.passages import fillet_stress, passage
 from flankfilm.output.uncertainty import Uncertainty, uncertainty
 from flankfilm.output.variables import joined, of_list, of_quantities, of_record
-from flankfilm.products.output import Named, Of, Take, in_result, model_error_of, output_of
+from flankfilm.products.output import (
+    Named,
+    Of,
+    Take,
+    figure_of_kind,
+    in_result,
+    model_error_of,
+    output_of,
+)
 from flankfilm.products.product import CurveTable, Product, ranked, section_of, wanting, when
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.run_parts import Work
@@ -38,6 +47,9 @@ if TYPE_CHECKING:
     from fem.stress.root_peaks import RootPeak
 
 EVEN = "{}; nan where the load is even along the face"
+
+WHERE = "not estimated: stresses are flat at their maximum, which has an error"
+"""Why the place of a maximum has no error."""
 
 PICTURES: Pictures = {"root_stress": "root_pinion_tension", "root_face_map": "root_face_pinion_tension"}
 
@@ -201,7 +213,7 @@ def _of_roots() -> Iterator[Named]:
     for gear in GEARS:
         yield _of_root(
             f"root_face_position_{gear}",
-            figures(RootPeak)["face_position"],
+            replace(figures(RootPeak)["face_position"], no_error=WHERE),
             attrgetter(f"stress.{gear}.greatest_tension.face_position"),
             f"place along the face of the maximum tension at the root of the {gear}; nan where even",
         )
@@ -219,7 +231,7 @@ def _of_roots() -> Iterator[Named]:
             f"maximum tension at the root of the {gear} over that of the same forces spread evenly; nan where even",
             partial(_error_of_face, gear, "over_even"),
         )
-    about = figures(Iso6336FaceLoad)["K_Fbeta"]
+    about = figure_of_kind(Iso6336FaceLoad, "K_Fbeta")
     yield _of_root(
         "iso_root_face_factor",
         about,

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from base import InputError
-from base.results import figures
 from flankfilm import coupling
 from flankfilm.building.pair import pinion_torque
 from flankfilm.figures.reading import Pictures
 from flankfilm.output.drives import carrying
-from flankfilm.products.output import Named, in_result, output_of
+from flankfilm.products.output import Named, outputs_from
 from flankfilm.products.product import CurveTable, Product, section_of, wanting, when
 from flankfilm.report.page import Part, Table, pictures, said
 from flankfilm.report.text import counted, number, percent
@@ -90,14 +88,8 @@ def section(stage: coupling.MotionSpectrum, results: xr.Dataset) -> Part:
 
 def outputs() -> tuple[Named, ...]:
     """Numbers that a study can ask for."""
-    return (
-        output_of(
-            "sidebands",
-            figures(coupling.MotionSpectrum)["sidebands"],
-            "spectrum",
-            in_result(SPECTRUM, attrgetter("sidebands")),
-        ),
-    )
+    of_lines = outputs_from(lambda engine: engine[SPECTRUM], coupling.MotionSpectrum, "spectrum")
+    return (of_lines("sidebands"),)
 
 
 PRODUCT = Product(

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
+import fem
 from base import Figure, Quantity
-from base.results import EXACT, figures
+from base.results import EXACT, ITSELF, figures, why_no_error
 from flankfilm import coupling
 from flankfilm.building.face import varies_by
 from flankfilm.building.pair import pinion_speed_if_any
@@ -51,8 +52,6 @@ from flankfilm.stages.mesh import (
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    import fem
 
 CYCLE = ("position", "secant_stiffness", "tangent_stiffness", "transmission_error", "load_share")
 """Columns of a mesh cycle."""
@@ -249,9 +248,8 @@ def _error_of(figure: str, name: str) -> Named:
 
 
 def _harmonics_error(curve: str, name: str) -> Named:
-    about = Figure(
-        "1", f"largest estimated error of the harmonics 1 to 5 of the {name} stiffness over its mean"
-    )
+    meaning = f"largest estimated error of the harmonics 1 to 5 of the {name} stiffness over its mean"
+    about = Figure("1", meaning, no_error=ITSELF)
 
     def largest(cycle: coupling.MeshCycle) -> Any:
         errors = getattr(cycle, f"{curve}_harmonics_error")
@@ -288,7 +286,7 @@ def outputs() -> tuple[Named, ...]:
         _harmonics_error("stiffness", "tangent"),
         output_of(
             "efficiency",
-            Figure("1", "power out over power in"),
+            Figure("1", "power out over power in", no_error=why_no_error(fem.MeshCycle, "efficiency")),
             "stiffness",
             in_result(MESH, lambda cycle: getattr(cycle.contact, "efficiency", None)),
             "{}, sliding of the dry contacts alone",

@@ -14,7 +14,7 @@ from flankfilm.figures.reading import Pictures, read_figure
 from flankfilm.output import drawing_data as drawn
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.output.variables import of_quantities, of_record
-from flankfilm.products.output import Held, Named, output_of
+from flankfilm.products.output import Held, Named, Of, Take, output_of
 from flankfilm.products.product import CurveTable, Product, ranked, section_of, when
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.run_parts import Work
@@ -233,16 +233,18 @@ def _of_pair(name: str, figure: Figure, value: Callable[[SpeedSweep], Any], **he
 
 
 def _moved(
-    name: str, figure: Figure, value: Callable[[SpeedSweep | coupling.DriveSweep], Any], **held: Unpack[Held]
+    name: str,
+    figure: Figure,
+    value: Callable[[SpeedSweep | coupling.DriveSweep], Any],
+    error: Take | None = None,
+    **held: Unpack[Held],
 ) -> Named:
     """Output of the sweep, of a drive train's where the scene has shafts."""
-    return output_of(
-        name,
-        figure,
-        "sweep",
-        lambda engine: value(engine[SWEEP] if engine.scene.shafts is None else engine[DRIVE_SWEEP]),
-        **held,
-    )
+
+    def of(take: Take) -> Of:
+        return lambda engine: take(engine[SWEEP] if engine.scene.shafts is None else engine[DRIVE_SWEEP])
+
+    return output_of(name, figure, "sweep", of(value), error=None if error is None else of(error), **held)
 
 
 def _loss_speed(sweep: SpeedSweep) -> float | None:
@@ -271,6 +273,7 @@ def outputs() -> tuple[Named, ...]:
             "separated",
             Figure("1", "largest part of the time without contact, of all motions of the sweep", shown="%"),
             lambda sweep: greatest_of(sweep.separated),
+            attrgetter("greatest_separated_error"),
         ),
         _of_pair(
             "contact_loss_speed",

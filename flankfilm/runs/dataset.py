@@ -7,10 +7,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from flankfilm.output.convergence import with_convergence
 from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.geometry import geometry_columns
-from flankfilm.output.tables import columns, uncertainties
+from flankfilm.output.tables import column_errors, columns, uncertainties
 from flankfilm.output.variables import joined, merged, with_tolerance
 from flankfilm.plan.decisions import decisions
 from flankfilm.products.catalogue import PRODUCTS
@@ -52,6 +54,17 @@ def results_tables(data: xr.Dataset) -> dict[str, dict[str, Any]]:
         for file, table in product.tables.items()
         if joined(table.prefix, table.about) in data.variables
     }
+    said = [
+        row
+        for product in PRODUCTS
+        for file, table in product.tables.items()
+        if file in tables
+        for row in column_errors(data, file, table.prefix, table.names, table.axis)
+    ]
+    if said:
+        tables["columns"] = {
+            head: np.array([row[head] for row in said], dtype=np.object_) for head in said[0]
+        }
     errors: dict[str, Any] = uncertainties(data)
     if errors["variable"].size:
         tables["uncertainties"] = errors

@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base.results import EXACT
 from base.units import unit_of
 from flankfilm import figures
 from flankfilm.figures.studies import varied_numbers
 from flankfilm.outcome.outcome import Outcome, Picture, concluded
 from flankfilm.output.files import provenance
+from flankfilm.output.variables import NAME
 from flankfilm.processes.exit_status import PART_FAILED, SOLVER_FAULT
+from flankfilm.studies.columns import SECONDS, error_attributes, write_columns
 from flankfilm.studies.execution import Execution, Progress
 from flankfilm.studies.kept import kept_rows
 from flankfilm.studies.outputs import OUTPUTS
@@ -36,7 +39,7 @@ def dataset(study_results: StudyResults) -> xr.Dataset:
     plan, rows = study_results.plan, study_results.rows
     attributes = {"title": plan.title, "design": plan.design, **provenance(json.dumps(plan.scene))}
     data = of_rows("row", plan.keys, plan.rows, plan.outputs, rows)
-    about = {"units": "", "long_name": "why a row failed; empty where it did not"}
+    about = {"units": "", "long_name": "why a row failed; empty where it did not", "error_note": NAME}
     faults = np.array([row.fault for row in rows], dtype=object)
     return data.assign(fault=("row", faults, about)).assign_attrs(attributes)
 
@@ -63,16 +66,28 @@ def of_rows(
     import xarray as xr
 
     varied = {
-        key: (axis, np.asarray(values), {"units": unit_of(key), "long_name": f"key {key} of the scene"})
+        key: (
+            axis,
+            np.asarray(values),
+            {"units": unit_of(key), "long_name": f"key {key} of the scene", "error_note": EXACT},
+        )
         for key, values in zip(keys, zip(*points, strict=True), strict=True)
     }
     columns = zip(*(row.values for row in results), strict=True)
     variables = {
-        name: (axis, np.array(values), {"units": OUTPUTS[name].unit, "long_name": OUTPUTS[name].meaning})
+        name: (
+            axis,
+            np.array(values),
+            {
+                "units": OUTPUTS[name].unit,
+                "long_name": OUTPUTS[name].meaning,
+                **error_attributes(name, outputs),
+            },
+        )
         for name, values in zip(outputs, columns, strict=True)
     }
     seconds = np.array([row.seconds for row in results])
-    cost = (axis, seconds, {"units": "s", "long_name": f"cost of the {axis}"})
+    cost = (axis, seconds, {"units": "s", "long_name": f"cost of the {axis}", "error_note": SECONDS})
     return xr.Dataset({**variables, "seconds": cost}, varied)
 
 
@@ -107,8 +122,9 @@ class StudyOutcome(Outcome[StudyResults]):
         return SOLVER_FAULT if all(row.lost for row in self.result.rows) else PART_FAILED
 
     def tables(self, folder: Path) -> list[Path]:
-        """The rows, which are there."""
-        return [folder / ROWS]
+        """The rows, which are there, and what their columns err by."""
+        plan = self.result.plan
+        return [folder / ROWS, write_columns(folder, plan.keys, plan.outputs)]
 
     @property
     def pictures(self) -> dict[str, Picture]:

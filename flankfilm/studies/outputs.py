@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from base.results import EXACT
 from flankfilm.products.catalogue import PRODUCTS
 from flankfilm.products.output import Output, error_name, with_errors
 
@@ -13,7 +14,7 @@ OUTPUTS: Mapping[str, Output] = with_errors(
 """Outputs by the name that a study file gives them; the unit is part of it."""
 
 ROUNDING = 1e-12
-"""Relative error of what follows from the geometry alone."""
+"""Relative error of what follows from what is given alone."""
 
 ERROR_OF: Mapping[str, str] = {
     name: output.error_output or error_name(name, output)
@@ -29,5 +30,20 @@ MODEL_ERROR_OF: Mapping[str, str] = {
 
 
 def exact(name: str) -> bool:
-    """Whether an output follows from the geometry alone, so that it errs by rounding."""
-    return OUTPUTS[name].wants == ("geometry",)
+    """Whether an output follows from what is given alone, so that it errs by rounding."""
+    return OUTPUTS[name].no_error == EXACT
+
+
+def error_said(name: str) -> str:
+    """What holds the error of an output, or why it has none: every output says one of both.
+
+    Examples
+    --------
+    >>> error_said("mean_secant_stiffness_N_per_mm_um")
+    'stiffness_error'
+    >>> error_said("contact_ratio")
+    'exact: it follows from what is given'
+    >>> error_said("regime")
+    'a class, exact but at its bounds: it follows from the film ratio, which has an error'
+    """
+    return ERROR_OF.get(name) or OUTPUTS[name].no_error

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Booleans
+from base.results import ITSELF
 from flankfilm import figures
 from flankfilm.coupling.mesh.references import RELATIVE
 from flankfilm.figures.reading import key_title, key_words, titled, unit_of, words
@@ -119,8 +120,21 @@ def _range(data: xr.Dataset, name: str) -> Headline:
         return Headline(words(data, name), " to ".join(ends), meaning)
     if ERROR_OF.get(name) in data:
         meaning += f"; at most {_off(data, name, np.isfinite(values))}"
+    elif (note := str(data[name].attrs["error_note"])) != ITSELF:
+        meaning += f"; {error_noted(note)}"
     ends = dict.fromkeys((_output(least), _output(most)))
     return Headline(words(data, name), " to ".join(ends), meaning, unit_of(data, name, ""))
+
+
+def error_noted(note: str) -> str:
+    """Why an output has no error, as a part of a sentence.
+
+    Examples
+    --------
+    >>> error_noted("unknown: a closed form"), error_noted("exact: it follows from what is given")
+    ('error unknown: a closed form', 'exact: it follows from what is given')
+    """
+    return note if note.startswith(("exact", "a class")) else f"error {note}"
 
 
 def _off(data: xr.Dataset, name: str, rows: Booleans) -> str:

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 SECOND_ORDER = 4.0 / 3.0
 """Error over the change by elements half as long."""
 
-GIVEN = "given, or that of the mesh cycle's tilt stiffness"
+GIVEN = "not estimated: given, or of the tilt of the mesh cycle, whose tilt stiffness has an error there"
 
 SHAPES = "not estimated: shafts are beams, whose error is not known"
 

@@ -14,6 +14,7 @@ from fem.cycle.pair_figures import HERTZ
 from flankfilm.coupling.films import film_points
 from flankfilm.coupling.films.films import FilmModel, PathFilms, film_inside
 from flankfilm.coupling.films.least_film import least_of
+from flankfilm.coupling.mesh.extreme_errors import of_greatest, of_sampled_greatest
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 
 FORMULA = "unknown: Dowson's formula"
@@ -47,7 +48,12 @@ class FilmAlongPath:
     oil_layer: Array | None = quantity(
         "m", "layer of oil at ambient pressure that passes the contact", "point", shown="um"
     )
-    starvation: Array | None = quantity("1", "central film over that of the smooth flooded contact", "point")
+    starvation: Array | None = quantity(
+        "1",
+        "central film over that of the smooth flooded contact",
+        "point",
+        no_error="not estimated: the ratio of two films that each have an error",
+    )
     film_ratio: Array | None = quantity("1", "film ratio Lambda, minimum mean gap over sigma", "point")
     asperity_share: Array | None = quantity(
         "1", "asperities' share of the load", "point", error="asperity_share_error"
@@ -89,10 +95,26 @@ class FilmAlongPath:
     def _least(self) -> tuple[float, float]:
         return least_of(self.minimum_thickness, self.load)
 
-    @described("Pa", shown="GPa", no_error=HERTZ)
+    @described("Pa", shown="GPa", error="greatest_pressure_error")
     def greatest_pressure(self) -> float:
         """Largest Hertz pressure along the path."""
         return float(self.hertz_pressure.max())
+
+    @property
+    def greatest_pressure_error(self) -> float:
+        """Relative error of the largest Hertz pressure by the steps between the contacts.
+
+        Contacts of a single pair bear the whole force; where the largest is one of several, that of their load share
+        comes in addition.
+        """
+        return of_sampled_greatest(self.hertz_pressure)
+
+    @property
+    def greatest_asperity_share_error(self) -> float | None:
+        """Relative error of the largest asperities' share of the load; None of smooth flanks."""
+        if self.asperity_share is None or self.asperity_share_error is None:
+            return None
+        return of_greatest(self.asperity_share, self.asperity_share_error)
 
 
 def gathered(

@@ -12,7 +12,7 @@ from base import Array, described, quantity, record
 from base.results import EXACT, ITSELF
 from fem.cycle.pair_figures import HERTZ
 from flankfilm.coupling.losses.heated_films import HeatedFilms
-from flankfilm.coupling.mesh.extreme_errors import of_greatest, of_least
+from flankfilm.coupling.mesh.extreme_errors import of_greatest, of_least, of_sampled_greatest
 
 _CLOSED_FORM = "unknown: a closed form"
 
@@ -89,10 +89,15 @@ class LossesAlongPath:
         """Hertz pressure times sliding speed, p v."""
         return np.asarray(self.hertz_pressure * np.abs(self.sliding_speed))
 
-    @described("Pa m/s", no_error=HERTZ)
+    @described("Pa m/s", error="greatest_pressure_times_sliding_error")
     def greatest_pressure_times_sliding(self) -> float:
         """Maximum Hertz pressure times sliding speed of the contacts."""
         return float(self.pressure_times_sliding.max())
+
+    @property
+    def greatest_pressure_times_sliding_error(self) -> float:
+        """Relative error of that maximum by the steps between the contacts, that of their load share left out."""
+        return of_sampled_greatest(self.pressure_times_sliding)
 
     @described("1", "point", no_error=ITSELF)
     def contact_temperature_error(self) -> Array:

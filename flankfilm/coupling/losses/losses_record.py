@@ -12,7 +12,7 @@ from flankfilm.coupling.losses.losses_along_path import LossesAlongPath
 from flankfilm.coupling.losses.losses_over_face import FaceLosses
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 
-ROLLING = "not estimated: by the grid it errs as the film does"
+ROLLING = "not estimated by itself: by the grid it errs as the film does"
 
 
 @record
@@ -98,12 +98,16 @@ class MeshLosses:
         error="error",
     )
     loss_factor: float = quantity(
-        "1", "tooth loss factor H_V of the forces: power lost at a friction of 1 over the power put in"
+        "1",
+        "tooth loss factor H_V of the forces: power lost at a friction of 1 over the power put in",
+        no_error="not estimated: a mean of forces in single positions, in which their error is not known",
     )
     ohlendorf_loss_factor: float | None = quantity(
         "1", "H_V after Ohlendorf; None where that does not hold", no_error="unknown: a closed form"
     )
-    bulk_temperatures: Array = quantity("K", "bulk temperatures of pinion and wheel", "gear")
+    bulk_temperatures: Array = quantity(
+        "K", "bulk temperatures of pinion and wheel", "gear", error="bulk_temperatures_error"
+    )
     heat: Array = quantity(
         "W", "mean heat that pinion and wheel take up, the oil's divided as theirs", "gear"
     )
@@ -164,10 +168,20 @@ class MeshLosses:
     @property
     def greatest_contact_temperature_error(self) -> float:
         """Relative error of the flanks' maximum temperature [K]: of their rise, and of a balanced bulk."""
-        bulk = 0.0
-        if self.heat_transfer is not None:
-            bulk = self.temperature_mismatch + self.error * float(np.max(self.heat / self.heat_transfer))
+        bulk = float(np.max(self._bulk_off))
         return self.path.greatest_contact_temperature_error + bulk / self.greatest_contact_temperature
+
+    @property
+    def _bulk_off(self) -> Array:
+        """Error of the bulk temperatures [K]: of the losses, and of the balance; zero where they were given."""
+        if self.heat_transfer is None:
+            return np.zeros(2)
+        return np.asarray(self.temperature_mismatch + self.error * self.heat / self.heat_transfer)
+
+    @described("1", "gear", no_error=ITSELF)
+    def bulk_temperatures_error(self) -> Array:
+        """Relative error of the bulk temperatures [K], by the losses that they balance; 0 where they were given."""
+        return np.asarray(self._bulk_off / self.bulk_temperatures)
 
     @described("m", shown="um", error="least_film_error")
     def least_film(self) -> float:

@@ -48,7 +48,9 @@ class FaceLoadModels:
         "model",
         no_error=ITSELF,
     )
-    pitch_point_factor: Array = quantity("1", "face-load factor with a pair at the pitch point", "model")
+    pitch_point_factor: Array = quantity(
+        "1", "face-load factor with a pair at the pitch point", "model", error="face_load_factor_error"
+    )
     greatest_line_load: Array = quantity(
         "N/m", "maximum line load over the mesh cycle; nan of ISO 6336-1", "model", shown="N/mm"
     )

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from base import Array, InputError, quantity, record, unclocked
 from base.results import EXACT, ITSELF
+from flankfilm.coupling.mesh.extreme_errors import of_greatest
 from flankfilm.coupling.vibration.resonance import Vibrations, vibrations
 
 if TYPE_CHECKING:
@@ -24,11 +25,6 @@ if TYPE_CHECKING:
 LEFT = (
     "relative change of {} there by the longer series; nan where the motion does not repeat, infinite where there is "
     "none of the same label"
-)
-
-STRAIGHT = (
-    "not estimated: crossings between samples of a period are taken as straight; force_change is what a longer series "
-    "changes"
 )
 
 
@@ -47,7 +43,14 @@ class SweptForce:
         "part of the time without contact of the driving flanks",
         "frequency",
         shown="%",
-        no_error=STRAIGHT,
+        error="separated_error",
+    )
+    separated_error: Mapping[str, Array] = quantity(
+        "1",
+        "estimated relative error of that part by samples of a period, between which motions are taken as straight; "
+        "force_change is what a longer series changes",
+        "frequency",
+        no_error=ITSELF,
     )
     sampling_error: float = quantity(
         "1", "largest relative change of what is swept with half as many samples of a period"
@@ -66,6 +69,13 @@ class SweptForce:
     force_change: Mapping[str, Array] | None = quantity(
         "1", LEFT.format("the maximum force"), "checked", no_error=ITSELF
     )
+
+    @property
+    def greatest_separated_error(self) -> float:
+        """Relative error of the largest part of the time without contact, of the motions that are known."""
+        apart, off = (np.concatenate([*curves.values()]) for curves in (self.separated, self.separated_error))
+        known = np.isfinite(apart) & np.isfinite(off)
+        return of_greatest(apart[known], off[known]) if known.any() else float("nan")
 
 
 class BothWays(NamedTuple):
@@ -109,6 +119,7 @@ class BothWays(NamedTuple):
             "labels": {way: result.labels for way, result in self.sweeps.items()},
             "force_factor": self.forces,
             "separated": {way: response.separated for way, response in self.shaken.items()},
+            "separated_error": {way: response.separated_error for way, response in self.shaken.items()},
             "sampling_error": max(response.change for response in (*self.shaken.values(), *beside)),
             "longer_order": None if changes is None else changes.longer.order,
             "checked": None if changes is None else self.values[changes.at],

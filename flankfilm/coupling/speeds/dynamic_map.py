@@ -16,6 +16,7 @@ from flankfilm.coupling.speeds.swept_truncation import LongerChanges, longer_cha
 from flankfilm.coupling.vibration.oscillator import PairOscillator
 from flankfilm.coupling.vibration.part_loads import greatest, part_figures
 from flankfilm.coupling.vibration.speed_ranges import standard_factors
+from gears.closed_form.record import STANDARD
 
 
 @record
@@ -46,10 +47,16 @@ class DynamicMap:
         "part of the time without contact, of both sweeps the greater",
         "torque speed",
         shown="%",
-        no_error="not estimated: crossings between samples are taken as straight",
+        error="separated_error",
+    )
+    separated_error: Array = quantity(
+        "1",
+        "estimated relative error of that part by samples of a period, between which motions are taken as straight",
+        "torque speed",
+        no_error=ITSELF,
     )
     iso: Array = quantity(
-        "1", "K_v after ISO 6336-1, method B; nan where it does not hold", "torque speed", no_error=ITSELF
+        "1", "K_v after ISO 6336-1, method B; nan where it does not hold", "torque speed", no_error=STANDARD
     )
     bearings: tuple[str, ...] = quantity(
         "", "bearings of a drive train, in the order of their forces", "bearing"
@@ -157,7 +164,9 @@ def dynamic_map(
         loads = [faults.number(f"torques[{k}]", load, NUMBER) for k, load in enumerate(torques)]
         if not loads:
             faults.add("torques", "none", "must be at least one", "give a list of torques")
-    rows: dict[str, list[Array]] = {name: [] for name in ("up", "down", "separated", "iso", "parts")}
+    rows: dict[str, list[Array]] = {
+        name: [] for name in ("up", "down", "separated", "separated_error", "iso", "parts")
+    }
     resonances, changed, lost, off, used = [], list[Array](), 0, 0.0, 0
     for row, torque in enumerate(loads):
 
@@ -174,7 +183,12 @@ def dynamic_map(
         off, used = max(off, *(response.change for response in responses)), used + swept.periods
         lost += sum(not result.converged for result in swept.sweeps.values())
         changed += _changed(longer_changes(motion, swept.sweeps, swept.forces))
-        rows["separated"].append(np.fmax(*(response.separated for response in responses)))
+        apart, off_apart = (
+            [getattr(response, figure) for response in responses]
+            for figure in ("separated", "separated_error")
+        )
+        rows["separated"].append(np.fmax(*apart))
+        rows["separated_error"].append(np.where(rows["separated"][-1] == apart[0], *off_apart))
         rows["parts"].append(np.fmax(*(response.parts for response in responses)))
         rows["iso"].append(standard_factors(motion.rigid, values))
         resonances.append(motion.scales.speed(1.0))
@@ -187,6 +201,7 @@ def dynamic_map(
         maps["up"],
         maps["down"],
         maps["separated"],
+        maps["separated_error"],
         maps["iso"],
         **part_figures(motion.outputs, {"": maps["parts"][:, :, 2], "_swing": maps["parts"][:, :, 1]}),
         sampling_error=off,

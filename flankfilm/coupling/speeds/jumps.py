@@ -30,6 +30,7 @@ from flankfilm.coupling.vibration.speed_ranges import (
     separated_ranges,
     standard_factors,
 )
+from gears.closed_form.record import STANDARD
 
 if TYPE_CHECKING:
     from dynamics.branches.branch import Stretch
@@ -58,7 +59,9 @@ class SpeedDiagram:
     )
     force_frequency: Array = quantity("1", "mesh over natural frequency", "force")
     force_factor: Array = quantity("1", "maximum force of a stable motion over the mean force", "force")
-    force_factor_iso6336: Array = quantity("1", "K_v after ISO 6336-1, method B; nan without a pair", "force")
+    force_factor_iso6336: Array = quantity(
+        "1", "K_v after ISO 6336-1, method B; nan without a pair", "force", no_error=STANDARD
+    )
     half_backlash: float = quantity("1", "half the backlash D")
     longer_order: int | None = quantity(
         "1", "harmonics of the longer series that truncations are measured with; None for a given series"

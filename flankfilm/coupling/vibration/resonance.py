@@ -32,6 +32,8 @@ class Vibration(NamedTuple):
         Part of the time in which the driving flanks do not touch.
     spread : float
         Root mean square of the displacement about its mean; in several freedoms of what the backlash limits.
+    separated_error : float
+        What half as many samples change of that part, relative; 0 where it is 0 with both.
     change : float
         Largest relative change of force, spread and parts with half as many samples; parts over their largest.
     parts : ndarray, shape (3, parts)
@@ -40,6 +42,7 @@ class Vibration(NamedTuple):
 
     force: float
     separated: float
+    separated_error: float
     spread: float
     change: float
     parts: Array
@@ -50,6 +53,7 @@ class Vibrations(NamedTuple):
 
     force: Array
     separated: Array
+    separated_error: Array
     spread: Array
     change: float
     parts: Array
@@ -90,8 +94,8 @@ def vibrations(
         )
         for value, states, periods in zip(swept.values, swept.states, swept.periods, strict=True)
     ]
-    force, separated, spread, change, parts = (np.array(figure) for figure in zip(*each, strict=True))
-    return Vibrations(force, separated, spread, float(change.max()), parts)
+    force, separated, off, spread, change, parts = (np.array(figure) for figure in zip(*each, strict=True))
+    return Vibrations(force, separated, off, spread, float(change.max()), parts)
 
 
 def vibration(
@@ -117,7 +121,7 @@ def vibration(
     from dynamics.flow.motions import mesh_force, share_below, trajectory
 
     if not np.all(np.isfinite(state)):
-        return Vibration(np.nan, np.nan, np.nan, 0.0, np.full((3, len(outputs)), np.nan))
+        return Vibration(np.nan, np.nan, np.nan, np.nan, 0.0, np.full((3, len(outputs)), np.nan))
     motion = trajectory(oscillator, state, periods=periods or APERIODIC, points_per_period=SAMPLES)
     force = mesh_force(oscillator, motion)
     carried = output_rows(outputs, oscillator.dimension) @ motion.states[:-1].T
@@ -127,9 +131,16 @@ def vibration(
     off = float(np.max(np.abs(parts - half) / np.maximum(parts[2], 1e-300), initial=0.0))
     mean = getattr(oscillator, "mean_force", 0.0) if load is None else load
     greatest = fine[0] / mean if mean else np.nan
-    return Vibration(
-        greatest, share_below(motion.x - oscillator.half_backlash), fine[1], max(change, off), parts
-    )
+    gap = motion.x - oscillator.half_backlash
+    apart, seldom = share_below(gap), share_below(gap[::2])
+    return Vibration(greatest, apart, _relative(seldom - apart, apart), fine[1], max(change, off), parts)
+
+
+def _relative(change: float, value: float) -> float:
+    """Change over the value: 0 where nothing changes, infinite where all of it does."""
+    if change == 0.0:
+        return 0.0
+    return abs(change / value) if value else np.inf
 
 
 def _figures(force: Array, x: Array) -> tuple[float, float]:
