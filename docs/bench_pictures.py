@@ -24,7 +24,7 @@ def main(folder: Path) -> None:
         if case.key in CASES:
             peers = [peer for peer in measured.peers if peer.case == case.key]
             drawn[case.key] = bench.error_against_cost(case, peers)
-    save({f"bench_{name}": figure for name, figure in drawn.items()}, dpi=100)
+    save({f"bench_{name}": figure for name, figure in drawn.items()}, dpi=150)
 
 
 if __name__ == "__main__":

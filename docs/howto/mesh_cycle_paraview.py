@@ -13,7 +13,7 @@ from paraview import simple as pv
 
 WARP = 20.0  # times the displacement
 ARROW = 1.5e-7  # m of arrow for each N of contact force
-SCALE = (0.0, 250.0)  # MPa; under the contacts there is more
+SCALE = (0.0, 340.0)  # MPa, to the maximum at a fillet; under the contacts there is more
 
 
 class Scene:
@@ -52,11 +52,13 @@ class Scene:
         colours.RescaleTransferFunction(*SCALE)
         bar = pv.GetScalarBar(colours, self.view)
         bar.Title, bar.ComponentTitle, bar.Visibility = "von Mises stress [MPa]", "", 1
-        bar.TitleColor = bar.LabelColor = [1.0, 1.0, 1.0]
-        bar.TitleFontSize = bar.LabelFontSize = 18
+        bar.TitleColor = bar.LabelColor = [0.0, 0.0, 0.0]
+        bar.TitleFontSize = bar.LabelFontSize = 20
+        if hasattr(bar, "DrawBackground"):  # a white card, on which the letters are read and print
+            bar.DrawBackground, bar.BackgroundColor, bar.BackgroundPadding = 1, [1.0, 1.0, 1.0, 1.0], 8.0
         bar.LabelFormat = bar.RangeLabelFormat = "%.0f"
         bar.WindowLocation = "Any Location"
-        bar.Position = [0.86, 0.05]
+        bar.Position = [0.86, 0.03]
 
     def _show_forces(self):
         arrows = pv.Glyph(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,6 +29,12 @@ NARROW = 6.0
 
 MARKS = "osD^vP*"
 PEER_MARKS = "xX1+"
+THEORY = "theory, order"
+"""Begins the label of a line with the order that theory has."""
+
+TOO_SMALL = "#f8e6d8"
+"""Shade of the half in which estimates are below the error."""
+
 GREY: dict[str, Any] = {"color": "#888888", "linewidth": 1.0}
 
 
@@ -58,7 +64,7 @@ def error_against_cost(case: CaseResult, peers: Sequence[PeerRow] = ()) -> Figur
             what = quantities[0] if len(quantities) == 1 else "each mean"
             over_time.set(xlabel="processor time [s]", ylabel=f"relative error [-]\n{what}")
             over_size.set(xlabel=f"{case.size_name} [-]")
-        _legend(drawn, panels[::2], [case.orders[q] for group in groups for q in group if q in case.orders])
+        _legend(drawn, panels, any(estimate > 0 for estimate in case.finest_estimates.values()))
     return drawn
 
 
@@ -107,7 +113,7 @@ def _slope(axes: Axes, rows: Sequence[Row], orders: dict[str, float]) -> None:
     size = np.array([min(r.size for r in series), max(r.size for r in series)])
     coarsest = min(series, key=lambda r: r.size)
     line = 0.4 * coarsest.error * (size / coarsest.size) ** -order
-    axes.plot(size, line, **GREY)
+    axes.plot(size, line, **GREY, label=f"{THEORY} {order:g}")
 
 
 def _ticks(axes: Axes) -> None:
@@ -121,39 +127,49 @@ def _ticks(axes: Axes) -> None:
     plain_ticks(axes.xaxis)
 
 
-def _legend(drawn: Figure, panels: Iterable[Axes], orders: Sequence[float]) -> None:
+def _legend(drawn: Figure, panels: Sequence[Axes], finest: bool) -> None:
+    """List the curves row by row, then what lines and marks mean; of these what is drawn alone."""
     from matplotlib.lines import Line2D
 
     entries: dict[str, Artist] = {}
-    for over_time in panels:
-        handles, labels = over_time.get_legend_handles_labels()
+    for axes in panels:
+        handles, labels = axes.get_legend_handles_labels()
         entries |= zip(labels, handles, strict=True)
+    orders = {
+        label.removeprefix(THEORY): entries.pop(label) for label in [*entries] if label.startswith(THEORY)
+    }
     error: dict[str, Any] = {"color": "#444444", "marker": "o", "markersize": 5}
     entries["true error"] = Line2D([], [], **error)
-    entries["own estimate"] = Line2D([], [], **error, linestyle="--", markerfacecolor="white")
-    entries["estimate of the finest"] = Line2D([], [], **GREY, linestyle=":")
+    if any(line.get_markerfacecolor() == "white" for axes in panels for line in axes.lines):
+        entries["own estimate"] = Line2D([], [], **error, linestyle="--", markerfacecolor="white")
+    if finest:
+        entries["estimate of the finest"] = Line2D([], [], **GREY, linestyle=":")
     if orders:
-        listed = " and ".join(f"{order:g}" for order in dict.fromkeys(orders))
-        entries[f"theory, order {listed}"] = Line2D([], [], **GREY)
+        entries[f"{THEORY}{' and'.join(orders)}"] = next(iter(orders.values()))
     columns = 2 if max(map(len, entries)) > 28 else 3
-    drawn.legend(
-        list(entries.values()), list(entries), loc="outside upper left", ncols=columns, handlelength=2.6
-    )
+    labels = [label for column in range(columns) for label in [*entries][column::columns]]
+    handles = [entries[label] for label in labels]
+    drawn.legend(handles, labels, loc="outside upper left", ncols=columns, handlelength=2.6)
 
 
 def estimates(cases: Sequence[CaseResult]) -> Figure:
-    """Draw estimated over true errors of all cases; above the diagonal an estimate is on the safe side."""
-    with sheet(width=6.2, height=5.0, legend=4) as (drawn, (axes,)):
+    """Draw estimated over true errors of all cases; above the diagonal an estimate is on the safe side.
+
+    Marks are open, so that those beneath are seen; the shaded half has estimates that are too small.
+    """
+    with sheet(width=6.2, height=6.0, legend=4) as (drawn, (axes,)):
         values = []
         for place, (solver, own) in enumerate(_by_solver(cases)):
             rows = [r for c in own for r in c.rows if r.estimate > 0]
             error, guess = _drawn(rows, "error"), _drawn(rows, "estimate")
             values += error + guess
-            axes.plot(error, guess, linestyle="", **_look(place), label=solver if rows else None)
+            look = {**_look(place), "markerfacecolor": "none"}
+            axes.plot(error, guess, linestyle="", **look, label=solver if rows else None)
         span = [0.5 * min(values, default=1e-6), 2.0 * max(values, default=1.0)]
+        axes.fill_between(span, span, span[0], color=TOO_SMALL, linewidth=0.0, label="too small", zorder=0)
         for factor, line, name in ((1.0, "-", "estimate = error"), (10.0, ":", "ten times the error")):
             axes.plot(span, [factor * v for v in span], line, **GREY, label=name)
-        axes.set(xscale="log", yscale="log", xlim=span, ylim=span)
+        axes.set(xscale="log", yscale="log", xlim=span, ylim=span, aspect="equal")
         axes.set(xlabel="true relative error [-]", ylabel="estimated relative error [-]")
     return drawn
 
