@@ -27,9 +27,9 @@ def frequency_range(run: Engine, section: DynamicsSection) -> tuple[float, float
 
 
 def speeds_looked_at(run: Engine, series: coupling.MeshSeries, speed: float) -> tuple[float, float] | None:
-    """Lowest and highest pinion speed of sweep, diagram, run-up and operation [rad/s]; None without a range."""
+    """Lowest and highest pinion speed of all ranges and of operation [rad/s]; None without a range."""
     section = required(run.scene.dynamics, "[dynamics]", "a range of speed")
-    asked = [span for span in (section.sweep, section.diagram, section.run_up) if span is not None]
+    asked = [*section.ranges.values()]
     if not asked:
         return None
     extra, length = section.extra_inertia_kg_m2.each, section.value("length_scale_um")

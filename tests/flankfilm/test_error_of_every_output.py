@@ -71,11 +71,10 @@ def test_errors_are_errors_themselves(name: str):
     assert not exact(name)
 
 
-def test_exact_is_what_takes_no_solver():
-    """What follows from geometry is exact, and nothing that teeth, films or motions are solved for."""
+def test_what_follows_from_the_geometry_is_exact():
     known = {name for name in OUTPUTS if exact(name)}
     assert {name for name, output in OUTPUTS.items() if output.wants == ("geometry",)} <= known
-    assert {OUTPUTS[name].wants for name in known} <= {("geometry",), ("fourier",)}
+    assert not known & {*ERROR_OF, *HELD}
     assert all(OUTPUTS[name].no_error == EXACT for name in known)
 
 

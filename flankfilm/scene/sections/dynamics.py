@@ -228,6 +228,12 @@ class DynamicsSection(Section):
         return max(pressed, self.free_damping_ratio or 0.0)
 
     @property
+    def ranges(self) -> dict[str, SpeedRange]:
+        """Ranges of the speed, or of the mesh frequency, that are given, by their keys."""
+        values = ((name, getattr(self, name)) for name in type(self).model_fields)
+        return {name: value for name, value in values if isinstance(value, SpeedRange)}
+
+    @property
     def dimensionless(self) -> bool:
         """Whether force, error and backlash are given in the oscillator's own units."""
         return self.mean_force is not None
@@ -254,8 +260,8 @@ class DynamicsSection(Section):
             raise refused(f"must have {', '.join(missing)} too in the dimensionless form")
         if physical := self.given_keys(*PHYSICAL):
             raise refused(f"must not have {', '.join(physical)} beside the dimensionless {', '.join(own)}")
-        for name, ranged in (("sweep", self.sweep), ("diagram", self.diagram), ("run_up", self.run_up)):
-            if ranged is not None and ranged.speed_rpm is not None:
+        for name, ranged in self.ranges.items():
+            if ranged.speed_rpm is not None:
                 raise refused(
                     f"must have {name} = {{ frequency = [from, to] }} in the dimensionless form, not speed_rpm"
                 )
