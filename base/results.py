@@ -313,6 +313,8 @@ def why_no_error(record: object, name: str) -> str:
     known = figures(record if isinstance(record, type) else type(record))
     if known[name].no_error:
         return known[name].no_error
+    if name == "converged":
+        return EXACT
     if name == "error" or any(figure.error == name for figure in known.values()):
         return ITSELF
     said = getattr(record, "no_error", "")

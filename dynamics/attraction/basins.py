@@ -15,6 +15,7 @@ from dynamics.model.arrays import AsArray
 from dynamics.model.limits import LONGEST_PERIOD, PATIENT, RADIUS, checked_axis
 from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import Oscillator, settling_periods
+from dynamics.model.reasons import OF_A_GRID
 from dynamics.model.states import apart, checked_state
 from dynamics.motion.exponents import stretch_rate
 from dynamics.motion.sweeps import APERIODIC, creeping, long_flow, orbit_tolerance, repeat_after
@@ -28,6 +29,8 @@ SIEVE = 64, 1  # cells along each side of a chaotic attractor and around it, whi
 @record
 class Attractor:
     """An attractor and its share of the starts."""
+
+    no_error = OF_A_GRID
 
     headline = ("label", "share", "share_error")
 
@@ -46,6 +49,8 @@ class Attractor:
 @record
 class BasinResult(AsArray):
     """Which attractor every start reaches."""
+
+    no_error = OF_A_GRID
 
     x: Array = quantity("1", "starting values of X, or along the first direction of the plane", "x")
     v: Array = quantity("1", "starting values of V, or along the second direction of the plane", "v")

@@ -13,6 +13,7 @@ from dynamics.attraction.basins import Attractor, starting_states
 from dynamics.attraction.known_attractors import KnownAttractors
 from dynamics.model.limits import CONFIDENCE, RADIUS
 from dynamics.model.protocol import Oscillator
+from dynamics.model.reasons import OF_A_GRID
 from dynamics.model.states import Region, checked_region
 from dynamics.motion.sweeps import long_flow
 
@@ -23,6 +24,8 @@ COUNTED = 5  # last levels from which the dimension is taken
 @record
 class BasinBoundary:
     """Boundary between basins."""
+
+    no_error = OF_A_GRID
 
     headline = ("dimension", "dimension_error")
 

@@ -17,6 +17,7 @@ from dynamics.branches.branch import Branch
 from dynamics.branches.continuation import continue_branch
 from dynamics.model.limits import ordered
 from dynamics.model.options import OPTIONS
+from dynamics.model.reasons import FLOW
 from dynamics.motion.sweeps import sweep
 from dynamics.orbits.shooting import Orbit
 
@@ -32,6 +33,8 @@ class Crisis:
     Only if `before` is "aperiodic" does a chaotic attractor end; if not, motions that pass the boundary to and fro
     before they settle begin (the boundary of the basin becomes fractal).
     """
+
+    no_error = FLOW
 
     headline = ("parameter", "before", "after")
 

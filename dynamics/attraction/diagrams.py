@@ -14,6 +14,7 @@ from dynamics.branches.branch import KINDS, NEIMARK_SACKER, Branch, SpecialPoint
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import SEARCHED, ordered, whole_numbers
 from dynamics.model.protocol import PeriodicOscillator, periodic_only
+from dynamics.model.reasons import FLOW
 from dynamics.orbits.finding import find_orbits
 from dynamics.orbits.shooting import find_orbit
 
@@ -21,6 +22,8 @@ from dynamics.orbits.shooting import find_orbit
 @record
 class Diagram(AsArray):
     """Branches of periodic orbits over one parameter."""
+
+    no_error = FLOW
 
     headline = ("parameter", "message")
 

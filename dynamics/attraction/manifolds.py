@@ -18,6 +18,7 @@ from dynamics.flow.protocol import Flow, propagated
 from dynamics.model.limits import POSITIVE
 from dynamics.model.oscillator import GearOscillator
 from dynamics.model.protocol import Oscillator
+from dynamics.model.reasons import FLOW
 from dynamics.model.states import Region, within
 from dynamics.orbits.shooting import Orbit, multipliers_of
 
@@ -29,6 +30,8 @@ SPLIT = 1e-12  # minimum gap of the start's parameter that is still halved
 @record
 class Manifold:
     """A manifold of a periodic orbit in the plane tau = 0."""
+
+    no_error = FLOW
 
     headline = ("kind", "message")
 

@@ -13,6 +13,7 @@ from dynamics.attraction.basins import basins
 from dynamics.model.limits import checked_grid
 from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import PeriodicOscillator, periodic_only
+from dynamics.model.reasons import FLOW
 from dynamics.model.states import apart, scale_of
 from dynamics.motion.sweeps import APERIODIC, DIVERGED, SweepResult, sweep
 from dynamics.orbits.starting import reach
@@ -23,6 +24,8 @@ CHUNK = 16  # values swept before it is looked whether the motions are known
 @record
 class Motion:
     """An attractor at one value of the parameter."""
+
+    no_error = FLOW
 
     headline = ("value", "label")
 
@@ -36,6 +39,8 @@ class Motion:
 @record
 class MultiSweep:
     """Attractors over one parameter."""
+
+    no_error = FLOW
 
     headline = ("parameter", "message")
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from base import Array, Booleans, Cost, InputError, part, quantity, record
 from dynamics.model.arrays import AsArray
+from dynamics.model.reasons import FLOW
 
 MEETS = "meets the branch of half the period"
 UNBOUNDED = "the motion grows without bound"
@@ -24,6 +25,8 @@ NEIMARK_SACKER = "neimark-sacker"
 @record
 class SpecialPoint:
     """A special point."""
+
+    no_error = FLOW
 
     headline = ("kind", "parameter", "label")
 
@@ -86,6 +89,8 @@ def of_kind(points: Sequence[Marked], kind: str, kinds: Sequence[str]) -> list[M
 class Branch(AsArray):
     """A branch of periodic orbits."""
 
+    no_error = FLOW
+
     headline = ("parameter", "periods")
 
     parameter: str = quantity("", "what was varied")
@@ -140,6 +145,8 @@ class Branch(AsArray):
 @record
 class Stretch:
     """Neighbouring orbits of a branch with one label."""
+
+    no_error = FLOW
 
     headline = ("label", "low", "high")
 

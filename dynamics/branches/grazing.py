@@ -15,6 +15,7 @@ from dynamics.flow.motions import period_map, turning_points
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import ordered
 from dynamics.model.protocol import EPS, PeriodicOscillator, periodic_only
+from dynamics.model.reasons import FLOW
 from dynamics.orbits.shooting import multipliers_of
 
 
@@ -24,6 +25,8 @@ class ContactOrbit:
 
     In several freedoms X is y, the displacement that the backlash limits.
     """
+
+    no_error = FLOW
 
     headline = ("clearance", "tau", "acceleration")
 
@@ -40,6 +43,8 @@ class ContactOrbit:
 @record
 class ContactGrazing(AsArray):
     """Parameter values at which the orbit that never leaves contact touches the limit."""
+
+    no_error = FLOW
 
     headline = ("message",)
 

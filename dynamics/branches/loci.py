@@ -17,6 +17,7 @@ from dynamics.branches.sizes import size_of
 from dynamics.branches.special_orbits import Condition, special_orbit
 from dynamics.model.arrays import AsArray
 from dynamics.model.protocol import PeriodicOscillator, periodic_only
+from dynamics.model.reasons import FLOW
 from dynamics.orbits.shooting import motion_label
 
 CODIMENSION_TWO = ("cusp", "saddle-node and grazing", "period-doubling and grazing", "double grazing")
@@ -25,6 +26,8 @@ CODIMENSION_TWO = ("cusp", "saddle-node and grazing", "period-doubling and grazi
 @record
 class Locus(AsArray):
     """A curve of special points in two parameters."""
+
+    no_error = FLOW
 
     headline = ("kind", "message")
 

@@ -15,6 +15,7 @@ from dynamics.branches.locus_predictor import Tracer
 from dynamics.branches.roots import bracketed
 from dynamics.branches.special_orbits import Condition, special_orbit
 from dynamics.model.protocol import EPS
+from dynamics.model.reasons import FLOW
 
 
 @record
@@ -23,6 +24,8 @@ class DoublePoint:
 
     Both multipliers 1 or -1 needs a determinant of 1, that is no damping.
     """
+
+    no_error = FLOW
 
     headline = ("kind",)
 

@@ -10,12 +10,15 @@ from dynamics.branches.continuation import problem_of
 from dynamics.flow.protocol import lost_motion
 from dynamics.model.limits import PERIODS
 from dynamics.model.protocol import PeriodicOscillator, periodic_only
+from dynamics.model.reasons import FLOW
 from dynamics.model.states import checked_state
 
 
 @record
 class MapDerivatives:
     """Image of a state under n periods, with derivatives."""
+
+    no_error = FLOW
 
     parameters: tuple[str, ...] = quantity("", "the parameters, in the order of the columns", "parameter")
     state: Array = quantity("1", "image of X and V, or of displacements and speeds", "coordinate")

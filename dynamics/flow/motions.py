@@ -13,12 +13,15 @@ from dynamics.flow.protocol import Flow, MapResult
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import PERIODS, POINTS, TRANSIENT
 from dynamics.model.protocol import Oscillator, PeriodicOscillator, periodic_only
+from dynamics.model.reasons import FLOW
 from dynamics.model.states import checked_state
 
 
 @record
 class Trajectory(AsArray):
     """Motion at equal times, and its impacts."""
+
+    no_error = FLOW
 
     headline = ("points_per_period",)
 

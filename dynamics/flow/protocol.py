@@ -15,11 +15,14 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, InputError, Integers, in_blocks, quantity, record
+from dynamics.model.reasons import FLOW
 
 
 @record
 class MapResult:
     """Image of a state under n periods."""
+
+    no_error = FLOW
 
     headline = ("log_determinant",)
 

@@ -9,11 +9,14 @@ from dynamics.inverse.events import Event
 from dynamics.inverse.rounding import Rounding
 from dynamics.inverse.scoring import Direction
 from dynamics.model.oscillator import GearOscillator
+from dynamics.model.reasons import FITTED
 
 
 @record
 class Candidate:
     """Parameters that explain events."""
+
+    no_error = FITTED
 
     headline = ("misfit", "by_chance")
 

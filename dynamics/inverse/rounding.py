@@ -10,6 +10,7 @@ import numpy as np
 from base import quantity, record
 from dynamics.inverse.events import Unknown
 from dynamics.inverse.refinement import Fit, moved, refit
+from dynamics.model.reasons import FITTED
 
 DIGITS = 5  # significant digits up to which a value counts as round
 PLAIN = 0.05  # a value so near to a round one by chance more often than this says nothing
@@ -18,6 +19,8 @@ PLAIN = 0.05  # a value so near to a round one by chance more often than this sa
 @record
 class Rounding:
     """A value made round."""
+
+    no_error = FITTED
 
     headline = ("parameter", "before", "after", "cost", "worth")
 

@@ -11,11 +11,14 @@ from base import Array, quantity, record
 from dynamics.inverse.events import Problem
 from dynamics.inverse.matching import Line
 from dynamics.inverse.refinement import Fit, refit
+from dynamics.model.reasons import FITTED
 
 
 @record
 class Direction:
     """A direction in the space of the unknowns, and how well the events see it."""
+
+    no_error = FITTED
 
     headline = ("strength",)
 

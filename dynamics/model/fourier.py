@@ -6,12 +6,15 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, described, quantity, record
+from dynamics.model.reasons import FITTED
 from dynamics.model.stiffness import FourierStiffness
 
 
 @record
 class FourierFit:
     """A Fourier series and what it leaves out."""
+
+    no_error = FITTED
 
     headline = ("order", "remainder_rms", "remainder_max")
 

@@ -14,6 +14,7 @@ from dynamics.model.arrays import AsArray
 from dynamics.model.limits import AVERAGED, TRANSIENT, checked_grid
 from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import Oscillator, settling_periods
+from dynamics.model.reasons import FLOW
 from dynamics.model.states import checked_state, start_state
 from dynamics.motion.sweeps import long_flow
 
@@ -21,6 +22,8 @@ from dynamics.motion.sweeps import long_flow
 @record
 class LyapunovResult(AsArray):
     """Lyapunov exponents, per unit of dimensionless time; two in one freedom."""
+
+    no_error = FLOW
 
     headline = ("standard_error",)
 
@@ -124,6 +127,8 @@ def lyapunov_exponents(
 @record
 class LyapunovScan(AsArray):
     """Lyapunov exponents over a parameter."""
+
+    no_error = FLOW
 
     headline = ("parameter", "defect")
 

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Cost, Faults, Stopwatch, described, quantity, record
-from base.results import EXACT
+from base.results import EXACT, ITSELF
 from dynamics.flow.flows import flow_of
 from dynamics.flow.motions import share_below
 from dynamics.model.arrays import AsArray
@@ -99,7 +99,7 @@ class RunUp(AsArray):
         "block",
     )
     greatest_error: float = quantity(
-        "1", "the same of the largest X, force or output of the whole run that differs most"
+        "1", "the same of the largest X, force or output of the whole run that differs most", no_error=ITSELF
     )
     error: float = quantity(
         "1", "largest of the blocks' errors: where the motion jumps it may do so a block earlier or later"

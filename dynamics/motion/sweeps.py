@@ -16,6 +16,7 @@ from dynamics.model.arrays import AsArray
 from dynamics.model.limits import KEPT, LONGEST_PERIOD, TRANSIENT, checked_grid
 from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import EPS, Oscillator, settling_periods
+from dynamics.model.reasons import FLOW
 from dynamics.model.states import start_state
 from dynamics.orbits.shooting import find_orbit, motion_label
 
@@ -26,6 +27,8 @@ DIVERGED = "diverged"
 @record
 class SweepResult(AsArray):
     """Motions met by a sweep."""
+
+    no_error = FLOW
 
     headline = ("parameter", "direction")
 

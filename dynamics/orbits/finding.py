@@ -17,6 +17,7 @@ from dynamics.flow.protocol import propagated
 from dynamics.model.limits import SEARCHED, whole_numbers
 from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import PeriodicOscillator, periodic_only
+from dynamics.model.reasons import OF_A_SEARCH
 from dynamics.model.states import Region, checked_region
 from dynamics.orbits.hunting import hunted
 from dynamics.orbits.index import index_at_infinity
@@ -39,6 +40,8 @@ RECURRENT = 120  # points of long motions that are tried as starts: chaos passes
 @record
 class IndexCount:
     """Sum of the indices of the fixed points of the n-period map, against what it must be."""
+
+    no_error = OF_A_SEARCH
 
     headline = ("periods", "points", "found", "expected")
 
@@ -66,6 +69,8 @@ class OrbitSet:
     agree pairs of opposite index may be missing. Those are estimated by how often single starts lead to the same orbit:
     as long as some are met once, others are likely not to be met at all.
     """
+
+    no_error = OF_A_SEARCH
 
     headline = ("message",)
 

@@ -15,6 +15,7 @@ from dynamics.flow.protocol import Flow, MapResult
 from dynamics.model.limits import NEWTON_STEPS, ORBIT_PERIODS, TRANSIENT
 from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import EPS, Oscillator
+from dynamics.model.reasons import FLOW
 from dynamics.model.states import checked_state
 from dynamics.orbits.multiple_shooting import shoot_in_stretches
 
@@ -24,6 +25,8 @@ LONG = 200  # cells of an orbit that many shots are tried for, too, where one sh
 @record
 class Orbit:
     """A periodic motion."""
+
+    no_error = FLOW
 
     headline = ("label", "periods", "stable", "residual")
 

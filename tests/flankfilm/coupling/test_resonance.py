@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator, contact_grazing, sweep, trajectory
-from dynamics.flow.motions import force_range
+from dynamics.flow.motions import force_range, share_below
 from flankfilm.coupling.speeds.swept_truncation import grazing_errors
 from flankfilm.coupling.speeds.truncation import Longer
 from flankfilm.coupling.vibration import contact_loss_error as first_loss
@@ -21,7 +21,7 @@ OSCILLATOR = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0
 
 def test_figures_are_those_of_the_motion_sampled_finely():
     found = sweep(OSCILLATOR, "frequency", [0.5, 0.65])
-    force, separated, spread, error, _ = vibrations(OSCILLATOR, found)
+    force, separated, off, spread, error, _ = vibrations(OSCILLATOR, found)
     for i, value in enumerate((0.5, 0.65)):
         here = OSCILLATOR.with_parameter("frequency", value)
         state, periods = found.states[i, -1], int(found.periods[i])
@@ -31,12 +31,14 @@ def test_figures_are_those_of_the_motion_sampled_finely():
         )
         assert spread[i] == pytest.approx(np.std(fine.x[:-1]), rel=3 * error)
         assert separated[i] == pytest.approx(np.mean(fine.x[:-1] < 0.2), abs=1e-3)
+        assert separated[i] == pytest.approx(share_below(fine.x - 0.2), rel=2 * off[i])
     assert separated[0] == 0.0 < separated[1] < 1.0
+    assert off[0] == 0.0 < off[1] < 1e-3
     assert error < 1e-3
 
 
 def test_a_motion_that_was_lost_has_no_figures():
-    assert np.isnan(vibration(OSCILLATOR, np.array([np.nan, 0.0]), 1)[:3]).all()
+    assert np.isnan(vibration(OSCILLATOR, np.array([np.nan, 0.0]), 1)[:4]).all()
 
 
 def test_the_budget_of_the_first_loss_is_what_changed_stiffnesses_do():
