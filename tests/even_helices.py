@@ -8,20 +8,33 @@ from __future__ import annotations
 
 import numpy as np
 
+from base import Array
 from fem.elasticity.line_load import flank_points, line_loads
 from fem.elasticity.prism import Face, Section, prism, section
 from fem.elasticity.ring import ring_of
-from fem.influence.gear_shape import GearShape
+from fem.influence.gear_shape import GearShape, MeshedShape
+from fem.influence.gear_store import GearStore
 from fem.influence.helix_ends import HelixEnds
 from fem.influence.helix_lines import ContactLine
 from fem.influence.helix_waves import HelixHarmonics
 
 
-def without_ends(waves: HelixHarmonics, rho: float, width: float) -> float:
+def in_plane(meshed: MeshedShape, rho: Array) -> Array:
+    """u_r of an even load in the plane, at curvature radii in modules."""
+    return GearStore().flanks(meshed, 32).fine.own(rho)
+
+
+def even_answer(waves: HelixHarmonics, meshed: MeshedShape, rho: Array) -> Array:
+    """c(a, a; 0) without the load's neighbourhood."""
+    return np.asarray(waves.even_own.at(rho) + in_plane(meshed, rho) / waves.helix(rho, rho))
+
+
+def without_ends(waves: HelixHarmonics, meshed: MeshedShape, rho: float, width: float) -> float:
     """Of a body without ends, over a width that is loaded."""
     k, place = np.linspace(0.0, 100.0, 40001), np.array([rho])
     answer = waves.own_at(place, place, k)[0].real * width * np.sinc(0.5 * k * width / np.pi) ** 2 / np.pi
-    return float(waves.even_own.at(place)[0] + np.sum(0.5 * (answer[1:] + answer[:-1]) * np.diff(k)))
+    even = even_answer(waves, meshed, place)[0]
+    return float(even + np.sum(0.5 * (answer[1:] + answer[:-1]) * np.diff(k)))
 
 
 def by_ends(ends: HelixEnds, rho: float, width: float) -> float:

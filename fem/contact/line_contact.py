@@ -33,6 +33,10 @@ if TYPE_CHECKING:
 
 __all__ = ["WINDOW", "LineContact"]
 
+PEAK = 1.5
+"""Half-width of the pressure where a line begins, over that of an even load: strips are as wide, so that slopes of
+Hertz's law and short waves together stay definite."""
+
 WINDOW = 0.5
 """Modules of a line over which the maximum line load is a mean: at ends of lines that of single cells goes with their
 length."""
@@ -113,7 +117,8 @@ class LineContact(CellContact):
         modulus = 2.0 / sum(1.0 / gear.law.plane_modulus for gear in (self.bodies.pinion, self.bodies.wheel))
         cosine = self.pair.helix.base_cosine
         radius = np.full_like(load, np.median(self.sides.radius[lines.touches]) / cosine)
-        level = np.ceil(np.log2(np.maximum(NARROW * hertz_half_width(load, radius, modulus) / unit, 1e-3)))
+        width = PEAK * hertz_half_width(load, radius, modulus)
+        level = np.ceil(np.log2(np.maximum(NARROW * width / unit, 1e-3)))
         return self._by_strips(np.where(level > 0.0, 2.0**level / NARROW, 0.0), share)
 
     def _by_strips(

@@ -41,8 +41,8 @@ class LineCells:
     length : (positions, pairs) array
         Of a cell along the face [m].
     felt : (positions, pairs) array
-        Length over which the bodies feel its load [m]: never less than ``SHORT_CELL`` of a usual cell, since the
-        pressure of a line that begins is no strip of any length.
+        Length over which the bodies feel its load [m]: that of a line of one cell is never below ``SHORT_CELL`` of a
+        usual cell, since the pressure of a line that begins is no strip of any length.
     used : (positions, pairs, cells) boolean array
         Cells that there are: the first ones of each line.
     """
@@ -143,7 +143,7 @@ class ContactLines:
         used = number < count[..., None]
         # cells that there are not have places, which are never used
         rho1 = np.where(used, rho1, np.where(touches, self.place, 0.5 * self.line_of_action)[..., None])
-        felt = np.maximum(each, SHORT_CELL * self.face_width / cells)
+        felt = np.where(count == 1, np.maximum(each, SHORT_CELL * self.face_width / cells), each)
         return LineCells(z, np.stack([rho1, self.line_of_action - rho1]), each, felt, used)
 
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["FeltLine", "GearLines", "gear_lines", "lines_compliance"]
 
 WIDE = 1.5
-"""Half-widths of the pressure below which a cell's load is felt over as much: it is no line any more."""
+"""Half-widths of the pressure below which a line of one cell is felt over as much: it is no line any more."""
 
 
 @record
@@ -159,7 +159,8 @@ def lines_compliance(
     ends = np.concatenate([[0], np.cumsum(count[chosen])])
     compliance = np.zeros((ends[-1], ends[-1]))
     half = 0.5 * bodies.pair.face_width
-    felt = 0.5 * np.maximum(cells.felt[position], WIDE * half_width * module)
+    single = np.where(count == 1, WIDE * half_width * module, 0.0)
+    felt = 0.5 * np.maximum(cells.felt[position], single)
     for gear, solved in enumerate(gears):
         lines = [
             solved.line(

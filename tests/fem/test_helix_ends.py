@@ -19,7 +19,7 @@ from fem.influence.helix_lines import ContactLine, along_line, between_lines
 from fem.influence.helix_waves import helix_harmonics
 from gears import BasicRack, Gear
 from meshes import Sizes
-from tests.even_helices import by_ends, of_half_space, without_ends
+from tests.even_helices import by_ends, even_answer, in_plane, of_half_space, without_ends
 
 TEETH, WIDTH = 36, 20.0
 PINION = MeshedShape(GearShape(Gear(teeth=TEETH, bore_radius=8.375), BasicRack(), 0.3 / 0.7), Sizes(), 1)
@@ -137,7 +137,8 @@ def test_the_upper_end_is_the_lower_end_of_the_other_hand() -> None:
     turned, exact = (subject._Effect(0.0, 1, pieces, place, tables) for tables in (upper, lower))
     for load in lines:
         for point in lines:
-            mine, solved = turned.between(load, point), exact.between(load, point)
+            tooth = point.tooth - load.tooth
+            mine, solved = (each.between(each.on(load), each.on(point), tooth) for each in (turned, exact))
             assert np.abs(mine - solved).max() < 5e-3 * max(np.abs(solved).max(), 0.1)
 
 
@@ -150,14 +151,15 @@ def test_no_twist_is_the_spur_gear(load: str) -> None:
     line = _straight(cells, width, rho)
     pull = np.ones(cells) if load == "even" else 1.0 + line.z / width
     waves, poisson = helix_harmonics(PINION, 0.0), PINION.shape.poisson
-    mine = (along_line(waves, poisson, line) + helix_ends(PINION, 0.0, width).between(line, line)).T @ pull
+    own = along_line(waves, poisson, line, in_plane(PINION, line.rho))
+    mine = (own + helix_ends(PINION, 0.0, width).between(line, line)).T @ pull
     numbers = np.arange(cells)
     modes = np.sqrt(2.0 / cells) * np.cos(np.pi * numbers[:, None] * (numbers + 0.5) / cells)
     modes[0] /= np.sqrt(2.0)
     wavenumber: Array = np.pi * numbers[1:].astype(float) / width
     place = np.array([rho])
     beyond = axial_harmonics(PINION).own_at(place, wavenumber)[0]
-    answer = waves.even_own.at(place) + np.concatenate([[0.0], beyond])
+    answer = even_answer(waves, PINION, place) + np.concatenate([[0.0], beyond])
     own, _ = end_correction(PINION, width).over(np.linspace(-0.5, 0.5, cells + 1) * width)
     spur = (modes.T * answer) @ modes @ pull + line.length * own.at(place)[0] @ pull
     print(load, np.round(mine[::6], 4), np.round(spur[::6], 4), mine.mean() / spur.mean() - 1)
@@ -177,7 +179,7 @@ def test_a_whole_solid_with_free_ends(case: _Case) -> None:
     solid = _Solid(WIDTH, TWIST)
     waves = helix_harmonics(PINION, TWIST)
     for rho in (4.6, 6.2, 7.9):
-        endless = without_ends(waves, rho, WIDTH)
+        endless = without_ends(waves, PINION, rho, WIDTH)
         mine = endless + by_ends(case.ends, rho, WIDTH)
         exact = solid.even_helix(rho)
         print(f"rho {rho}: endless {endless / exact - 1:+.4f}, with free ends {mine / exact - 1:+.4f}")

@@ -17,9 +17,13 @@ from fem.influence.helix_lines import ContactLine, along_line, between_lines
 from fem.influence.helix_waves import HelixHarmonics, helix_harmonics
 from gears import BasicRack, Gear
 from meshes import Sizes, mesh_sector
+from tests.even_helices import even_answer, in_plane
 
 TWIST = 0.025
 SHAPE = GearShape(Gear(teeth=30, bore_radius=8.0), BasicRack(), 0.3 / 0.7)
+
+
+MESHED = MeshedShape(SHAPE, Sizes(), 1)
 
 
 class _Case(NamedTuple):
@@ -29,8 +33,11 @@ class _Case(NamedTuple):
 
 @pytest.fixture(scope="module")
 def case() -> _Case:
-    meshed = MeshedShape(SHAPE, Sizes(), 1)
-    return _Case(helix_harmonics(meshed, 0.0), helix_harmonics(meshed, TWIST))
+    return _Case(helix_harmonics(MESHED, 0.0), helix_harmonics(MESHED, TWIST))
+
+
+def _along(waves: HelixHarmonics, line: ContactLine, half_width: float = 0.0) -> Array:
+    return along_line(waves, SHAPE.poisson, line, in_plane(MESHED, line.rho), half_width)
 
 
 def _line(cells: int, width: float, rho: float, slope: float = 0.0, tooth: int = 0) -> ContactLine:
@@ -42,9 +49,9 @@ def _line(cells: int, width: float, rho: float, slope: float = 0.0, tooth: int =
 def test_a_wave_on_a_straight_line_is_that_of_the_prism(case: _Case, wavenumber: float) -> None:
     """Far from where the load ends; steps of cells of 0.125 modules are not quite the wave."""
     line, k = _line(480, 60.0, 5.0), np.array([wavenumber])
-    moved = along_line(case.straight, SHAPE.poisson, line) @ np.cos(wavenumber * line.z)
+    moved = _along(case.straight, line) @ np.cos(wavenumber * line.z)
     exact = (
-        case.straight.even_own.at(np.array([5.0]))
+        even_answer(case.straight, MESHED, np.array([5.0]))
         + case.straight.own_at(np.array(5.0), np.array(5.0), k).real
     )
     middle = slice(200, 280)
@@ -53,8 +60,10 @@ def test_a_wave_on_a_straight_line_is_that_of_the_prism(case: _Case, wavenumber:
 
 def test_an_even_load_on_a_straight_line_is_the_plane(case: _Case) -> None:
     line = _line(240, 60.0, 5.0)
-    moved = along_line(case.straight, SHAPE.poisson, line).sum(axis=0)
-    assert moved[120] == pytest.approx(float(case.straight.even_own.at(np.array(5.0))), rel=1e-3)
+    moved = _along(case.straight, line).sum(axis=0)
+    assert moved[120] == pytest.approx(
+        float(even_answer(case.straight, MESHED, np.array([5.0]))[0]), rel=1e-3
+    )
 
 
 def _two_lines(waves: HelixHarmonics, cells: int) -> Array:
@@ -63,7 +72,7 @@ def _two_lines(waves: HelixHarmonics, cells: int) -> Array:
     first = _line(cells, 8.0, 4.0, slope)
     second = _line(cells, 8.0, 4.0 + 0.5 * pitch, slope, tooth=1)
     forth, back = between_lines(waves, first, second), between_lines(waves, second, first)
-    own = [along_line(waves, SHAPE.poisson, line) for line in (first, second)]
+    own = [_along(waves, line) for line in (first, second)]
     return np.block([[own[0], forth], [back, own[1]]])
 
 
@@ -80,6 +89,40 @@ def test_smaller_cells_have_the_same_mean(case: _Case) -> None:
     """An even load, whose displacement is a mean over the lines."""
     coarse, fine = (_two_lines(case.twisted, cells).sum() / cells for cells in (24, 48))
     assert coarse == pytest.approx(fine, rel=1e-3)
+
+
+def test_cells_of_two_lengths_answer_each_other_alike(case: _Case) -> None:
+    """Maxwell and Betti by forces: a line load over the length of its cell."""
+    slope, pitch = case.twisted.base_radius * TWIST, 2 * np.pi * case.twisted.base_radius / 30
+    first, second = _line(24, 8.0, 4.0, slope), _line(15, 5.0, 4.0 + 0.5 * pitch, slope, tooth=1)
+    forth = between_lines(case.twisted, first, second) / first.length
+    back = between_lines(case.twisted, second, first) / second.length
+    assert np.abs(forth - back.T).max() < 1e-9 * np.abs(forth).max()
+
+
+def test_a_strip_much_narrower_than_cells_is_a_line(case: _Case) -> None:
+    """It takes from cells what it gives to their neighbours."""
+    line = _line(24, 8.0, 5.0)
+    strip, thin = _along(case.twisted, line, 1e-4), _along(case.twisted, line)
+    assert np.abs(strip - thin).max() < 2e-3 * np.abs(thin).max()
+
+
+def test_strips_keep_narrow_cells_definite(case: _Case) -> None:
+    """With a local law that is about that of a pressure 0.1 modules wide."""
+    line = _line(200, 4.0, 5.0)
+    local = -case.twisted.cos_base / np.pi * (2.0 * np.log(0.05) + 1.0 + SHAPE.poisson) * np.eye(200)
+    least = [np.linalg.eigvalsh(_along(case.twisted, line, width) + local).min() for width in (0.0, 0.1)]
+    assert least[0] < 0.0 < least[1]
+
+
+def test_the_other_hand_is_the_mirror(case: _Case) -> None:
+    """By waves that are solved for it, and by those of this hand run backwards."""
+    slope = case.twisted.base_radius * TWIST
+    line = _line(16, 6.0, 5.0, slope)
+    solved = _along(helix_harmonics(MESHED, -TWIST), _line(16, 6.0, 5.0, -slope))
+    turned = _along(case.twisted.mirrored, _line(16, 6.0, 5.0, -slope))
+    assert np.allclose(turned, solved, atol=1e-9)
+    assert np.allclose(turned[::-1, ::-1], _along(case.twisted, line), atol=1e-9)
 
 
 @pytest.mark.slow

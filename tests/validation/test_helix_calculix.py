@@ -62,7 +62,7 @@ def without_ends_and_ends(twist, rho):
     """Twice the energy by 1 N/mm, of a gear without ends and what free ends add [N m]; nodal forces on this mesh."""
     meshed = MeshedShape(shapes(PAIR, PAIR.teeth_profiles, "strain")[0], Sizes(), 1)
     turn, place, width = twist * MODULE, rho / MODULE, WIDTH / MODULE
-    endless = without_ends(helix_harmonics(meshed, turn), place, width)
+    endless = without_ends(helix_harmonics(meshed, turn), meshed, place, width)
     endless -= of_half_space(section_of(meshed, SIZES, 0, turn), meshed.shape, place)
     ends = by_ends(helix_ends(meshed, turn, width), place, width)
     unit = 1e6 * WIDTH / LAW.plane_modulus
