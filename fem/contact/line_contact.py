@@ -67,7 +67,7 @@ class LineContact(CellContact):
         half_width = face.strip * self.pair.face_width / face.cells / module
 
         def cut() -> CellCoupling:
-            gears = gear_lines(bodies, lines.slope, face)
+            gears = gear_lines(bodies, lines.slope, face.model)
             blocks = tuple(
                 lines_compliance(bodies, gears, offset, cells, position, half_width)
                 for position in range(len(lines.middle))

@@ -155,7 +155,9 @@ class HelixEnds:
         return load.length * self.joining(self.on(load), self.on(point), point.tooth - load.tooth)
 
 
-def helix_ends(meshed: MeshedShape, twist: float, face_width: float) -> HelixEnds:
+def helix_ends(
+    meshed: MeshedShape, twist: float, face_width: float, gears: GearStore | None = None
+) -> HelixEnds:
     """Solve a gear of module 1 and E* = 1 with free ends.
 
     Parameters
@@ -166,8 +168,10 @@ def helix_ends(meshed: MeshedShape, twist: float, face_width: float) -> HelixEnd
         tan(beta_b)/r_b, positive for a right hand [rad/module].
     face_width : float
         In modules: the face is z in [-face_width/2, face_width/2].
+    gears : GearStore, optional
+        Where solved gears are kept.
     """
-    size, half, gears = rounded(abs(twist)), 0.5 * face_width, GearStore()
+    size, half, gears = rounded(abs(twist)), 0.5 * face_width, gears or GearStore()
     pieces, place, lower, upper = gears.record(
         "helix ends", (meshed, size), partial(_single_ends, meshed, size)
     )

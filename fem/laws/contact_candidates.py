@@ -297,7 +297,7 @@ def _edges(setup: MeshSetup, corner: int, place: Array) -> _Edges:
 def unloaded_transmission_error(
     pair: GearPair,
     positions: int = 40,
-    beyond_path: bool = True,
+    beyond_path: bool | None = None,
     deviations: Deviations | None = None,
     pitches: int = 1,
     first_teeth: tuple[int, int] = (0, 0),
@@ -322,7 +322,8 @@ def unloaded_transmission_error(
     >>> unloaded_transmission_error(pair, positions=3)
     array([0., 0., 0.])
     """
-    setup = MeshSetup(pair, positions, beyond_path, deviations, pitches, first_teeth, tip_rounding)
+    tip_edges = pair.helix_angle == 0.0 if beyond_path is None else beyond_path
+    setup = MeshSetup(pair, positions, tip_edges, deviations, pitches, first_teeth, tip_rounding)
     faults = Faults()
     setup.check(faults)
     faults.raise_if_any()

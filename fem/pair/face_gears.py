@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 from base import Cost, Stopwatch, record
 from fem.influence.gear_face import AxialHarmonics, EndCorrection
 from fem.influence.gear_store import GearStore, ResultStore
+from fem.influence.helix_ends import HelixEnds
+from fem.influence.helix_waves import HelixHarmonics
 from fem.pair.face_compliance import ends_of, waves_of
 from fem.pair.face_setting import FREE_ENDS, SLICES
-from gears.pair.spur_only import require_spur
+from fem.pair.line_compliance import gear_lines
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
@@ -23,16 +25,16 @@ class FaceGears:
 
     Attributes
     ----------
-    waves : (AxialHarmonics, AxialHarmonics)
-        Of pinion and wheel.
-    ends : (EndCorrection, EndCorrection) or None
+    waves : (AxialHarmonics, AxialHarmonics) or (HelixHarmonics, HelixHarmonics)
+        Of pinion and wheel; with a helix between any two places of a flank.
+    ends : (EndCorrection, EndCorrection) or (HelixEnds, HelixEnds) or None
         What free ends add; None between walls.
     cost : Cost
         Of what was not there already.
     """
 
-    waves: tuple[AxialHarmonics, AxialHarmonics]
-    ends: tuple[EndCorrection, EndCorrection] | None
+    waves: tuple[AxialHarmonics, AxialHarmonics] | tuple[HelixHarmonics, HelixHarmonics]
+    ends: tuple[EndCorrection, EndCorrection] | tuple[HelixEnds, HelixEnds] | None
     cost: Cost
 
 
@@ -57,10 +59,13 @@ def face_gears(
     >>> face_gears(bodies, "walls").ends is None
     True
     """
-    require_spur(bodies.pair, "waves between walls")
     if model == SLICES:
         return None
     watch, gears = Stopwatch(), GearStore(kept)
+    if bodies.pair.helix_angle != 0.0:
+        first, second = gear_lines(bodies, bodies.pair.helix.base_tangent, model, gears)
+        of_ends = None if first.ends is None or second.ends is None else (first.ends, second.ends)
+        return FaceGears((first.waves, second.waves), of_ends, Cost(watch.seconds))
     pinion, wheel = bodies.meshed
     waves = waves_of(pinion, gears), waves_of(wheel, gears)
     ends = None

@@ -25,7 +25,6 @@ from fem.pair.face_setting import FREE_ENDS
 if TYPE_CHECKING:
     from fem.influence.gear_compliance import GearCompliance
     from fem.laws.line_candidates import LineCells
-    from fem.pair.face_setting import FaceSetting
     from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["FeltLine", "GearLines", "gear_lines", "lines_compliance"]
@@ -95,7 +94,9 @@ class GearLines:
         return np.asarray(moved / (modulus * module))
 
 
-def gear_lines(bodies: PairCompliance, slope: float, face: FaceSetting) -> tuple[GearLines, GearLines]:
+def gear_lines(
+    bodies: PairCompliance, slope: float, model: str = FREE_ENDS, store: GearStore | None = None
+) -> tuple[GearLines, GearLines]:
     """Both gears of a helical pair, solved where they are kept nowhere.
 
     Parameters
@@ -103,16 +104,19 @@ def gear_lines(bodies: PairCompliance, slope: float, face: FaceSetting) -> tuple
     bodies : PairCompliance
     slope : float
         d rho1/dz along a line of contact.
-    face : FaceSetting
+    model : str
+        Free ends are left out with any other one than "free-ends".
+    store : GearStore, optional
+        Where solved gears are kept.
     """
-    pair, store = bodies.pair, GearStore()
+    pair, store = bodies.pair, store or GearStore()
     lines = ceil(pair.total_contact_ratio)
     solved = []
     for gear, side in enumerate((1, -1)):
         meshed, width = bodies.meshed[gear], rounded(pair.face_widths[gear] / pair.module)
         twist = side * slope * pair.module / pair.base_radii[gear]
         reach = max(meshed.shape.reach, lines)
-        ends = helix_ends(meshed, twist, width) if face.model == FREE_ENDS else None
+        ends = helix_ends(meshed, twist, width, store) if model == FREE_ENDS else None
         solved.append(
             GearLines(
                 (bodies.pinion, bodies.wheel)[gear],

@@ -113,7 +113,7 @@ def _held(scene: Scene, pair: gears.GearPair) -> tuple[Fault, ...]:
                 held_profiles(pair, hubs)
 
     edges = Faults()
-    MeshSetup(pair, tip_rounding=tip_roundings(scene)).check(edges)
+    MeshSetup(pair, beyond_path=scene.tip_edges, tip_rounding=tip_roundings(scene)).check(edges)
     keys = {f"tip_rounding[{k}]": f"{gear}.tip_rounding_um" for k, gear in enumerate(GEARS)}
     rounded = (replace(fault, where=keys.get(fault.where, fault.where)) for fault in edges.found)
     return (*_faults(build), *(in_keys(fault, scene.pair, "pair") for fault in rounded))

@@ -12,7 +12,6 @@ import fem
 from base import Figure, Quantity
 from base.results import EXACT, ITSELF, figures, why_no_error
 from flankfilm import coupling
-from flankfilm.building.face import varies_by
 from flankfilm.building.pair import pinion_speed_if_any
 from flankfilm.figures.reading import PER_FACE, read_figure
 from flankfilm.output.variables import figure_of, of_models, of_quantities, of_record, sentence
@@ -46,6 +45,7 @@ from flankfilm.stages.mesh import (
     PAIR,
     PLAN,
     TEETH,
+    along_the_face,
     loaded_teeth,
     with_arcs,
 )
@@ -95,10 +95,10 @@ def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
     if scene.stiffness.model == "given" or not wants & {"stiffness", "film"}:
         return
     yield PLAN
-    if varies_by(scene):
+    if along_the_face(scene):
         yield FACE_GEARS
     yield from (DRY_CYCLE, REFERENCES)
-    if wants & {"closed-forms", "report"}:
+    if wants & {"closed-forms", "report"} and not scene.pair.helical:
         yield OTHER_CYCLES
     if scene.film.model != "none" or "film" in wants:
         yield MESH

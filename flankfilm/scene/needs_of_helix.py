@@ -25,18 +25,14 @@ __all__ = ["HELIX", "KEYS_OF_SPUR", "WANTS_OF_SPUR", "faults_of_helix", "refuse_
 HELIX = "pair.helix_angle_deg"
 """Key of the helix."""
 
-_CYCLE = "loaded contact on oblique lines"
 _MOTION = "motion with axial forces and tilting gears"
 _FILM = "films along oblique lines"
 
 WANTS_OF_SPUR: Mapping[str, str] = {
-    "stiffness": _CYCLE,
-    "torques": _CYCLE,
     "revolution": "loaded contact on oblique lines with deviations of each tooth",
     "root-stress": "stress at the roots under oblique lines",
     "film": _FILM,
     "losses": "friction and heat of films along oblique lines",
-    "fourier": _CYCLE,
     "sweep": _MOTION,
     "diagram": _MOTION,
     "spectrum": _MOTION,
@@ -88,8 +84,6 @@ class SpurKey:
         Whether a given value is refused.
     always : bool
         Whether it is refused whatever is wanted; else only where loaded teeth are.
-    left_out : Any
-        Value that stands where the key is not given; None for one that is not refused then.
     """
 
     path: str
@@ -98,7 +92,6 @@ class SpurKey:
     remedy: str = "Leave it out"
     refuses: Callable[[Any], bool] = _anything
     always: bool = False
-    left_out: Any = None
 
 
 KEYS_OF_SPUR: tuple[SpurKey, ...] = (
@@ -157,23 +150,15 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
         "contact with tip edges outside the path",
         "must be false",
         "Give contact_beyond_path = false",
-        left_out=True,
     ),
     SpurKey("film.model", _FILM, 'must be "none"', 'Take film.model = "none"', _other_than("none")),
     SpurKey("film", _FILM, 'must be of model = "none"', 'Take film.model = "none"', _without_model),
     SpurKey("heat", "loaded teeth at other temperatures"),
-    SpurKey("alignment", "axes out of parallel"),
     SpurKey("shafts", "shafts under axial forces and tilting moments"),
     SpurKey("pair.tight", "twisted teeth that bear on both sides", "must be false", "Give more backlash"),
     SpurKey("pair.*.hub", "rigid hubs in twisted bodies"),
     SpurKey("pair.*.blank", "webs of twisted bodies"),
-    SpurKey("pair.*.face_width_mm", "faces wider than that in contact"),
-    SpurKey("pair.*.face_offset_mm", "faces wider than that in contact", "must be 0"),
     SpurKey("pair.*.tip_rounding_um", "contact with tip edges outside the path", "must be 0"),
-    *(
-        SpurKey(f"pair.*.{lead}", "leads of twisted flanks", "must be 0")
-        for lead in ("crowning_um", "lead_slope_um", "end_relief_um")
-    ),
 )
 """Keys, each with what is missing for a helical pair."""
 
@@ -217,7 +202,7 @@ def _helix_angle(raw: Mapping[str, Any]) -> float:
 
 
 def _given(raw: Mapping[str, Any]) -> Iterator[tuple[str, Any, SpurKey]]:
-    """Keys of the table that a scene gives, or that stand there by default; each with its value and its row."""
+    """Keys of the table that a scene gives, each with its value and its row."""
     from flankfilm.scene.schema import Scene
 
     values = {path: value for path, _, value in given_keys(raw, Scene)}
@@ -226,8 +211,6 @@ def _given(raw: Mapping[str, Any]) -> Iterator[tuple[str, Any, SpurKey]]:
             path for path in values if path.count(".") == row.path.count(".") and fnmatchcase(path, row.path)
         ]
         yield from ((path, values[path], row) for path in paths)
-        if not paths and row.left_out is not None:
-            yield row.path, row.left_out, row
 
 
 def refuse_helix(scene: Scene, what: str) -> None:

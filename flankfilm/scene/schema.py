@@ -127,6 +127,11 @@ class Scene(Section):
         )
 
     @property
+    def tip_edges(self) -> bool:
+        """Whether tip edges may touch outside the path: lines of contact that cross the face are held to it."""
+        return self.stiffness.contact_beyond_path and not (self.pair is not None and self.pair.helical)
+
+    @property
     def bore_inertia(self) -> tuple[float, float]:
         """What turns with the bores of pinion and wheel beside their own bodies [kg m2]."""
         return (0.0, 0.0) if self.dynamics is None else self.dynamics.extra_inertia_kg_m2.each

@@ -23,6 +23,7 @@ from flankfilm.coupling.mesh.require_converged import believed
 from flankfilm.plan.decide import Plan, decide
 from flankfilm.plan.film_choice import foreseen_change
 from flankfilm.plan.options import FilmChange
+from flankfilm.scene import Scene
 from flankfilm.scene.plain_gears import plain_flanks
 from flankfilm.scene.sections.ground import under_keys
 from flankfilm.stages.engine import Engine, stage
@@ -102,7 +103,7 @@ def BODIES(run: Engine) -> fem.PairCompliance:
             tolerance=tolerance,
             plane=scene.stiffness.plane,
             supports=supports(scene),
-            tip_edges=scene.stiffness.contact_beyond_path,
+            tip_edges=scene.tip_edges,
             motion=contacts_move(pair, scene.stiffness.moving_contact),
             kept=run.parts,
         )
@@ -128,6 +129,11 @@ def FACE_GEARS(run: Engine) -> fem.FaceGears | None:
     return fem.face_gears(run[COMPLIANCE], face(run.scene).get("face_model", FREE_ENDS), run.parts)
 
 
+def along_the_face(scene: Scene) -> bool:
+    """Whether loads vary along the face: by what a scene gives, or since lines of contact cross it."""
+    return bool(varies_by(scene)) or (scene.pair is not None and scene.pair.helical)
+
+
 def loaded_teeth(
     run: Engine, *, by_elements: bool = False, every_tooth: bool = False
 ) -> coupling.LoadedTeeth:
@@ -135,7 +141,7 @@ def loaded_teeth(
     scene, pair = run.scene, run[PAIR]
     model = "fem" if by_elements else run[PLAN].stiffness.choice
     flanks = coupling.Flanks(
-        scene.stiffness.contact_beyond_path,
+        scene.tip_edges,
         deviations(scene, pair, every_tooth=every_tooth),
         tip_roundings(scene),
         scene.operating.friction if scene.operating else 0.0,
@@ -144,7 +150,7 @@ def loaded_teeth(
         **face(scene),
     )
     compliance = run[COMPLIANCE] if model == "fem" else None
-    if compliance is not None and varies_by(scene):
+    if compliance is not None and along_the_face(scene):
         _ = run[FACE_GEARS]  # contacts find them in the process
     arguments = pair, pinion_torque(scene), model, scene.stiffness.pairs, compliance, flanks
     return coupling.LoadedTeeth(*arguments, scene.reference, scene.bore_inertia)

@@ -79,7 +79,8 @@ class LoadedTeeth:
         """Check what is given, and the names of the models."""
         with Faults() as faults:
             if faults.instance("pair", self.pair, gears.GearPair):
-                check_spur(faults, self.pair, "loaded teeth")
+                if (self.model, self.pairs) != ("fem", "coupled"):
+                    check_spur(faults, self.pair, "single pairs")
             faults.number("torque", self.torque, Limit(unit="N m", remedy="give the pinion's torque"))
             faults.instance(
                 "compliance", self.compliance, fem.PairCompliance, "as of fem.compliance", optional=True
