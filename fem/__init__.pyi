@@ -1,4 +1,5 @@
 from .cycle.face_loads import FaceLoads as FaceLoads
+from .cycle.line_loads import LineLoads as LineLoads
 from .cycle.mesh_cycle import mesh_cycle as mesh_cycle
 from .cycle.result import MeshCycle as MeshCycle
 from .elasticity.support import Support as Support

@@ -72,7 +72,7 @@ class LineLoads:
         shown="um",
         no_error=IN_SINGLE_CELLS,
     )
-    most_loaded: Array = part("largest mean over half a module of a line (positions,) [N/m]")
+    most_loaded: Array = part("largest mean over half a module of each line (positions, pairs) [N/m]")
     pair: GearPair = part("the gears")
     setting: FaceSetting = part("cells, alignment and leads")
     slope: float = quantity(
@@ -124,13 +124,13 @@ class LineLoads:
     @described("N/m", "position", shown="N/mm", error="line_load_error")
     def maximum_line_load(self) -> Array:
         """Maximum line load: the largest mean over half a module of a line."""
-        return self.most_loaded
+        return np.asarray(self.most_loaded.max(axis=1))
 
     @described("1", "position", error="error")
     def line_load_factor(self) -> Array:
         """Maximum line load over the mean of all lines of contact."""
         mean = self.force.sum(axis=(1, 2)) / self.whole_length
-        return np.asarray(self.most_loaded / mean)
+        return np.asarray(self.maximum_line_load / mean)
 
     @described("1", error="error")
     def greatest_line_load_factor(self) -> float:
@@ -205,7 +205,7 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         length=length,
         line_load=of_cells(per_length),
         gap=of_cells(np.maximum(over.remaining_gaps[number][0], 0.0)),
-        most_loaded=cells.largest_mean(forces, WINDOW * pair.module * pair.helix.base_cosine).max(axis=-1)
+        most_loaded=cells.largest_mean(forces, WINDOW * pair.module * pair.helix.base_cosine)
         * pair.helix.base_cosine,
         pair=pair,
         setting=setup.face,

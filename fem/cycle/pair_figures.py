@@ -64,12 +64,19 @@ class PairFigures:
         return np.asarray(self.forces.sum(axis=-1) * self.pair.helix.base_cosine)
 
     def _loaded_radius(self) -> tuple[Array, Array, float]:
-        """Maximum line loads [N/m] and radii of relative curvature [m] of contacts of two flanks, else nan; E'."""
+        """Maximum line loads [N/m] and radii of relative curvature [m] of contacts of two flanks, else nan; E'.
+
+        Of lines of contact that cross the face the largest mean over half a module, with the radius at their middle.
+        """
         touching = np.isfinite(self.rho1) & (self.forces > 0)
         rho1, rho2 = self.flank_rho
         even = self.forces / self.pair.face_width
         load = np.where(touching, even if self.face is None else self.face.line_load.max(axis=-1), np.nan)
-        return load, rho1 * rho2 / (rho1 + rho2), reduced_modulus(self.pair, self.plane)
+        radius = rho1 * rho2 / (rho1 + rho2)
+        if self.lines is not None:
+            load = np.where(touching, self.lines.most_loaded, np.nan)
+            radius = radius / self.pair.helix.base_cosine
+        return load, radius, reduced_modulus(self.pair, self.plane)
 
     @described("Pa", "position pair", shown="MPa", no_error=HERTZ)
     def hertz_pressure(self) -> Array:
@@ -77,15 +84,11 @@ class PairFigures:
 
         nan at tip edges too: there the pressure is no ellipse, and at a sharp corner it has no bound.
         """
-        if self.lines is not None:
-            return _largest(self.lines.hertz_pressure)
         return peak_pressure(*self._loaded_radius())
 
     @described("m", "position pair", shown="um", no_error=HERTZ)
     def half_width(self) -> Array:
         """Half-width of the Hertz contact, the largest over the face; nan where two flanks do not touch."""
-        if self.lines is not None:
-            return _largest(self.lines.half_width)
         return half_width(*self._loaded_radius())
 
     def surface_speeds(self, speed: float = 1.0) -> Array:
@@ -165,9 +168,3 @@ class PairFigures:
             ):
                 total -= np.sum(np.where(bears, other.lever - lost, 0.0) * per_pair, axis=-1)
         return sums[0], sums[1]
-
-
-def _largest(values: Array) -> Array:
-    """Largest of the cells of each line (..., cells) that touch; nan where none does."""
-    most = np.nan_to_num(values).max(axis=-1)
-    return np.where(most > 0.0, most, np.nan)

@@ -63,9 +63,9 @@ def face_gears(
         return None
     watch, gears = Stopwatch(), GearStore(kept)
     if bodies.pair.helix_angle != 0.0:
-        first, second = gear_lines(bodies, bodies.pair.helix.base_tangent, model, gears)
-        of_ends = None if first.ends is None or second.ends is None else (first.ends, second.ends)
-        return FaceGears((first.waves, second.waves), of_ends, Cost(watch.seconds))
+        here, there = gear_lines(bodies, bodies.pair.helix.base_tangent, model, gears)
+        of_lines = None if here.ends is None or there.ends is None else (here.ends, there.ends)
+        return FaceGears((here.waves, there.waves), of_lines, Cost(watch.seconds))
     pinion, wheel = bodies.meshed
     waves = waves_of(pinion, gears), waves_of(wheel, gears)
     ends = None

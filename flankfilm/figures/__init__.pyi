@@ -29,6 +29,8 @@ from .heat import heat_along_path as heat_along_path
 from .heat import losses_along_path as losses_along_path
 from .heat import temperature_field as temperature_field
 from .heat import temperatures_along_path as temperatures_along_path
+from .lines import line_load_map as line_load_map
+from .lines import load_centre as load_centre
 from .motion import diagram as diagram
 from .motion import portraits as portraits
 from .motion import resonance as resonance

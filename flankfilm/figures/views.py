@@ -80,6 +80,7 @@ PICTURES: Mapping[str, Picture] = {
     "gears.closed_form.record:ClosedForm": Picture("closed_forms.closed_form", "closed_form", "closed_form"),
     "fem.cycle.result:MeshCycle": Picture("stiffness.mesh_cycle", "dry", "loaded"),
     "fem.cycle.face_loads:FaceLoads": Picture("face.flank_map", "dry_face", "with_points"),
+    "fem.cycle.line_loads:LineLoads": Picture("lines.load_centre", "dry_lines", "with_points"),
     "fem.stress.tooth_root:RootStress": Picture("gear.root_stress", "root", "passages"),
     "fem.stress.gear_root:FaceRootStress": Picture("face_roots.root_face_map", "root_face"),
     "ehl.films.film:Film": Picture("curves.curves", "contact_film", "contact_film"),

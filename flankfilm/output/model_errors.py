@@ -89,7 +89,9 @@ def _teeth(contact: Any) -> float:
 def _contact(cycle: Any) -> Any:
     """Loaded contact of a mesh cycle by finite elements of coupled pairs; None of other models."""
     contact = getattr(cycle, "contact", cycle)
-    return contact if contact is not None and hasattr(contact, "beyond_path") else None
+    if contact is None or not hasattr(contact, "beyond_path"):
+        return None
+    return contact if contact.lines is None else None
 
 
 def _stiffness(law: float) -> Callable[[Any], float | None]:

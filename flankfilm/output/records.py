@@ -91,6 +91,8 @@ def loaded(prefix: str, cycle: fem.MeshCycle) -> Parts:
     yield of_quantities("path", drawn.points(cycle.pair))
     if cycle.face is not None:
         yield of_record(f"{prefix}_face", cycle.face)
+    if cycle.lines is not None:
+        yield of_record(f"{prefix}_lines", cycle.lines)
 
 
 def cycle(prefix: str, cycle: MeshCycle) -> Parts:

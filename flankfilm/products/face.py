@@ -60,8 +60,13 @@ def FACE_TOLERANCE(run: Engine) -> coupling.FaceTolerance:
 
 def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
     """Other models beside a mesh cycle whose load varies along the face."""
-    if wants & {"stiffness", "film"} and scene.stiffness.model != "given" and varies_by(scene):
+    if wants & {"stiffness", "film"} and scene.stiffness.model != "given" and _across(scene):
         yield FACE_MODELS
+
+
+def _across(scene: Scene) -> bool:
+    """Whether loads vary along contacts that lie along the face, as those of spur gears do."""
+    return bool(varies_by(scene)) and not (scene.pair is not None and scene.pair.helical)
 
 
 def _loads(computed: Computed) -> fem.FaceLoads | None:
@@ -115,7 +120,7 @@ def _by_model(name: str, about: Figure, value: Take, error: Take | None = None) 
     """Figure of the comparison with other models."""
 
     def of(take: Take) -> Of:
-        return lambda engine: take(engine[FACE_MODELS]) if varies_by(engine.scene) else None
+        return lambda engine: take(engine[FACE_MODELS]) if _across(engine.scene) else None
 
     return output_of(name, about, "stiffness", of(value), error=None if error is None else of(error))
 
@@ -129,7 +134,7 @@ def _over_tolerance(name: str, about: Figure, figure: str, **held: Unpack[Held])
     """Figure of the face over the tolerance of the alignment."""
 
     def of(engine: Engine) -> Any:
-        return getattr(engine[FACE_TOLERANCE], figure) if varies_by(engine.scene) else None
+        return getattr(engine[FACE_TOLERANCE], figure) if _across(engine.scene) else None
 
     return output_of(name, about, "stiffness", of, EVEN, **held)
 

@@ -98,7 +98,7 @@ def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
     if along_the_face(scene):
         yield FACE_GEARS
     yield from (DRY_CYCLE, REFERENCES)
-    if wants & {"closed-forms", "report"} and not scene.pair.helical:
+    if wants & {"closed-forms", "report"} and not (scene.pair is not None and scene.pair.helical):
         yield OTHER_CYCLES
     if scene.film.model != "none" or "film" in wants:
         yield MESH

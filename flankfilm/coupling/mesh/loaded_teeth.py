@@ -78,9 +78,9 @@ class LoadedTeeth:
     def __post_init__(self) -> None:
         """Check what is given, and the names of the models."""
         with Faults() as faults:
-            if faults.instance("pair", self.pair, gears.GearPair):
-                if (self.model, self.pairs) != ("fem", "coupled"):
-                    check_spur(faults, self.pair, "single pairs")
+            ready = faults.instance("pair", self.pair, gears.GearPair)
+            if ready and (self.model, self.pairs) != ("fem", "coupled"):
+                check_spur(faults, self.pair, "single pairs")
             faults.number("torque", self.torque, Limit(unit="N m", remedy="give the pinion's torque"))
             faults.instance(
                 "compliance", self.compliance, fem.PairCompliance, "as of fem.compliance", optional=True
