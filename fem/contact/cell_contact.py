@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Integers, record
-from fem.contact.cell_laws import CellLaws, between_middles
+from fem.contact.cell_laws import CellLaws, between_middles, face_load_factors, greatest_error
 from fem.contact.cell_matrix import cell_coupling, cross_coupling
 from fem.contact.contact_sides import ContactSides
-from fem.contact.face_errors import face_load_factors, greatest_error
 from fem.contact.partial_cells import WITHIN, gap_drops, partial_cells
 from fem.elasticity.flamant import hertz_half_width
 from fem.pair.face_shafts import HeldShafts, ShaftsUnderFace, shafts_under_face

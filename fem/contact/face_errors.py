@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import hypot, sqrt
+from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,11 +19,8 @@ if TYPE_CHECKING:
     from gears import LoadShare
 
 __all__ = [
-    "FEW_CELLS",
     "CellErrors",
     "cell_errors",
-    "face_load_factors",
-    "greatest_error",
     "half_as_many",
     "no_errors",
 ]
@@ -33,12 +30,6 @@ LEFT = 1.0 / sqrt(3.0)
 
 Every doubling changes about half as much as the one before, with a sign by chance: (1/4 + 1/16 + ...)^(1/2).
 """
-
-LEFT_OF_LOAD = 0.25
-"""Part that is left, in the second order, of what a maximum load changed by and a parabola did not foresee."""
-
-FEW_CELLS = 4
-"""Cells that a contact needs; with fewer the result says so."""
 
 ENDS_ERROR = 0.03
 """Part of what free ends do that their coarse sections leave uncertain, beside three-dimensional elements.
@@ -209,37 +200,3 @@ def _between_walls(
     few, _ = half_as_many(face)
     start = coarse.forces[torque, *at][None, None, None]
     return over.at(torque, *at).shared(replace(few, model=WALLS), start)
-
-
-def greatest_error(cells: Array, fewer: Array) -> float:
-    """Relative error of the largest of line loads (cells,), by those with half as many.
-
-    Within the face it is what the largest cell lacks to the top of a parabola through it and its neighbours, and a
-    part of what the last doubling changed beyond what the parabola there foresaw. At an end, and where few cells bear,
-    all that the doubling changed is left, in the first order, or what the parabola foresees, if more.
-    """
-    k, most = int(np.argmax(cells)), float(cells.max())
-    change = (most - float(fewer.max())) / max(len(cells) / len(fewer) - 1.0, 1.0)
-    if k in (0, len(cells) - 1) or np.count_nonzero(cells) < FEW_CELLS:
-        return max(abs(change), abs(_foreseen(cells))) / most
-    bend, slope = 2.0 * cells[k] - cells[k - 1] - cells[k + 1], cells[k + 1] - cells[k - 1]
-    lacking = bend / 24.0 + slope**2 / (8.0 * bend)
-    return float(hypot(lacking, LEFT_OF_LOAD * (change - _foreseen(fewer))) / most)
-
-
-def _foreseen(cells: Array) -> float:
-    """What halving the cells adds to the largest, by a parabola with the means of three."""
-    k, last = int(np.argmax(cells)), len(cells) - 1
-    if last < 2:
-        return 0.0
-    if k in (0, last):
-        first, second, third = cells[:3] if k == 0 else cells[:-4:-1]
-        return float(3.0 * first - 4.0 * second + third) / 8.0
-    return abs(float(cells[k + 1] - cells[k - 1])) / 8.0
-
-
-def face_load_factors(forces: Array) -> Array:
-    """Maximum force on a cell of the most loaded pair over that pair's mean (...) of forces (..., pairs, cells)."""
-    most = np.argmax(forces.sum(axis=-1), axis=-1)[..., None, None]
-    chosen = np.take_along_axis(forces, most, axis=-2)[..., 0, :]
-    return np.asarray(chosen.max(axis=-1) / chosen.mean(axis=-1))

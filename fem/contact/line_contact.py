@@ -7,7 +7,7 @@ rho1 rho2/((rho1 + rho2) cos(beta_b)).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -21,13 +21,14 @@ from fem.contact.partial_cells import WITHIN, drops_within
 from fem.elasticity.flamant import hertz_half_width
 from fem.laws.contact_candidates import line_gaps
 from fem.laws.local_law import PairLaws
-from fem.pair.line_compliance import gear_lines, lines_compliance
+from fem.pair.line_compliance import GearLines, gear_lines
 from fem.pair.wide_contact import NARROW, shares_together
 
 if TYPE_CHECKING:
     from fem.laws.line_candidates import ContactLines, LineCells
     from fem.laws.mesh_setup import MeshSetup
     from fem.pair.face_setting import FaceSetting
+    from fem.pair.pair_compliance import PairCompliance
     from gears import LoadShare
     from gears.sharing.staying_contacts import JointLaw
 
@@ -36,6 +37,9 @@ __all__ = ["WINDOW", "LineContact"]
 PEAK = 1.5
 """Half-width of the pressure where a line begins, over that of an even load: strips are as wide, so that slopes of
 Hertz's law and short waves together stay definite."""
+
+WIDE = 1.5
+"""Half-widths of the pressure below which a line of one cell is felt over as much: it is no line any more."""
 
 WINDOW = 0.5
 """Modules of a line over which the maximum line load is a mean: at ends of lines that of single cells goes with their
@@ -193,3 +197,54 @@ def _slopes(bends: Array, before: LineCells, cells: LineCells) -> Array:
     per_part = np.take_along_axis(step, np.broadcast_to(at, (*bends.shape[:-1], at.shape[-1])), axis=-1)
     ratio = np.where(count > 1, count / np.maximum(cells.count, 1), 0.0)[..., None]
     return np.asarray(per_part * ratio)
+
+
+def lines_compliance(
+    bodies: PairCompliance,
+    gears: Sequence[GearLines],
+    offset: Sequence[int],
+    cells: LineCells,
+    position: int,
+    half_width: float,
+) -> Array:
+    """Compliance of both bodies between the used cells of all lines at a position (n, n) [m/N], but for local laws.
+
+    Parameters
+    ----------
+    bodies : PairCompliance
+    gears : two GearLines
+    offset : sequence of int
+        Base pitches by which each line is ahead.
+    cells : LineCells
+    position : int
+    half_width : float
+        Of the pressure, in modules.
+    """
+    count, module = cells.count[position], bodies.pair.module
+    chosen = np.flatnonzero(count).tolist()
+    ends = np.concatenate([[0], np.cumsum(count[chosen])])
+    compliance = np.zeros((ends[-1], ends[-1]))
+    half = 0.5 * bodies.pair.face_width
+    single = np.where(count == 1, WIDE * half_width * module, 0.0)
+    felt = 0.5 * np.maximum(cells.felt[position], single)
+    for gear, solved in enumerate(gears):
+        lines = [
+            solved.line(
+                int(offset[line]),
+                np.clip(cells.z[position, line, : count[line]], felt[line] - half, half - felt[line]),
+                cells.rho[gear, position, line, : count[line]],
+                2.0 * felt[line],
+            )
+            for line in chosen
+        ]
+        for i, load in enumerate(lines):
+            own = slice(ends[i], ends[i + 1])
+            compliance[own, own] += solved.between(load, load, half_width)
+            for j, point in enumerate(lines[:i]):
+                other = slice(ends[j], ends[j + 1])
+                moved = solved.between(load, point, half_width)
+                compliance[own, other] += moved
+                compliance[other, own] += moved.T
+    # what hubs and supports move all teeth by, by the part of the normal force across the axis
+    common = (sum(bodies.support) + sum(bodies.step_windup)) * bodies.pair.helix.base_cosine**2
+    return compliance + common

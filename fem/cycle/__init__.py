@@ -2,5 +2,5 @@
 
 `mesh_cycle` stands here, with the record that it returns.
 
-Public, in `fem`: `FaceLoads`, `mesh_cycle`, `MeshCycle`.
+Public, in `fem`: `FaceLoads`, `LineLoads`, `mesh_cycle`, `MeshCycle`.
 """

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from base import Array, Booleans, Cost, RangeWarning
+from fem.contact.cell_laws import FEW_CELLS
 from fem.contact.contact_state import ContactState
-from fem.contact.face_errors import FEW_CELLS
 from fem.contact.opposite_flanks import OppositeFlanks
 from fem.cycle.events import ContactProblem
 from fem.cycle.face_loads import face_loads

@@ -9,7 +9,7 @@ import numpy as np
 
 from base import Array, Booleans, described, part, quantity, record
 from base.results import EXACT
-from fem.contact.face_errors import face_load_factors
+from fem.contact.cell_laws import face_load_factors
 from fem.cycle.face_cells import IN_SINGLE_CELLS, FaceCells
 from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.pair.face_setting import FaceSetting

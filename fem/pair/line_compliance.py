@@ -7,7 +7,6 @@ the axis has the line load F/h.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from math import ceil
 from typing import TYPE_CHECKING
@@ -24,13 +23,9 @@ from fem.pair.face_setting import FREE_ENDS
 
 if TYPE_CHECKING:
     from fem.influence.gear_compliance import GearCompliance
-    from fem.laws.line_candidates import LineCells
     from fem.pair.pair_compliance import PairCompliance
 
-__all__ = ["FeltLine", "GearLines", "gear_lines", "lines_compliance"]
-
-WIDE = 1.5
-"""Half-widths of the pressure below which a line of one cell is felt over as much: it is no line any more."""
+__all__ = ["FeltLine", "GearLines", "gear_lines"]
 
 
 @record
@@ -135,54 +130,3 @@ def _waves(meshed: MeshedShape, twist: float, reach: int, store: GearStore) -> H
     size = rounded(abs(twist))
     right = store.record("helix waves", (meshed, size, reach), partial(helix_harmonics, meshed, size, reach))
     return right if twist > 0.0 else right.mirrored
-
-
-def lines_compliance(
-    bodies: PairCompliance,
-    gears: Sequence[GearLines],
-    offset: Sequence[int],
-    cells: LineCells,
-    position: int,
-    half_width: float,
-) -> Array:
-    """Compliance of both bodies between the used cells of all lines at a position (n, n) [m/N], but for local laws.
-
-    Parameters
-    ----------
-    bodies : PairCompliance
-    gears : two GearLines
-    offset : sequence of int
-        Base pitches by which each line is ahead.
-    cells : LineCells
-    position : int
-    half_width : float
-        Of the pressure, in modules.
-    """
-    count, module = cells.count[position], bodies.pair.module
-    chosen = np.flatnonzero(count).tolist()
-    ends = np.concatenate([[0], np.cumsum(count[chosen])])
-    compliance = np.zeros((ends[-1], ends[-1]))
-    half = 0.5 * bodies.pair.face_width
-    single = np.where(count == 1, WIDE * half_width * module, 0.0)
-    felt = 0.5 * np.maximum(cells.felt[position], single)
-    for gear, solved in enumerate(gears):
-        lines = [
-            solved.line(
-                int(offset[line]),
-                np.clip(cells.z[position, line, : count[line]], felt[line] - half, half - felt[line]),
-                cells.rho[gear, position, line, : count[line]],
-                2.0 * felt[line],
-            )
-            for line in chosen
-        ]
-        for i, load in enumerate(lines):
-            own = slice(ends[i], ends[i + 1])
-            compliance[own, own] += solved.between(load, load, half_width)
-            for j, point in enumerate(lines[:i]):
-                other = slice(ends[j], ends[j + 1])
-                moved = solved.between(load, point, half_width)
-                compliance[own, other] += moved
-                compliance[other, own] += moved.T
-    # what hubs and supports move all teeth by, by the part of the normal force across the axis
-    common = (sum(bodies.support) + sum(bodies.step_windup)) * bodies.pair.helix.base_cosine**2
-    return compliance + common

@@ -29,8 +29,6 @@ from .heat import heat_along_path as heat_along_path
 from .heat import losses_along_path as losses_along_path
 from .heat import temperature_field as temperature_field
 from .heat import temperatures_along_path as temperatures_along_path
-from .lines import line_load_map as line_load_map
-from .lines import load_centre as load_centre
 from .motion import diagram as diagram
 from .motion import portraits as portraits
 from .motion import resonance as resonance
@@ -42,7 +40,9 @@ from .orbits import basins as basins
 from .orbits import exponents as exponents
 from .orbits import locus as locus
 from .orbits import trajectory as trajectory
+from .plane_of_action import line_load_map as line_load_map
 from .plane_of_action import lines_of_contact as lines_of_contact
+from .plane_of_action import load_centre as load_centre
 from .rendering.animation import Frame as Frame
 from .rendering.animation import animate_cycle as animate_cycle
 from .rendering.animation import teeth_scene as teeth_scene

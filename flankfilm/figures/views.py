@@ -32,7 +32,7 @@ class Picture(NamedTuple):
     @property
     def by(self) -> str:
         """Module and function that draw the record: the products' are loaded for theirs alone."""
-        return "flankfilm.figures.records:picture" if self.draw else "flankfilm.products.pictures:record"
+        return "flankfilm.figures.records:picture" if self.draw else "flankfilm.runs.pictures:record"
 
 
 _DYNAMICS = {
@@ -80,7 +80,7 @@ PICTURES: Mapping[str, Picture] = {
     "gears.closed_form.record:ClosedForm": Picture("closed_forms.closed_form", "closed_form", "closed_form"),
     "fem.cycle.result:MeshCycle": Picture("stiffness.mesh_cycle", "dry", "loaded"),
     "fem.cycle.face_loads:FaceLoads": Picture("face.flank_map", "dry_face", "with_points"),
-    "fem.cycle.line_loads:LineLoads": Picture("lines.load_centre", "dry_lines", "with_points"),
+    "fem.cycle.line_loads:LineLoads": Picture("plane_of_action.load_centre", "dry_lines", "with_points"),
     "fem.stress.tooth_root:RootStress": Picture("gear.root_stress", "root", "passages"),
     "fem.stress.gear_root:FaceRootStress": Picture("face_roots.root_face_map", "root_face"),
     "ehl.films.film:Film": Picture("curves.curves", "contact_film", "contact_film"),
@@ -95,7 +95,7 @@ PICTURES: Mapping[str, Picture] = {
 """Record to its picture."""
 
 OUTCOMES: Mapping[str, str] = {
-    "flankfilm.outcome.results:Results": "flankfilm.products.pictures:results",
+    "flankfilm.outcome.results:Results": "flankfilm.runs.pictures:results",
     "flankfilm.studies.run:StudyResults": "flankfilm.studies.pictures:study",
     "flankfilm.optimisation.optimum:Optimum": "flankfilm.optimisation.pictures:optimum",
 }

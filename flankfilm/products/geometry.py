@@ -96,7 +96,9 @@ def _forces(engine: Engine) -> gears.MeshForces:
 def _length_harmonic(order: int) -> Named:
     """Output of a harmonic of the total length of the lines of contact."""
     about = Figure(
-        "1", f"amplitude of harmonic {order} of the total length of the lines of contact over its mean"
+        "1",
+        f"amplitude of harmonic {order} of the total length of the lines of contact over its mean",
+        no_error=EXACT,
     )
     return output_of(
         f"contact_length_harmonic_{order}",

@@ -130,7 +130,7 @@ def FACE_GEARS(run: Engine) -> fem.FaceGears | None:
 
 
 def along_the_face(scene: Scene) -> bool:
-    """Whether loads vary along the face: by what a scene gives, or since lines of contact cross it."""
+    """Whether loads vary along the face: a scene makes them so, or lines of contact cross it."""
     return bool(varies_by(scene)) or (scene.pair is not None and scene.pair.helical)
 
 

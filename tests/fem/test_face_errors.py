@@ -9,7 +9,8 @@ import pytest
 
 from fem import PairCompliance, compliance, mesh_cycle
 from fem.contact import shared_contacts
-from fem.contact.face_errors import LEFT, cell_errors, greatest_error, half_as_many
+from fem.contact.cell_laws import greatest_error
+from fem.contact.face_errors import LEFT, cell_errors, half_as_many
 from fem.pair.face_setting import FREE_ENDS, WALLS, FaceSetting
 from gears import Alignment, Gear, GearPair, Lead
 

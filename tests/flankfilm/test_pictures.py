@@ -18,9 +18,9 @@ from flankfilm.figures.reading import drawable
 from flankfilm.figures.records import dataset, function
 from flankfilm.figures.views import OF_PRODUCT, PICTURES, register
 from flankfilm.products.catalogue import PRODUCTS
-from flankfilm.products.pictures import first
 from flankfilm.products.product import Product
 from flankfilm.report.page import _prose
+from flankfilm.runs.pictures import first
 from tests.flankfilm import pictured
 from tests.flankfilm.pictured import RECORDS, faults_of
 

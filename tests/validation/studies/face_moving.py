@@ -17,8 +17,8 @@ import numpy as np
 import fem
 from base import Array
 from fem.contact import moved_side
+from fem.contact.cell_laws import face_load_factors
 from fem.contact.contact_state import ContactState
-from fem.contact.face_errors import face_load_factors
 from fem.contact.moving_contacts import MovingContacts
 from fem.contact.solver import solve_contact
 from fem.laws.corner_laws import CornerLaws
