@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from base import Array, described, part, quantity, record
-from base.results import EXACT
+from base.results import EXACT, ITSELF
 from fem.contact.line_contact import WINDOW
 from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.pair.face_setting import FaceSetting
@@ -24,7 +24,9 @@ IN_SINGLE_CELLS = "not estimated cell by cell; line_load_error is that of the la
 
 HERTZ = "not estimated: Hertz's law of the cell's line load, whose error is not known in single cells"
 
-BY_CENTRE = "off by at most the force times centre_error: it may pass through zero"
+BY_CENTRE = "off by centre_error: it passes through zero"
+
+BY_LEVER = "off by the force times centre_error: it passes through zero"
 
 
 @record
@@ -35,6 +37,7 @@ class LineLoads:
     is 1/cos(beta_b) of that along the axis.
     """
 
+    no_error = IN_SINGLE_CELLS
     headline: ClassVar[tuple[str, ...]] = ("greatest_line_load_factor", "greatest_line_load", "axial_force")
 
     z: Array = quantity(
@@ -82,7 +85,10 @@ class LineLoads:
     error: float = quantity("1", "estimated relative error of the maximum line-load factor")
     line_load_error: float = quantity("1", "estimated relative error of the maximum line load")
     centre_error: float = quantity(
-        "m", "estimated error of the centre of the load, root mean square over the positions", shown="um"
+        "m",
+        "estimated error of the centre of the load, root mean square over the positions",
+        shown="um",
+        no_error=ITSELF,
     )
 
     @property
@@ -159,7 +165,7 @@ class LineLoads:
         first, second = (self.axial_force * radius for radius in self.pair.base_radii)
         return first, second
 
-    @described("N m", "gear position", no_error=BY_CENTRE)
+    @described("N m", "gear position", no_error=BY_LEVER)
     def tilting_moment(self) -> Array:
         """Moment on either gear about the normal of shaft and line of action through mid-face.
 

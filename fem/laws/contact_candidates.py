@@ -200,9 +200,10 @@ def _standing(setup: MeshSetup) -> tuple[Array, Array, Integers]:
 
 def _lines(setup: MeshSetup) -> ContactCandidates:
     """Candidates of a helical pair: lines of contact, each with its smallest gap."""
-    pair, offset = setup.pair, line_offsets(setup)
+    pair, offset = setup.pair, line_offsets(setup.pair)
     position, within, turned = _standing(setup)
-    lines = contact_lines(setup, pair.points.A + (within[:, None] + offset) * pair.base_pitch)
+    middle = pair.points.A + (within[:, None] + offset) * pair.base_pitch
+    lines = contact_lines(pair, setup.line_slope, setup.ends, middle)
     touchable = lines.touches
     place = np.where(touchable, lines.place, 0.5 * (pair.points.A + pair.points.E))
     rho = np.stack([place, pair.line_of_action - place])

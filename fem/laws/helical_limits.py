@@ -2,20 +2,59 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from base import Faults
 from fem.pair.face_setting import FREE_ENDS
 
 if TYPE_CHECKING:
-    from fem.laws.mesh_setup import MeshSetup
+    from collections.abc import Sequence
+
+    from fem.pair.face_setting import FaceSetting
+    from gears import GearDeviations
 
 __all__ = ["check_helical"]
 
 SPUR = "give helix_angle = 0 for a spur pair, or leave it out"
 
 
-def check_helical(faults: Faults, setup: MeshSetup) -> None:
+class Setting(Protocol):
+    """What of a ``fem.laws.mesh_setup.MeshSetup`` helical pairs do not have."""
+
+    @property
+    def beyond_path(self) -> bool:
+        """Whether tip edges may touch outside the path."""
+
+    @property
+    def deviations(self) -> Sequence[GearDeviations | None] | None:
+        """Of pinion and wheel."""
+
+    @property
+    def pitches(self) -> int:
+        """Base pitches."""
+
+    @property
+    def radii(self) -> tuple[float, ...]:
+        """Of rounded tip edges [m]."""
+
+    @property
+    def friction(self) -> float:
+        """Coefficient of friction."""
+
+    @property
+    def base_pitch_difference(self) -> float:
+        """Of pinion and wheel [m]."""
+
+    @property
+    def moving_contact(self) -> bool:
+        """Whether contacts move."""
+
+    @property
+    def face(self) -> FaceSetting:
+        """Cells, alignment, shafts."""
+
+
+def check_helical(faults: Faults, setup: Setting) -> None:
     """Note what a setting asks for that lines of contact across the face do not have."""
     if setup.beyond_path:
         allowed = "must be False with a helix: contact is held to the path, from A to E"
@@ -26,7 +65,7 @@ def check_helical(faults: Faults, setup: MeshSetup) -> None:
         allowed = "must be 1 with a helix, whose teeth are alike"
         faults.add("pitches", setup.pitches, allowed, "leave it out")
     if any(radius != 0.0 for radius in setup.radii):
-        faults.add("tip_rounding", setup.tip_rounding, "must be 0 with a helix", SPUR)
+        faults.add("tip_rounding", setup.radii, "must be 0 with a helix", SPUR)
     if setup.friction:
         faults.add("friction", setup.friction, "must be 0 with a helix", SPUR)
     if setup.base_pitch_difference:

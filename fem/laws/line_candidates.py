@@ -17,7 +17,7 @@ import numpy as np
 from base import Array, Booleans, Integers, record
 
 if TYPE_CHECKING:
-    from fem.laws.mesh_setup import MeshSetup
+    from gears import GearPair
 
 __all__ = ["ContactLines", "LineCells", "contact_lines", "line_offsets"]
 
@@ -147,25 +147,27 @@ class ContactLines:
         return LineCells(z, np.stack([rho1, self.line_of_action - rho1]), each, felt, used)
 
 
-def line_offsets(setup: MeshSetup) -> Integers:
-    """Base pitches by which each line is ahead of the pair that entered last at mid-face."""
-    pair = setup.pair
+def line_offsets(pair: GearPair) -> Integers:
+    """Base pitches by which each line of a pair is ahead of the one that entered last at mid-face."""
     beyond = 0.5 * pair.overlap_ratio
     return np.arange(-ceil(beyond), ceil(pair.contact_ratio + beyond))
 
 
-def contact_lines(setup: MeshSetup, middle: Array) -> ContactLines:
+def contact_lines(pair: GearPair, slope: float, ends: tuple[float, float], middle: Array) -> ContactLines:
     """Lines of contact whose middles stand at some places.
 
     Parameters
     ----------
-    setup : MeshSetup
-        Of a helical pair.
+    pair : GearPair
+        Helical.
+    slope : float
+        Change of rho1 by z along a line.
+    ends : (float, float)
+        rho1 at which contact starts and ends [m].
     middle : (n, pairs) array
         rho1 of each line at mid-face [m].
     """
-    pair, slope = setup.pair, setup.line_slope
-    (start, end), half = setup.ends, 0.5 * pair.face_width
-    ends = np.sort(np.stack([(start - middle) / slope, (end - middle) / slope]), axis=0)
-    first, last = np.clip(ends, -half, half)
+    (start, end), half = ends, 0.5 * pair.face_width
+    along = np.sort(np.stack([(start - middle) / slope, (end - middle) / slope]), axis=0)
+    first, last = np.clip(along, -half, half)
     return ContactLines(first, last, middle, slope, pair.line_of_action, pair.face_width)

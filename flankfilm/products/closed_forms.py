@@ -132,7 +132,7 @@ def outputs() -> tuple[Named, ...]:
         ),
         output_of(
             "iso_mesh_stiffness",
-            Figure("N/m", "mesh stiffness c_gamma_alpha by ISO 6336-1", shown=PER_FACE),
+            Figure("N/m", "mesh stiffness c_gamma_alpha by ISO 6336-1", shown=PER_FACE, no_error=STANDARD),
             "closed-forms",
             lambda engine: (
                 gears.closed_form.iso6336(

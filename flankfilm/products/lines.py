@@ -78,7 +78,6 @@ def outputs() -> tuple[Named, ...]:
             _travel,
             "travel of the centre of the load along the face over the mesh cycle; nan of spur pairs",
         ),
-        _output("load_centre_error", "centre_error"),
     )
 
 

@@ -45,7 +45,7 @@ def test_beyond_the_range_the_range_is_named(angle):
 
 
 def test_beyond_the_range_with_wants_of_spur_pairs_both_are_named():
-    text = TEXT.replace("deg = 20", "deg = 50").replace('"geometry"', '"stiffness"')
+    text = TEXT.replace("deg = 20", "deg = 50").replace('"geometry"', '"vtk"')
     with pytest.raises(InputError) as caught:
         parse_scene(text)
     assert {fault.where for fault in caught.value.faults} >= {"pair.helix_angle_deg", "wants"}
@@ -59,7 +59,7 @@ def test_a_helix_of_a_nanodegree_is_the_spur_pair_but_for_its_name():
     length = slight["contact_lines_length"].values
     assert {round(1e3 * value, 6) for value in length[[50, 180]]} == {80.0, 40.0}  # two pairs, then one
     with pytest.raises(InputError, match="wants"):
-        check_scene(parse_scene(TEXT.replace("deg = 20", "deg = 1e-9").replace('"geometry"', '"stiffness"')))
+        check_scene(parse_scene(TEXT.replace("deg = 20", "deg = 1e-9").replace('"geometry"', '"vtk"')))
 
 
 @pytest.mark.parametrize("overlap", [0.01, 1.0, 3.0, 40.0])
