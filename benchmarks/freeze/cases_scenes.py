@@ -21,6 +21,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     "auto": {},
     "drive": {"dynamics.sweep.points": 8},
     "face_width": {},
+    "helical": {},
     "starved": {},
     "losses": {},
     "real_flanks": {},

@@ -1,8 +1,9 @@
-"""Finite elements refuse helical pairs: operators of spur gears would give numbers that look sound."""
+"""What of finite elements helical pairs have, and what is refused: operators of spur gears would give sound looks."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,39 +20,52 @@ SLIGHT = GearPair(*GEARS, 2e-3, 20e-3, helix_angle=-1e-9)
 MESSAGE = r"pair.helix_angle = .*deg\): must be 0 for .*spur gears"
 
 ASKED = {
-    "compliance": fem.compliance,
     "fillets": fem.fillets,
-    "mesh_cycle": lambda pair: fem.mesh_cycle(pair, torque=100.0),
-    "mesh_cycle of torques": lambda pair: fem.mesh_cycle(pair, torque=[50.0, 100.0]),
-    "slices": lambda pair: fem.mesh_cycle(pair, torque=100.0, cells=8, face_model="slices"),
     "single pair": lambda pair: fem.single_pair_stiffness(pair, force=1e3, rho1=pair.points.C),
-    "unloaded": fem.unloaded_transmission_error,
-    "shapes": lambda pair: shapes(pair, pair.teeth_profiles, "strain"),
 }
 
 
 @pytest.mark.parametrize("pair", [HELICAL, SLIGHT], ids=["20 deg", "slight"])
 @pytest.mark.parametrize("name", ASKED)
-def test_whatever_is_asked_of_finite_elements_is_refused_by_key_value_and_remedy(name, pair):
+def test_what_knows_spur_gears_alone_is_refused_by_key_value_and_remedy(name, pair):
     with pytest.raises(InputError, match=MESSAGE) as refusal:
         ASKED[name](pair)
     assert "Give helix_angle = 0" in str(refusal.value)
     assert "contact_lines" in str(refusal.value)
 
 
+@pytest.mark.parametrize("model", ["slices", "walls"])
+def test_there_are_no_walls_or_slices_of_a_helix(model):
+    with pytest.raises(InputError, match="face_model"):
+        fem.mesh_cycle(HELICAL, torque=100.0, cells=8, face_model=model)
+
+
 def test_bodies_of_a_spur_pair_do_not_open_the_way():
     bodies = fem.compliance(GearPair(*GEARS, 2e-3, 20e-3), tolerance=0.1)
-    with pytest.raises(InputError, match=MESSAGE):
+    with pytest.raises(InputError, match="of another pair"):
         fem.mesh_cycle(HELICAL, torque=100.0, compliance=bodies)
     with pytest.raises(InputError, match=MESSAGE):
         fem.single_pair_stiffness(HELICAL, force=1e3, rho1=HELICAL.points.C, compliance=bodies)
 
 
-def test_a_setup_notes_it_once_beside_other_faults_and_none_of_spur_pairs():
+def test_a_setup_notes_tip_edges_once_beside_other_faults_and_none_of_spur_pairs():
     faults = Faults()
     MeshSetup(HELICAL, positions=0).check(faults)
-    assert sorted(fault.where for fault in faults.found) == ["pair.helix_angle", "positions"]
+    assert sorted(fault.where for fault in faults.found) == ["beyond_path", "positions"]
     spur = Faults()
     MeshSetup(GearPair(*GEARS, 2e-3, 20e-3, helix_angle=0.0)).check(spur)
     assert not spur.found
     assert np.all(fem.unloaded_transmission_error(GearPair(*GEARS, 2e-3, 20e-3), 3) == 0.0)
+
+
+def test_plain_lines_of_contact_touch_without_a_turn():
+    assert np.all(fem.unloaded_transmission_error(HELICAL, 7) == 0.0)
+
+
+def test_the_shape_is_that_of_either_hand():
+    first, second = (
+        shapes(replace(HELICAL, helix_angle=angle), HELICAL.teeth_profiles, "strain")
+        for angle in (HELICAL.helix_angle, -HELICAL.helix_angle)
+    )
+    assert first == second
+    assert first[0].profile.base_radius == pytest.approx(HELICAL.base_radii[0] / 2e-3, rel=1e-11)

@@ -111,13 +111,22 @@ model = "dowson"
 """Friction, losses and temperatures."""
 
 HELICAL = """
-wants = ["geometry"]
+wants = ["geometry", "stiffness"]
+tolerance = 0.02
 [pair]
-module_mm = 2.0
-face_width_mm = 40.0
+module_mm = 1.0
+face_width_mm = 6.0
 helix_angle_deg = 20
-pinion = { teeth = 36 }
-wheel = { teeth = 40 }
+pinion = { teeth = 18 }
+wheel = { teeth = 23 }
+backlash_um = 40
+[material]
+youngs_modulus_GPa = 206
+poisson_ratio = 0.3
+[operating]
+pinion_torque_Nm = 8
+[film]
+model = "none"
 """
 """Lines of contact."""
 
@@ -200,7 +209,7 @@ def face() -> Results:
 
 
 def helical() -> Results:
-    """Sizes of a helical pair."""
+    """Sizes of a helical pair, and the load along its lines of contact."""
     return run(HELICAL)
 
 
@@ -245,6 +254,7 @@ RECORDS: Mapping[str, Callable[[], Any]] = {
     "gears.closed_form.record:ClosedForm": lambda: closed_form.ishikawa(PAIR, PAIR.path_of_contact(9)),
     "fem.cycle.result:MeshCycle": lambda: face().values["dry cycle"].contact,
     "fem.cycle.face_loads:FaceLoads": lambda: face().values["dry cycle"].contact.face,
+    "fem.cycle.line_loads:LineLoads": lambda: helical().values["dry cycle"].contact.lines,
     "fem.stress.tooth_root:RootStress": lambda: face().values["root stress"].stress,
     "fem.stress.gear_root:FaceRootStress": lambda: face().values["root stress"].stress.pinion.face,
     "ehl.films.film:Film": film,

@@ -121,7 +121,7 @@ def test_a_key_of_finite_elements_is_refused_with_a_closed_form(path: str, field
     assert said["stiffness.model"] == f'must be "fem" for {name}'
 
 
-LEADS = {"crowning_um", "lead_slope_um", "end_relief_um"}
+LEADS = {"crowning_um", "lead_slope_um", "end_relief_um", "lead_twist_um"}
 FLANKS = {*LEADS, "tip_rounding_um", "deviations", "wear"}
 
 

@@ -18,6 +18,7 @@ from flankfilm.coupling.mesh.mesh_cycles import resolved
 from flankfilm.coupling.mesh.sharing_pairs import contact_places
 from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
 from gears.closed_form.record import UNKNOWN
+from gears.pair.spur_only import require_spur
 from gears.sharing.mesh_figures import Estimate, MeshArcs
 
 POSITIONS = 360
@@ -202,6 +203,7 @@ def compare_closed_forms(
     >>> round(found.difference("potential energy, Sainsot body", "without hub wind-up and coupling"), 2)
     -0.17
     """
+    require_spur(pair, "closed forms beside finite elements")
     teeth, _ = resolved(LoadedTeeth(pair, torque, compliance=compliance), tolerance)
     assert teeth.compliance is not None
     return verification_of(pair, torque, teeth.compliance, beyond_path, moving_contact, reference=reference)

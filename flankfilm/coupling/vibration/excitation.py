@@ -21,6 +21,7 @@ from base import Array, Cost, Faults, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
 from dynamics.model.stiffness import MAX_ORDER
 from fem.laws.mesh_setup import Deviations, MeshSetup
+from gears.pair.spur_only import require_spur
 
 SAMPLES = 4096
 """Samples of a curve that is given at unequal positions, and of a sum of harmonics whose range is looked for."""
@@ -222,6 +223,7 @@ def unloaded_error(
     >>> found.converged, 0.0 < found.range < 20e-6
     (True, True)
     """
+    require_spur(pair, "errors of rigid teeth that excite a motion")
     curve = fem.unloaded_transmission_error(
         pair, positions, beyond_path, deviations, meshes, tip_rounding=tip_rounding
     )

@@ -28,9 +28,7 @@ def named(call, name: str) -> None:
 
 
 @pytest.mark.parametrize("value", NONSENSE, ids=str)
-@pytest.mark.parametrize(
-    "name", ["torque", "pair", "positions", "base_pitch_difference", "friction", "beyond_path"]
-)
+@pytest.mark.parametrize("name", ["torque", "pair", "positions", "base_pitch_difference", "friction"])
 def test_of_a_mesh_cycle(bodies, name, value):
     given = {"pair": PAIR, "torque": 100.0, "positions": 4, "compliance": bodies} | {name: value}
     named(lambda: fem.mesh_cycle(**given), name)
