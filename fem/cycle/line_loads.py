@@ -40,6 +40,12 @@ class LineLoads:
     no_error = IN_SINGLE_CELLS
     headline: ClassVar[tuple[str, ...]] = ("greatest_line_load_factor", "greatest_line_load", "axial_force")
 
+    position: Array = quantity(
+        "1",
+        "base pitches from A, of the pair that entered last at mid-face",
+        "position",
+        no_error=EXACT,
+    )
     z: Array = quantity(
         "m",
         "middles of the cells along the face, 0 at mid-face",
@@ -206,6 +212,7 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         return np.where(cells.used, values, np.nan)
 
     return LineLoads(
+        position=contact.candidates.position,
         z=of_cells(cells.z),
         travel=of_cells(cells.rho[0] - pair.points.A),
         length=length,

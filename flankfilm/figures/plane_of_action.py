@@ -135,14 +135,14 @@ def load_centre(results: xr.Dataset, *, prefix: str = PREFIX, style: Style | Non
     results, prefix, style
         As of `line_load_map`.
     """
-    need(results, HELICAL, *(f"{prefix}_{name}" for name in ("load_centre", "line_load_factor")))
+    need(results, HELICAL, *(f"{prefix}_{name}" for name in ("position", "load_centre", "line_load_factor")))
     centre, factor = (read(results, f"{prefix}_{name}") for name in ("load_centre", "line_load_factor"))
-    position = read(results, "dry_position" if "dry_position" in results else f"{prefix}_position")
+    position = read(results, f"{prefix}_position")
     with sheet(style, 2, height=4.0, legend=0) as (drawn, (above, below)):
         above.plot(position.values, centre.values, **looks(1)[0])
         above.axhline(0.0, color="#000000", linewidth=0.8)
         above.set(ylabel=f"centre of\nthe load [{centre.unit}]")
         below.plot(position.values, factor.values, **looks(1)[0])
-        below.set(xlabel=position.label, ylabel="maximum line load\nover the mean", xlim=(0.0, 1.0))
+        below.set(xlabel=position.label, ylabel="maximum line load\nover the mean [-]", xlim=(0.0, 1.0))
         from_zero(below)
     return drawn
