@@ -126,11 +126,12 @@ def lines_of_contact(pair: GearPair) -> Iterator[Quantity]:
     yield figure_of("harmonics", "1", over_mean, "harmonic", lines.harmonics(ORDERS), no_error=EXACT)
     segments = [(at, *ends) for at in SHOWN for ends in zip(*lines.segments(at), strict=True)]
     at, travel, along = (np.array(part) for part in zip(*segments, strict=True))
-    hand = math.copysign(1.0, pair.helix_angle)  # a right-handed pinion touches nearer to A at larger z
+    # a right-handed pinion is turned on at larger z, where it touches nearer to E
+    hand = math.copysign(1.0, pair.helix_angle)
     yield figure_of("shown_position", "1", "position of a line that is drawn", "line", at, no_error=EXACT)
     for name, meaning, values in (
         ("shown_travel", "travel of its ends along the path of contact, from A", pair.base_pitch * travel),
-        ("shown_face", "place of its ends along the face, from mid-face", -hand * pair.face_width * along),
+        ("shown_face", "place of its ends along the face, from mid-face", hand * pair.face_width * along),
     ):
         yield figure_of(name, "m", meaning, "line end", values, shown="mm", no_error=EXACT)
 

@@ -99,7 +99,8 @@ class ContactLines:
         -------
         (lines, 2) array, (lines, 2) array
             Place x/p_bt on the path of contact, 0 to eps_alpha, and place z/b along the face, -1/2 to 1/2, at the ends
-            of each line, by z; x grows with z: mirror z of a right-handed pinion. Together they are `length` long.
+            of each line, by z; x grows with z, as with a right-handed driver that turns anticlockwise about z:
+            mirror z of a left-handed one. Together they are `length` long.
         """
         reach = 0.5 * self.overlap_ratio
         line = np.arange(-math.ceil(reach) - 1, math.ceil(self.contact_ratio + reach) + 1)

@@ -330,11 +330,11 @@ class TestAnswers:
             total = np.hypot(np.diff(travel[own]), np.diff(face[own])).sum()
             there = np.interp(place, data["contact_lines_position"], data["contact_lines_length"])
             assert total == pytest.approx(there, rel=1e-3)
-        # rho1 = rho1(0) - z tan(beta_b) on a right-handed pinion
-        assert np.diff(travel) / np.diff(face) == pytest.approx(-math.tan(BETA_B), rel=1e-9)
+        # rho1 = rho1(0) + z tan(beta_b) on a right-handed pinion that turns anticlockwise about z and drives
+        assert np.diff(travel) / np.diff(face) == pytest.approx(math.tan(BETA_B), rel=1e-9)
         other = run_scene(scene('"geometry"', "= 20", "= -20"), None, use_cache=False).dataset
         slope = np.diff(other["contact_lines_shown_travel"]) / np.diff(other["contact_lines_shown_face"])
-        assert slope == pytest.approx(math.tan(BETA_B), rel=1e-9)
+        assert slope == pytest.approx(-math.tan(BETA_B), rel=1e-9)
         assert float(other["mesh_force_axial"]) == pytest.approx(-float(data["mesh_force_axial"]), rel=1e-12)
 
     def test_tables_and_page_follow(self, answered):
