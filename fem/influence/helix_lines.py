@@ -34,6 +34,10 @@ STEP = 0.0125
 """Of distances [modules] at which the waves' sums are known; cubics join them."""
 
 
+RUNGS = 8
+"""Lengths of cells for every doubling of them for which the waves' sums are known."""
+
+
 @record
 class ContactLine:
     """Cells of a line of contact on one gear, in modules.
@@ -172,15 +176,16 @@ def _of_waves(waves: HelixHarmonics, load: ContactLine, point: ContactLine) -> A
 def _sums_between(zeta: Array, size: float, longest: float) -> Array:
     """Sums over waves at distances (...) for cells of a mean square length (..., 2 waves): cosine, minus sine.
 
-    Means over cells are those over cells of length nil and of a module, in proportion to the square of the length.
+    Means over cells are those over cells of the lengths of a ladder next to it, in proportion to the square.
     """
-    upper = 2.0 ** np.ceil(np.log2(size))
-    of_line, of_cell = (_sums(float(length), float(longest)) for length in (0.0, upper))
+    rung = np.floor(RUNGS * np.log2(size))
+    lower, upper = (float(2.0 ** ((rung + k) / RUNGS)) for k in (0, 1))
+    of_lower, of_upper = (_sums(length, float(longest)) for length in (lower, upper))
+    part = (size**2 - lower**2) / (upper**2 - lower**2)
     place = np.abs(zeta) / STEP
-    at = np.minimum(place.astype(int), len(of_line) - 4)
+    at = np.minimum(place.astype(int), len(of_lower) - 4)
     t = (place - at)[..., None]
-    part = (size / upper) ** 2
-    table = (1.0 - part) * of_line + part * of_cell
+    table = (1.0 - part) * of_lower + part * of_upper
     before, here, after, beyond = (table[at + k] for k in range(4))
     bend = 2.0 * before - 5.0 * here + 4.0 * after - beyond
     sums = here + 0.5 * t * (after - before + t * (bend + t * (3.0 * (here - after) + beyond - before)))
@@ -188,7 +193,7 @@ def _sums_between(zeta: Array, size: float, longest: float) -> Array:
     return np.asarray(sums)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=64)
 def _sums(length: float, longest: float) -> Array:
     """Sums over waves at distances from one step below 0 on, for cells of a length (distances, 2 waves)."""
     s, share = np.polynomial.legendre.leggauss(int(np.ceil(POINTS * max(longest, 8.0))))
