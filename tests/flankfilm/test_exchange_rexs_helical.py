@@ -220,5 +220,5 @@ def test_the_commands_bring_it_out_and_in(tmp_path):
     back = parse_scene((tmp_path / "back.toml").read_text(encoding="utf-8"))
     assert back.pair is not None
     assert back.pair.helix_angle_deg == pytest.approx(-20.0, rel=1e-14)
-    with pytest.raises(InputError, match="loaded contact"):
-        parse_scene((tmp_path / "back.toml").read_text(encoding="utf-8").replace('"geometry"', '"stiffness"'))
+    with pytest.raises(InputError, match="fields of twisted teeth"):
+        parse_scene((tmp_path / "back.toml").read_text(encoding="utf-8").replace('"geometry"', '"vtk"'))

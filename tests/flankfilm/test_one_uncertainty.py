@@ -162,7 +162,13 @@ def test_what_the_plane_leaves_out(modules: float, blank: object, plane: str, fa
     )
     over = None if face is None else SimpleNamespace(setting=SimpleNamespace(model=face), pair=pair)
     contact = SimpleNamespace(
-        pair=pair, plane=plane, face=over, reference="bore", model_error=0.01, beyond_path=True
+        pair=pair,
+        plane=plane,
+        face=over,
+        lines=None,
+        reference="bore",
+        model_error=0.01,
+        beyond_path=True,
     )
     of = MODEL_ERRORS[("MeshFigures", "mean_secant_stiffness")].of
     assert of(contact) == pytest.approx(0.01 + part, rel=1e-9)
