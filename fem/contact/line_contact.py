@@ -167,23 +167,23 @@ class LineContact(CellContact):
         cells, before = self.lines.divided(face.cells), self.lines.divided(coarse.bends.shape[-1])
         slope = _slopes(coarse.bends, before, cells)
         within = np.arange(WITHIN + 1) / WITHIN - 0.5
-        z = cells.z[..., None] + cells.length[..., None, None] * within
-        rho1 = cells.rho[0][..., None] + self.lines.slope * cells.length[..., None, None] * within
-        rho = np.stack([rho1, self.lines.line_of_action - rho1])
-        gaps = self.pair.helix.base_cosine * line_gaps(self.setup, z, rho)
+        gaps = self.pair.helix.base_cosine * self._gaps_within(cells, within)
         return np.where(cells.used, drops_within(gaps + slope[..., None] * within), 0.0)
 
     def _apart(self, face: FaceSetting) -> Array:
         """Gaps without load, beyond where the first place touches (pitches, positions, lines cells) [m]."""
         cells = self.lines.divided(face.cells)
-        within = np.array([-0.5, 0.0, 0.5])
-        z = cells.z[..., None] + cells.length[..., None, None] * within
-        rho1 = cells.rho[0][..., None] + self.lines.slope * cells.length[..., None, None] * within
-        gaps = line_gaps(self.setup, z, np.stack([rho1, self.lines.line_of_action - rho1]))
-        gaps = gaps @ np.array([1.0, 4.0, 1.0]) / 6.0
+        gaps = self._gaps_within(cells, np.array([-0.5, 0.0, 0.5])) @ np.array([1.0, 4.0, 1.0]) / 6.0
         nearest = self.sides.flanks[0].candidates.gap.min(axis=-1)
         apart = self.pair.helix.base_cosine * np.maximum(gaps - nearest[..., None, None], 0.0)
         return np.where(cells.used, apart, np.inf).reshape(*apart.shape[:-2], -1)
+
+    def _gaps_within(self, cells: LineCells, within: Array) -> Array:
+        """Gaps in the section at places of every cell (positions, lines, cells, places) [m], -1/2 to 1/2 of it."""
+        along = cells.length[..., None, None] * within
+        rho1 = cells.rho[0][..., None] + self.lines.slope * along
+        rho = np.stack([rho1, self.lines.line_of_action - rho1])
+        return line_gaps(self.setup, cells.z[..., None] + along, rho)
 
 
 def _slopes(bends: Array, before: LineCells, cells: LineCells) -> Array:

@@ -211,6 +211,11 @@ def _remarks(
         remarks.append(
             f"the teeth jam: without load their back flanks overlap by up to {overlap:.3g} um{left_out}"
         )
+    if setup.helical and (closed := 1e6 * float(np.max(contact.closing[number] - candidates.back_gap))) > 0.0:
+        remarks.append(
+            f"the deflection exceeds the gap of the back flanks by up to {closed:.3g} um; with a helix these are not "
+            "looked at: give more backlash where they would touch"
+        )
     opposite = contact.opposite
     if opposite is not None and np.any(opposite.share.forces[number] > 0):
         bearing = np.any(opposite.share.forces[number] > 0, axis=-1)

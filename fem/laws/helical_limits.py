@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fem.pair.face_setting import FaceSetting
-    from gears import GearDeviations
+    from gears import GearDeviations, GearPair
 
 __all__ = ["check_helical"]
 
@@ -20,6 +20,10 @@ SPUR = "give helix_angle = 0 for a spur pair, or leave it out"
 
 class Setting(Protocol):
     """What of a ``fem.laws.mesh_setup.MeshSetup`` helical pairs do not have."""
+
+    @property
+    def pair(self) -> GearPair:
+        """Gears in mesh."""
 
     @property
     def beyond_path(self) -> bool:
@@ -56,6 +60,9 @@ class Setting(Protocol):
 
 def check_helical(faults: Faults, setup: Setting) -> None:
     """Note what a setting asks for that lines of contact across the face do not have."""
+    if setup.pair.tight:
+        allowed = "must be False with a helix: flanks on one side of the teeth carry the load"
+        faults.add("pair.tight", True, allowed, "give backlash")
     if setup.beyond_path:
         allowed = "must be False with a helix: contact is held to the path, from A to E"
         faults.add("beyond_path", True, allowed, "leave it out")
