@@ -27,6 +27,10 @@ FEW, LEAST = 32, 4
 """Elements of a group that is not halved, of two unknowns at a node, and the smallest of them with more unknowns."""
 
 
+LONG = 32
+"""Mean unknowns of neighbouring nodes from which on matrices are added block by block."""
+
+
 @record
 class _Front:
     """One group: unknowns that it eliminates and those that it leaves, L^-1 and W."""
@@ -180,11 +184,7 @@ def condensation(
         number[nodes] = np.arange(len(nodes))
         matrix = np.zeros((components * len(nodes), components * len(nodes)))
         for part in (first, second):
-            unknown = unknowns_of(number[part.nodes], components)
-            # columns, then whole rows: twice as fast as both at once
-            rows = np.zeros((len(unknown), len(matrix)))
-            rows[:, unknown] = part.stiffness
-            matrix[unknown] += rows
+            _add(matrix, part.stiffness, number[part.nodes], components)
         return eliminated(nodes, times[nodes], matrix, ends)
 
     def eliminated(nodes: Integers, used: Integers, matrix: Array, ends: tuple[int, int]) -> _Group:
@@ -210,6 +210,27 @@ def condensation(
     place = unknowns_of(number[cut], components)
     stiffness = whole.stiffness[np.ix_(place, place)]
     return Condensation(tuple(fronts), unknowns_of(cut, components), stiffness)
+
+
+def _add(matrix: Array, part: Array, nodes: Integers, components: int) -> None:
+    """Add the matrix of some nodes to that of all, in place: blocks of neighbours where they are long."""
+    starts = np.flatnonzero(np.diff(nodes, prepend=-2) != 1)
+    ends = np.append(starts[1:], len(nodes))
+    if LONG * len(starts) > len(part):
+        unknown = unknowns_of(nodes, components)
+        # columns, then whole rows: twice as fast as both at once
+        rows = np.zeros((len(part), len(matrix)))
+        rows[:, unknown] = part
+        matrix[unknown] += rows
+        return
+    first, low, high = (components * each for each in (nodes[starts], starts, ends))
+    blocks = [
+        (slice(at, at + b - a), slice(a, b))
+        for at, a, b in zip(first.tolist(), low.tolist(), high.tolist(), strict=True)
+    ]
+    for row, row_of in blocks:
+        for column, column_of in blocks:
+            matrix[row, column] += part[row_of, column_of]
 
 
 def _order(users: Integers, used: Integers) -> tuple[Integers, tuple[int, int]]:
