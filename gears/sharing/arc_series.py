@@ -32,9 +32,12 @@ OVERSHOOT = 3.0
 """Largest error of a maximum value between nodes, over what it exceeds theirs by."""
 
 
+@lru_cache(maxsize=64)
 def lobatto(degree: int) -> Array:
     """Chebyshev points of a degree from -1 to 1, both ends included (degree + 1,)."""
-    return np.asarray(-np.cos(np.pi * np.arange(degree + 1) / degree))
+    points = -np.cos(np.pi * np.arange(degree + 1) / degree)
+    points.setflags(write=False)
+    return np.asarray(points)
 
 
 @lru_cache(maxsize=16)
@@ -88,8 +91,16 @@ def left_out(series: Array, t: Array, weight: Array, crowded: bool = False) -> A
 
 def _aliased(t: Array, degree: int) -> Array:
     """What a series is off by for a coefficient of each degree n + 1 to 2n that it has not (m, n)."""
-    polynomials = chebyshev.chebvander(t, 2 * degree)
-    return np.asarray(polynomials[:, degree + 1 :] - polynomials[:, degree - 1 :: -1])
+    return _aliased_at(np.ascontiguousarray(t, dtype=float).tobytes(), degree)
+
+
+@lru_cache(maxsize=256)
+def _aliased_at(t: bytes, degree: int) -> Array:
+    """`_aliased` at the same arguments: curves by the dozen are asked on the same arcs."""
+    polynomials = chebyshev.chebvander(np.frombuffer(t), 2 * degree)
+    aliased = polynomials[:, degree + 1 :] - polynomials[:, degree - 1 :: -1]
+    aliased.setflags(write=False)
+    return np.asarray(aliased)
 
 
 def ceiling(series: Array) -> float:

@@ -231,6 +231,9 @@ def _phase(value: Array) -> Array:
     return np.asarray(np.divide(value, size, out=np.ones_like(value), where=size > 0.0))
 
 
+_OF_HARMONICS = ("stiffness", "secant_stiffness", "transmission_error")
+"""Curves whose harmonics are figures of a cycle."""
+
 IN_SINGLE_POSITIONS = "not estimated in single positions; means and extremes have errors"
 
 
@@ -337,10 +340,19 @@ class MeshFigures(ABC):
 
     def _harmonics(self, name: str) -> tuple[Array, Array | None]:
         """Amplitudes and errors; of a stiffness over its mean."""
-        order = np.arange(1, HARMONICS + 1)
-        if self.arcs is None:
-            return np.full(HARMONICS, np.nan), None
-        return self.arcs.amplitudes(name, order, over_mean=name != "transmission_error")
+        size, error = self._amplitudes[name]
+        return size.copy(), None if error is None else error.copy()
+
+    @cached_property
+    def _amplitudes(self) -> dict[str, tuple[Array, Array | None]]:
+        """What `_harmonics` gives, of all curves: one integral has the amplitudes and their errors."""
+        arcs, order = self.arcs, np.arange(1, HARMONICS + 1)
+        if arcs is None:
+            return dict.fromkeys(_OF_HARMONICS, (np.full(HARMONICS, np.nan), None))
+        return {
+            name: arcs.amplitudes(name, order, over_mean=name != "transmission_error")
+            for name in _OF_HARMONICS
+        }
 
     @described("1", "event", no_error="not estimated")
     def event_position(self) -> Array:

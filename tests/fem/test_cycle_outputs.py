@@ -24,6 +24,17 @@ def free(article_pair, article_bodies):
     return fem.mesh_cycle(article_pair, 600.0, 40, article_bodies)
 
 
+@pytest.mark.parametrize("name", ["stiffness", "secant_stiffness", "transmission_error"])
+def test_harmonics_are_those_of_the_arcs_and_whoever_changes_them_changes_his_own(held, name):
+    found, errors = (getattr(held, f"{name}_harmonics{end}") for end in ("", "_error"))
+    size, error = held.arcs.amplitudes(name, np.arange(1, found.size + 1), name != "transmission_error")
+    np.testing.assert_array_equal(found, size)
+    np.testing.assert_array_equal(errors, error)
+    found[:] = errors[:] = -1.0
+    np.testing.assert_array_equal(getattr(held, f"{name}_harmonics"), size)
+    np.testing.assert_array_equal(getattr(held, f"{name}_harmonics_error"), error)
+
+
 def test_hertz_pressure_at_the_pitch_point(article_pair, article_bodies):
     cycle = fem.mesh_cycle(article_pair, 600.0, 41, article_bodies, beyond_path=False)
     row, column = np.unravel_index(np.nanargmin(np.abs(cycle.rho1 - article_pair.points.C)), cycle.rho1.shape)
