@@ -8,6 +8,8 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterable
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -78,26 +80,13 @@ FILES = 22
 """Modules that a folder holds at most."""
 
 
-def imported(source: Path) -> set[str]:
-    names: set[str] = set()
-    for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            names |= {alias.name.partition(".")[0] for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
-            names.add(node.module.partition(".")[0])
-    return names
+Imports = list[ast.Import | ast.ImportFrom]
 
 
-@pytest.mark.parametrize("package", sorted(MAY_IMPORT))
-def test_imports_only_go_downwards(package: str):
-    sources = sorted((ROOT / package).rglob("*.py"))
-    assert sources
-    climbing = {
-        str(source.relative_to(ROOT)): found
-        for source in sources
-        if (found := imported(source) & (MAY_IMPORT.keys() - MAY_IMPORT[package] - {package}))
-    }
-    assert climbing == {}
+def imports_in(source: Path) -> Imports:
+    """All imports that a file has, in functions and under TYPE_CHECKING too."""
+    tree = ast.parse(source.read_text(encoding="utf-8"))
+    return [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
 
 
 class Files:
@@ -108,6 +97,7 @@ class Files:
         while (top.parent / "__init__.py").exists():
             top = top.parent
         self.sources = {self.named(source, top): source for source in folder.rglob("*.py")}
+        self.written = {name: imports_in(source) for name, source in self.sources.items()}
         self.shown = {name: self.names_of(name) for name in self.sources}
         self.imports = {name: self.reached(name) for name in self.sources}
 
@@ -116,10 +106,20 @@ class Files:
         parts = source.relative_to(folder.parent).with_suffix("").parts
         return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
-    def from_imports(self, module: str, tree: ast.AST):
+    def packages_of(self, module: str) -> set[str]:
+        """First parts of what a module imports by an absolute name."""
+        names: set[str] = set()
+        for node in self.written[module]:
+            if isinstance(node, ast.Import):
+                names |= {alias.name.partition(".")[0] for alias in node.names}
+            elif node.level == 0 and node.module:
+                names.add(node.module.partition(".")[0])
+        return names
+
+    def from_imports(self, module: str, written: Iterable[ast.Import | ast.ImportFrom]):
         """Absolute name of the module, name in it and name here, for every `from module import name as name`."""
         package = module if self.sources[module].name == "__init__.py" else module.rpartition(".")[0]
-        for node in ast.walk(tree):
+        for node in written:
             if isinstance(node, ast.ImportFrom):
                 above = package.split(".")[: len(package.split(".")) + 1 - node.level] if node.level else []
                 start = ".".join([*above, *([node.module] if node.module else [])])
@@ -132,8 +132,8 @@ class Files:
         if source.name != "__init__.py":
             return {}
         stub = source.with_suffix(".pyi")
-        tree = ast.parse((stub if stub.exists() else source).read_text(encoding="utf-8"))
-        return {here: (start, name) for start, name, here in self.from_imports(module, tree)}
+        written = imports_in(stub) if stub.exists() else self.written[module]
+        return {here: (start, name) for start, name, here in self.from_imports(module, written)}
 
     def home(self, module: str, name: str) -> str:
         """File that holds a name which is taken from a module."""
@@ -143,9 +143,9 @@ class Files:
         return module if start == module or start not in self.sources else self.home(start, there)
 
     def reached(self, module: str) -> set[str]:
-        tree = ast.parse(self.sources[module].read_text(encoding="utf-8"))
-        found = {self.home(start, name) for start, name, _ in self.from_imports(module, tree)}
-        for node in ast.walk(tree):
+        written = self.written[module]
+        found = {self.home(start, name) for start, name, _ in self.from_imports(module, written)}
+        for node in written:
             if isinstance(node, ast.Import):
                 found |= {alias.name for alias in node.names}
         return found & self.sources.keys()
@@ -159,9 +159,27 @@ class Files:
         return []
 
 
+@cache
+def files_of(package: str) -> Files:
+    """Files of a package of this repository, read once for all that is asked of them."""
+    return Files(ROOT / package)
+
+
+@pytest.mark.parametrize("package", sorted(MAY_IMPORT))
+def test_imports_only_go_downwards(package: str):
+    files = files_of(package)
+    assert files.sources
+    climbing = {
+        module: found
+        for module in files.sources
+        if (found := files.packages_of(module) & (MAY_IMPORT.keys() - MAY_IMPORT[package] - {package}))
+    }
+    assert climbing == {}
+
+
 @pytest.mark.parametrize("package", sorted(MAY_IMPORT))
 def test_no_files_import_each_other_in_a_circle(package: str):
-    assert Files(ROOT / package).circle() == []
+    assert files_of(package).circle() == []
 
 
 def test_circles_are_found_in_functions_under_type_checking_and_through_stubs(tmp_path):
@@ -182,8 +200,8 @@ def test_circles_are_found_in_functions_under_type_checking_and_through_stubs(tm
 class Wings:
     """Folders of a package in their order, and the imports among them, under TYPE_CHECKING too."""
 
-    def __init__(self, folder: Path, order: list[list[str]]) -> None:
-        self.files = Files(folder)
+    def __init__(self, folder: Path, order: list[list[str]], files: Files | None = None) -> None:
+        self.files = files or Files(folder)
         self.folder = folder
         self.floors = {wing: floor for floor, wings in enumerate(order) for wing in wings}
 
@@ -223,7 +241,7 @@ class Wings:
 
 @pytest.mark.parametrize("package", sorted(WINGS))
 def test_imports_go_down_among_the_folders_of_a_package(package: str):
-    wings = Wings(ROOT / package, WINGS[package])
+    wings = Wings(ROOT / package, WINGS[package], files_of(package))
     assert {wing for module in wings.files.sources if (wing := wings.wing(module))} == wings.floors.keys()
     assert wings.climbing() == []
     assert wings.circle() == []
