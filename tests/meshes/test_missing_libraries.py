@@ -6,16 +6,19 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tests.flankfilm.scenes import ARTICLE
+
 
 def test_the_message_names_the_library_and_the_remedy(tmp_path: Path):
     (tmp_path / "gmsh.py").write_text("raise OSError('libGLU.so.1: cannot open shared object file')\n")
-    example = Path(__file__).parents[2] / "examples" / "article.toml"
+    scene = tmp_path / "scene.toml"
+    scene.write_text(f'title = "X"\nwants = ["geometry", "stiffness"]\n{ARTICLE}', encoding="utf-8")
     code = (
         "import sys; sys.path.insert(0, sys.argv.pop(1)); from flankfilm.cli import main; "
         "sys.argv[0] = 'flankfilm'; main()"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code, tmp_path, "run", example, "--out", tmp_path / "out", "--no-cache"],
+        [sys.executable, "-c", code, tmp_path, "run", scene, "--out", tmp_path / "out", "--no-cache"],
         capture_output=True,
         text=True,
         check=False,
