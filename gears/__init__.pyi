@@ -1,4 +1,5 @@
 from . import closed_form as closed_form
+from . import rating as rating
 from .pair.contact_lines import ContactLines as ContactLines
 from .pair.contact_lines import contact_lines as contact_lines
 from .pair.gear_pair import GearPair as GearPair

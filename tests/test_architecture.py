@@ -40,7 +40,7 @@ WINGS: dict[str, list[list[str]]] = {
         ["fields"],
     ],
     "ehl": [["oil"], ["kernels"], ["discrete"], ["solving"], ["films"]],
-    "gears": [["tooth"], ["pair"], ["sharing", "closed_form"]],
+    "gears": [["tooth"], ["pair"], ["sharing", "closed_form"], ["rating"]],
     "dynamics": [
         ["kernels"],
         ["model"],

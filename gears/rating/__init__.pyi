@@ -1,0 +1,12 @@
+from .grades import Tolerances as Tolerances
+from .grades import tolerances as tolerances
+from .load_factors import LoadFactors as LoadFactors
+from .load_factors import load_factors as load_factors
+from .misalignment import Misalignment as Misalignment
+from .misalignment import misalignment as misalignment
+from .reduced_mass import reduced_mass as reduced_mass
+from .running_in import RunIn as RunIn
+from .running_in import run_in as run_in
+from .running_in import run_in_relief as run_in_relief
+from .steels import KINDS as KINDS
+from .steels import RatedSteel as RatedSteel
