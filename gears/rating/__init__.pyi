@@ -1,9 +1,16 @@
+from .bending import BendingSafety as BendingSafety
+from .bending import bending_safety as bending_safety
 from .grades import Tolerances as Tolerances
 from .grades import tolerances as tolerances
+from .life import LifeCurve as LifeCurve
+from .life import contact_curve as contact_curve
 from .load_factors import LoadFactors as LoadFactors
 from .load_factors import load_factors as load_factors
 from .misalignment import Misalignment as Misalignment
 from .misalignment import misalignment as misalignment
+from .pitting import PittingSafety as PittingSafety
+from .pitting import load_cycles as load_cycles
+from .pitting import pitting_safety as pitting_safety
 from .reduced_mass import reduced_mass as reduced_mass
 from .running_in import RunIn as RunIn
 from .running_in import run_in as run_in
