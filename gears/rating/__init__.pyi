@@ -1,7 +1,12 @@
 from .bending import BendingSafety as BendingSafety
 from .bending import bending_safety as bending_safety
+from .flash import FlashTemperature as FlashTemperature
+from .flash import flash_temperature as flash_temperature
+from .friction import GearOil as GearOil
+from .friction import scuffing_friction as scuffing_friction
 from .grades import Tolerances as Tolerances
 from .grades import tolerances as tolerances
+from .life import BENDING as BENDING
 from .life import LifeCurve as LifeCurve
 from .life import contact_curve as contact_curve
 from .load_factors import LoadFactors as LoadFactors
@@ -15,5 +20,12 @@ from .reduced_mass import reduced_mass as reduced_mass
 from .running_in import RunIn as RunIn
 from .running_in import run_in as run_in
 from .running_in import run_in_relief as run_in_relief
+from .scuffing import ScuffingSafety as ScuffingSafety
+from .scuffing import scuffing_safety as scuffing_safety
+from .spectrum import LoadBin as LoadBin
+from .spectrum import SpectrumDamage as SpectrumDamage
+from .spectrum import check_spectrum as check_spectrum
+from .spectrum import miner as miner
+from .spectrum import spectrum_safety as spectrum_safety
 from .steels import KINDS as KINDS
 from .steels import RatedSteel as RatedSteel
