@@ -24,20 +24,15 @@ def flash_of(pair, places, **more):
     return flash_temperature(pair, LOAD, SPEED, **(given | more))
 
 
-def test_it_is_bloks_temperature_of_a_parabolic_or_hertzian_source():
-    """1.11 mu w |u1 - u2|/[(B1 sqrt(u1) + B2 sqrt(u2)) sqrt(2 b)], of the force along the normal, w/cos(alpha_t).
+def test_it_is_bloks_temperature_of_hertzian_contacts():
+    """1.11 mu w |u1 - u2|/[(B1 sqrt(u1) + B2 sqrt(u2)) sqrt(2 b)], w the normal force, b Hertz's half-width.
 
-    The standard's 0.51 and 1.22 are rounded, and its form takes the factor as of a Hertzian source: within 1.5 %.
+    Constants of the standard, 0.51 and 1.22, are rounded: within 1.5 %.
     """
     pair = pair_of()
     places = np.linspace(pair.points.A, pair.points.E, 9)
     found = flash_of(pair, places).theta_fl
-    force = (
-        LOAD
-        / math.cos(pair.working_pressure_angle)
-        * math.cos(pair.working_pressure_angle)
-        / math.cos(pair.transverse_pressure_angle)
-    )
+    force = LOAD / math.cos(pair.transverse_pressure_angle)
     rho2 = pair.line_of_action - places
     radius = places * rho2 / pair.line_of_action
     pressure = np.array([peak_pressure(force, float(R), pair.reduced_modulus) for R in radius])
