@@ -140,7 +140,7 @@ def load_factors(
     >>> effective = run_in(pair, steels, 209.44, tolerances(pair, 6))
     >>> given = {"effective": effective, "relief": run_in_relief(steels), "misalignment": 14e-6}
     >>> load_factors(pair, 600.0, 209.44, application_factor=1.25, **given)
-    LoadFactors(K_v 1.0..., K_Hbeta 1.2..., K_Fbeta 1.2..., K_Halpha 1, K_Falpha 1, N 0.16...)
+    LoadFactors(K_v 1.0..., K_Hbeta 1.2..., K_Fbeta 1.1..., K_Halpha 1, K_Falpha 1, N 0.16...)
     """
     with Faults(GeometryError) as faults:
         faults.numbers(_LIMITS, (torque, speed, application_factor, relief))
