@@ -45,7 +45,14 @@ class BendingSafety:
     nominal: Iso6336RootStress = part("nominal stress with its factors")
 
     no_error = STANDARD
-    headline = ("S_F", "sigma_F", "sigma_FG")
+
+    def __repr__(self) -> str:
+        """One line: stress, limit and safety of each gear."""
+        gears = (
+            f"S_F {safety:.4g} of {1e-6 * limit:.5g} MPa over {1e-6 * stress:.5g} MPa"
+            for safety, limit, stress in zip(self.S_F, self.sigma_FG, self.sigma_F, strict=True)
+        )
+        return f"BendingSafety({', '.join(gears)})"
 
     @described("1")
     def safety(self) -> float:

@@ -98,7 +98,7 @@ def misalignment(
     >>> pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3)
     >>> steels = (RatedSteel("Eh", 1500e6, 430e6),) * 2
     >>> round(1e6 * misalignment(pair, 600.0, 200.0, steels, tolerances(pair, 6)).F_by, 1)
-    14.4
+    13.6
     """
     with Faults(GeometryError) as faults:
         faults.numbers(_LIMITS, (torque, speed, shaft, B_1, B_2))

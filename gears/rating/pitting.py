@@ -42,7 +42,14 @@ class PittingSafety:
     nominal: Iso6336ContactStress = part("nominal stress with its factors")
 
     no_error = STANDARD
-    headline = ("S_H", "sigma_H", "sigma_HG")
+
+    def __repr__(self) -> str:
+        """One line: stress, limit and safety of each gear."""
+        gears = (
+            f"S_H {safety:.4g} of {1e-6 * limit:.5g} MPa over {1e-6 * stress:.5g} MPa"
+            for safety, limit, stress in zip(self.S_H, self.sigma_HG, self.sigma_H, strict=True)
+        )
+        return f"PittingSafety({', '.join(gears)})"
 
     @described("1")
     def safety(self) -> float:
