@@ -30,8 +30,8 @@ def reduced_mass(pair: GearPair) -> float:
     --------
     >>> from gears import Gear
     >>> pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3)
-    >>> round(reduced_mass(pair), 3)
-    9.6...
+    >>> round(reduced_mass(pair), 4)
+    9.72...
     """
     first, second = pair.teeth_profiles
     mean, base = _mean_diameter(first), 2.0 * pair.base_radii[0]
