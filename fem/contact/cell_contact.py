@@ -5,30 +5,34 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from base import Array, Integers, record
+from fem.contact.cell_coupling import CellCoupling
 from fem.contact.cell_laws import CellLaws, between_middles, face_load_factors, greatest_error
 from fem.contact.cell_matrix import cell_coupling, cross_coupling
 from fem.contact.contact_sides import ContactSides
 from fem.contact.partial_cells import WITHIN, gap_drops, partial_cells
 from fem.elasticity.flamant import hertz_half_width
 from fem.pair.face_shafts import HeldShafts, ShaftsUnderFace, shafts_under_face
+from fem.pair.line_shafts import ShaftsUnderLines
 from fem.pair.wide_contact import shared_by_width
 from gears.sharing.active_set import share_forces
 from gears.sharing.central_path import share_forces_by_path
 from gears.sharing.staying_contacts import DeflectionLaw, JointLaw, StayingContacts
 
 if TYPE_CHECKING:
-    from fem.contact.cell_coupling import CellCoupling
     from fem.laws.contact_candidates import ContactCandidates
     from fem.pair.face_setting import FaceSetting
     from fem.pair.pair_compliance import PairCompliance
     from gears import GearPair, LoadShare
 
-__all__ = ["CellContact", "CellShare", "along_cells"]
+__all__ = ["CellContact", "CellShare", "UnderShafts", "along_cells"]
+
+UnderShafts: TypeAlias = ShaftsUnderFace | ShaftsUnderLines
+"""Shafts under cells that lie along the face, or on lines across it."""
 
 
 @record
@@ -122,7 +126,7 @@ class CellContact:
         ahead, reach = np.repeat(self.sides.sign > 0.0, cells), np.repeat(self.sides.reach, cells, axis=-1)
         levers = np.repeat(self.sides.sign * self.sides.tilted_lever_ratios, cells, axis=-1)
         start, laws = _flat(self.spread(face, near)), self.laws(face)
-        shafts = shafts_under_face(face, self.pair)
+        shafts = self.shafts(face)
 
         @lru_cache(maxsize=1)  # large ones are kept nowhere else
         def coupling(strip: float) -> tuple[CellCoupling, CellCoupling]:
@@ -180,6 +184,10 @@ class CellContact:
             np.zeros_like(remaining_gaps) if rise is None else rise,
             reached,
         )
+
+    def shafts(self, face: FaceSetting) -> UnderShafts | None:
+        """Shafts under the cells of a face; None where both are rigid."""
+        return shafts_under_face(face, self.pair)
 
     def laws(self, face: FaceSetting) -> JointLaw:
         """Laws of cells that touch all over."""
@@ -274,7 +282,7 @@ class CellContact:
             D, with what shafts give way [m].
         """
         loads, reach = _flat(forces), np.repeat(self.sides.reach, face.cells, axis=-1)
-        wanted, shafts = np.ones(loads.shape[:-1], dtype=bool), shafts_under_face(face, self.pair)
+        wanted, shafts = np.ones(loads.shape[:-1], dtype=bool), self.shafts(face)
         coupling = self._on_shafts(self.coupling(face), shafts)
         bends = coupling.applied(loads, wanted, np.zeros_like(loads))
         gaps, oil = bends + self._apart(face) - reach * approach[..., None], self.sides.oil
@@ -283,10 +291,15 @@ class CellContact:
         drops = gap_drops(self._over_sides(face, _gaps_within), _by_cells(bends, face.cells))
         return np.asarray(_by_cells(gaps, face.cells) - drops)
 
-    def _on_shafts(self, coupling: CellCoupling, shafts: ShaftsUnderFace | None) -> CellCoupling:
+    def _on_shafts(self, coupling: CellCoupling, shafts: UnderShafts | None) -> CellCoupling:
         """A compliance of the bodies with that of the shafts."""
         if shafts is None:
             return coupling
+        if isinstance(shafts, ShaftsUnderLines):
+            blocks = zip(coupling.blocks, shafts.compliances(), strict=True)
+            return CellCoupling(
+                coupling.cells, tuple(bodies + beams for bodies, beams in blocks), coupling.unknowns
+            )
         return coupling.plus(shafts.compliance, self.sides.count)
 
     def _apart(self, face: FaceSetting) -> Array:

@@ -164,6 +164,11 @@ class ContactState:
         first = self.setup.face.first_gap(self.setup.pair, radii, touchable)
         return self.side.rho(force, approach + (first + self.bent(number)))
 
+    def tilted(self, number: int) -> Array | float:
+        """By how much shafts close gaps elsewhere on the face than at the first touch (pitches, positions) [m]."""
+        shafts = self.contacts.shafts
+        return 0.0 if shafts is None else shafts.most[number] * self.setup.pair.module - shafts.touch[number]
+
     def shafts_give_way(self, number: int) -> float:
         """Maximum deflection of both shafts on the face over the module; 0 of rigid ones."""
         shafts = self.contacts.shafts

@@ -19,9 +19,10 @@ from fem.contact.cell_coupling import CellCoupling
 from fem.contact.cell_matrix import coupled_by, kept_unless_large
 from fem.contact.partial_cells import WITHIN, drops_within
 from fem.elasticity.flamant import hertz_half_width
-from fem.laws.contact_candidates import line_gaps
+from fem.laws.contact_candidates import SEEN_ALONG, line_gaps
 from fem.laws.local_law import PairLaws
 from fem.pair.line_compliance import GearLines, gear_lines
+from fem.pair.line_shafts import PlacesOnLines, ShaftsUnderLines, shafts_under_lines
 from fem.pair.wide_contact import NARROW, shares_together
 
 if TYPE_CHECKING:
@@ -95,6 +96,25 @@ class LineContact(CellContact):
                 constant=law.constant.reshape(positions, -1),
                 per_log=np.reshape(law.per_log, (positions, -1)),
             )
+        )
+
+    def shafts(self, face: FaceSetting) -> ShaftsUnderLines | None:
+        """Shafts under the cells of all lines; None where both are rigid."""
+        if not face.on_shafts:
+            return None
+        cells, seen = (self._places(self.lines.divided(number)) for number in (face.cells, SEEN_ALONG))
+        return shafts_under_lines(face, self.pair, self.lines.slope, cells, seen)
+
+    def _places(self, cells: LineCells) -> PlacesOnLines:
+        """Middles of cells, line after line, and the gaps there without load."""
+        gaps, flat = line_gaps(self.setup, cells.z, cells.rho), (len(cells.z), -1)
+        length = np.where(cells.used, cells.length[..., None], 0.0)
+        return PlacesOnLines(
+            cells.z.reshape(flat),
+            cells.rho.reshape(2, *flat),
+            cells.used.reshape(flat),
+            length.reshape(flat),
+            gaps.reshape(1, *flat),
         )
 
     def spread(self, face: FaceSetting, near: Array) -> Array:

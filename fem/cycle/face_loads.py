@@ -11,6 +11,7 @@ from base import Array, Booleans, described, part, quantity, record
 from base.results import EXACT
 from fem.contact.cell_laws import face_load_factors
 from fem.cycle.face_cells import IN_SINGLE_CELLS, FaceCells
+from fem.cycle.shaft_figures import shaft_figures
 from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.pair.face_setting import FaceSetting
 from gears.pair.hertz import peak_pressure
@@ -209,15 +210,9 @@ def _shafts(setup: MeshSetup, over: SharedContacts, number: int) -> dict[str, An
     """What the shafts do, as fields of the record."""
     if over.shafts is None:
         return {"shaft_misalignment": np.zeros((2, over.share.stiffness[number].size))}
-    held, error = over.shafts.at(number), over.errors
-    sign = -1.0 if setup.back else 1.0
+    error = over.errors
     return {
-        "shaft_misalignment": held.tilt.T * setup.pair.face_width,
-        "shaft_deflection": held.deflection.T,
-        "shaft_transmission_error": sign * held.deflection.sum(axis=-1),
-        "tilt_transmission_error": sign * held.tilt_touch,
-        "mesh_matrix": held.mesh,
-        "shaft_error": float(error.shafts[number]),
-        "tilt_error": float(error.tilt[number]),
+        **shaft_figures(setup, over, number),
+        "mesh_matrix": over.shafts.at(number).mesh,
         "matrix_error": float(error.matrix[number] + error.relative[number] + error.ends[number]),
     }

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from base import Array, described, part, quantity, record
+from base import Array, InputError, described, part, quantity, record
 from base.results import EXACT, ITSELF
 from fem.contact.line_contact import WINDOW
+from fem.cycle.shaft_figures import shaft_figures
 from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.pair.face_setting import FaceSetting
 from gears.pair.hertz import half_width, peak_pressure
+from gears.pair.tilting_shaft import bearing_forces
 
 if TYPE_CHECKING:
     from fem.contact.contact_state import ContactState
@@ -95,6 +97,47 @@ class LineLoads:
         "estimated error of the centre of the load, root mean square over the positions",
         shown="um",
         no_error=ITSELF,
+    )
+
+    shaft_deflection: Array | None = quantity(
+        "m",
+        "how far the shafts give way along the line of action under the load, at mid-face; none of rigid ones",
+        "gear position",
+        shown="um",
+        error="shaft_error",
+        default=None,
+    )
+    shaft_misalignment: Array | None = quantity(
+        "m",
+        "how far bending, tilt and twist of the shafts under the load open the lines over the face, end to end; none "
+        "of rigid ones",
+        "gear position",
+        shown="um",
+        error="tilt_error",
+        default=None,
+    )
+    shaft_transmission_error: Array | None = quantity(
+        "m",
+        "the shafts' part of the transmission error: both deflections at mid-face; none of rigid ones",
+        "position",
+        shown="um",
+        error="shaft_error",
+        default=None,
+    )
+    tilt_transmission_error: Array | None = quantity(
+        "m",
+        "the tilt's part of the transmission error: what tilt and bend of the shafts over the face move the first "
+        "touch by; none of rigid ones",
+        "position",
+        shown="um",
+        error="tilt_error",
+        default=None,
+    )
+    shaft_error: float | None = quantity(
+        "1", "estimated relative error of how far shafts give way, of the largest", default=None
+    )
+    tilt_error: float | None = quantity(
+        "1", "estimated relative error of the shafts' tilt and of what it adds, of the largest", default=None
     )
 
     @property
@@ -181,6 +224,31 @@ class LineLoads:
         lever = np.nan_to_num(self.z) + slopes[:, None, None, None] * rho
         return np.asarray((self.force * lever).sum(axis=(2, 3)) * self.pair.helix.base_cosine)
 
+    def bearing_forces(self, gear: int) -> Array:
+        """Radial forces that the bearings of a shaft carry under the mesh (bearings, positions, 2) [N].
+
+        Along the transverse line of action and across it; weights and what couplings add are left out. Axially one
+        bearing carries `axial_force`.
+
+        Parameters
+        ----------
+        gear : {0, 1}
+            Pinion, wheel.
+
+        Raises
+        ------
+        base.InputError
+            Of a shaft that is rigid.
+        """
+        shaft = self.setting.shafts[gear]
+        if shaft is None:
+            raise InputError.at(
+                "shafts", "None", "must be given where bearings are asked for", "give a Shaft"
+            )
+        force = self.force[0].sum() * self.pair.helix.base_cosine
+        loads = np.full(len(self.position), force), self.tilting_moment[gear], self.axial_moment[gear]
+        return bearing_forces(shaft, *loads, self.pair.face_offsets[gear])
+
     @described("1")
     def contact_pattern(self) -> float:
         """Part of the length of all lines, over the whole cycle, that is touched."""
@@ -227,4 +295,5 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         error=float(over.errors.factor[number]),
         line_load_error=float(over.errors.line_load[number]),
         centre_error=float(over.errors.centre[number]),
+        **shaft_figures(setup, over, number),
     )

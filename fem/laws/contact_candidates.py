@@ -18,7 +18,13 @@ from fem.laws.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_ga
 if TYPE_CHECKING:
     from gears import GearPair
 
-__all__ = ["ContactCandidates", "contact_candidates", "line_gaps", "unloaded_transmission_error"]
+__all__ = [
+    "SEEN_ALONG",
+    "ContactCandidates",
+    "contact_candidates",
+    "line_gaps",
+    "unloaded_transmission_error",
+]
 
 REACHES = (0.6, 1.0)
 """Base pitches outside the path within which tip edges are looked for; the second if the first is not enough."""

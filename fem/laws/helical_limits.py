@@ -80,8 +80,6 @@ def check_helical(faults: Faults, setup: Setting) -> None:
     if setup.moving_contact:
         allowed = "must be False with a helix: contacts stay where undeformed teeth touch"
         faults.add("moving_contact", True, allowed, "give moving_contact=False")
-    if setup.face.on_shafts:
-        faults.add("shafts", "under a helical pair", "must be None with a helix", SPUR)
     if setup.face.cells > 1 and setup.face.model != FREE_ENDS:
         allowed = f'must be "{FREE_ENDS}" with a helix: there are no walls that it fits'
         faults.add("face_model", repr(setup.face.model), allowed, "leave it out")

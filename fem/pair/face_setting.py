@@ -122,9 +122,9 @@ class FaceSetting:
             if lead.topography is not None:
                 span = pair.active_profiles[k]
                 faults.extend(lead.topography.apart(f"{path}.topography", span, width))
-            if lead.topographic and self.on_shafts:
+            if lead.topographic and self.on_shafts and not pair.helix_angle:
                 key, value = ("topography", lead.topography) if lead.topography else ("twist", lead.twist)
-                allowed = "must be left out where shafts give way under the face"
+                allowed = "must be left out where shafts give way under the face of a spur pair"
                 faults.add(f"{path}.{key}", shorten(value), allowed, "leave it out, or take rigid shafts")
 
     @property

@@ -28,15 +28,14 @@ class FaceOptions(TypedDict, total=False):
 
 
 def face(scene: Scene) -> FaceOptions:
-    """How the face of a scene's pair is looked at; nothing without [alignment], where leads alone decide."""
-    section = scene.alignment
-    if section is None:
-        return {}
-    options: FaceOptions = {
-        "alignment": section.alignment(),
-        "cells": section.cells,
-        "face_model": section.face_model,
-    }
+    """How the face of a scene's pair is looked at; nothing where leads alone decide."""
+    section, options = scene.alignment, FaceOptions()
+    if section is not None:
+        options = {
+            "alignment": section.alignment(),
+            "cells": section.cells,
+            "face_model": section.face_model,
+        }
     if (under := scene.shafts_under_face) is not None:
         options["shafts"] = under.shafts()
     return options

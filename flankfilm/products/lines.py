@@ -93,6 +93,16 @@ PRODUCT = Product(
             "load_centre",
             ("load_centre", "tilting_moment", "whole_length", "maximum_line_load", "line_load_factor"),
         ),
+        "shafts_under_lines": CurveTable(
+            "dry_lines",
+            "shaft_deflection",
+            (
+                "shaft_transmission_error",
+                "tilt_transmission_error",
+                "shaft_deflection",
+                "shaft_misalignment",
+            ),
+        ),
     },
     headlines=headlines,
     pictures=line_parts.PICTURES,

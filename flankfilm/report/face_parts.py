@@ -110,12 +110,14 @@ def _rows(loads: fem.FaceLoads) -> Iterator[tuple[str, str]]:
     pressure = read_figure(loads, "hertz_pressure")
     yield f"maximum {pressure.meaning}", f"{number(float(np.nanmax(pressure.values)))} {pressure.unit}"
     yield "contact pattern: part of the face in contact", percent(loads.contact_pattern, 3)
-    yield from _of_shafts(loads)
+    yield from rows_of_shafts(loads)
 
 
-def _of_shafts(loads: fem.FaceLoads) -> Iterator[tuple[str, str]]:
+def rows_of_shafts(loads: fem.FaceLoads | fem.LineLoads) -> Iterator[tuple[str, str]]:
     """Deflection and tilt of shafts, and their parts of the transmission error; nothing for rigid shafts."""
-    if loads.shaft_deflection is None or loads.shaft_error is None or loads.tilt_error is None:
+    if loads.shaft_deflection is None or loads.shaft_misalignment is None:
+        return
+    if loads.shaft_error is None or loads.tilt_error is None:
         return
     errors = plus_minus(loads.shaft_error), plus_minus(loads.tilt_error)
     for gear, name in enumerate(("pinion", "wheel")):

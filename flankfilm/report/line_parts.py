@@ -9,6 +9,7 @@ import numpy as np
 
 from flankfilm.figures.reading import Pictures, read_figure
 from flankfilm.output.uncertainty import uncertainty
+from flankfilm.report.face_parts import rows_of_shafts
 from flankfilm.report.page import Headline, Part, Table, pictures, said
 from flankfilm.report.text import number, percent, plus_minus
 
@@ -66,3 +67,4 @@ def _rows(loads: fem.LineLoads) -> Iterator[tuple[str, str]]:
         ends = " to ".join(number(float(end), 3) for end in (values.min(), values.max()))
         yield f"tilting moment on the {name}", f"{ends} {moment.unit}"
     yield "contact pattern: part of the lines in contact", percent(loads.contact_pattern, 3)
+    yield from rows_of_shafts(loads)

@@ -154,7 +154,6 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
     SpurKey("film.model", _FILM, 'must be "none"', 'Take film.model = "none"', _other_than("none")),
     SpurKey("film", _FILM, 'must be of model = "none"', 'Take film.model = "none"', _without_model),
     SpurKey("heat", "loaded teeth at other temperatures"),
-    SpurKey("shafts", "shafts under axial forces and tilting moments"),
     SpurKey("pair.tight", "twisted teeth that bear on both sides", "must be false", "Give more backlash"),
     SpurKey("pair.*.hub", "rigid hubs in twisted bodies"),
     SpurKey("pair.*.blank", "webs of twisted bodies"),

@@ -138,18 +138,22 @@ class Scene(Section):
 
     @property
     def shafts_under_face(self) -> ShaftsSection | None:
-        """[shafts] where they bend and twist under cells of the face, which [alignment] asks for; None elsewhere."""
-        if self.alignment is None or self.shafts is None or not self.shafts.bends:
-            return None
-        return self.shafts
+        """[shafts] where they bend and twist under cells of the face; None elsewhere.
+
+        [alignment] asks for cells, and a helix always has them.
+        """
+        cells = self.alignment is not None or (self.pair is not None and self.pair.helical)
+        return self.shafts if cells and self.shafts is not None and self.shafts.bends else None
 
     @property
     def face(self) -> dict[str, Any] | None:
         """What decides how the load varies along the face beside the gears, as plain values; None where nothing."""
-        if self.alignment is None:
-            return None
-        alignment = self.alignment.model_dump(exclude={"in_plane_tolerance_um"})
         under = self.shafts_under_face
+        if self.alignment is None and under is None:
+            return None
+        alignment = (
+            {} if self.alignment is None else self.alignment.model_dump(exclude={"in_plane_tolerance_um"})
+        )
         if under is None:
             return alignment
         return alignment | {"shafts": [None if shaft is None else shaft.bent for shaft in under.each]}

@@ -21,7 +21,7 @@ from base import Array, Integers
 from gears.pair.beams import bending
 from gears.pair.shafts import SAME, Shaft
 
-__all__ = ["ShaftOverFace", "shaft_over_face"]
+__all__ = ["ShaftOverFace", "joined", "shaft_over_face", "twisted"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,15 +84,15 @@ def shaft_over_face(
     places = shaft.gear_position - offset + np.asarray(z, dtype=float)
     middle, half = shaft.gear_position - offset, 0.5 * face_width
     ends = min(places.min(), middle - half), max(places.max(), middle + half)
-    nodes, at = _joined(np.concatenate([shaft.places, places]), SAME * shaft.length)
+    nodes, at = joined(np.concatenate([shaft.places, places]), SAME * shaft.length)
     at = at[len(shaft.places) :]
     loads = np.zeros((2 * len(nodes), len(places)))
     loads[2 * at, np.arange(len(places))] = 1.0
     bent = np.linalg.solve(bending(shaft, nodes)[0], loads)[2 * at]
-    return ShaftOverFace(0.5 * (bent + bent.T), base_radius**2 * _twist(shaft, places, ends))
+    return ShaftOverFace(0.5 * (bent + bent.T), base_radius**2 * twisted(shaft, places, ends))
 
 
-def _joined(places: Array, apart: float) -> tuple[Array, Integers]:
+def joined(places: Array, apart: float) -> tuple[Array, Integers]:
     """Places from the left, those no farther apart than a distance as one, and the number of each.
 
     A beam between places that differ by rounding would have a stiffness beside which all others are lost.
@@ -102,7 +102,7 @@ def _joined(places: Array, apart: float) -> tuple[Array, Integers]:
     return distinct[first], (np.cumsum(first) - 1)[number]
 
 
-def _twist(shaft: Shaft, places: Array, face: tuple[float, float]) -> Array:
+def twisted(shaft: Shaft, places: Array, face: tuple[float, float]) -> Array:
     """Turn at places by unit torques at places (n, n) [rad/(N m)], against the end of the face on the torque's side."""
     ends = np.concatenate([[0.0], np.cumsum([segment.length for segment in shaft.segments])])
     polar = np.array([2.0 * segment.second_moment for segment in shaft.segments])

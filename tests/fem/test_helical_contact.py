@@ -11,7 +11,7 @@ import pytest
 from base import Array, InputError
 from fem import MeshCycle, PairCompliance, compliance, mesh_cycle
 from fem.laws.line_candidates import LineCells
-from gears import Alignment, Gear, GearDeviations, GearPair, Lead
+from gears import Alignment, Bearing, Gear, GearDeviations, GearPair, Lead, Shaft, ShaftSegment
 
 SMALL = GearPair(Gear(18), Gear(23), module=1e-3, face_width=5e-3, helix_angle=radians(18.0))
 
@@ -182,6 +182,13 @@ def test_a_small_helix_is_spur_within_the_errors(helix_angle: float) -> None:
     nearly = replace(spur, helix_angle=helix_angle)
     straight, twisted = (mesh_cycle(pair, 8.0, 8, cells=16, beyond_path=False) for pair in (spur, nearly))
     # between double and single contact a line of contact is short
+    ends = Bearing(0.0, 5e7), Bearing(0.06, 5e7)
+    shaft = Shaft((ShaftSegment(0.06, 0.012),), ends, 0.02, 0.0)
+    bent = [
+        mesh_cycle(pair, 8.0, 8, cells=16, beyond_path=False, shafts=(shaft, None)) for pair in (spur, nearly)
+    ]
+    assert bent[1].transmission_error == pytest.approx(bent[0].transmission_error, rel=2e-3)
+    assert np.all(np.abs(bent[1].stiffness / bent[0].stiffness - 1.0) < bent[0].error + bent[1].error)
     whole = np.abs(twisted.stiffness / straight.stiffness - 1.0) < straight.error + twisted.error
     print(twisted.stiffness / straight.stiffness - 1.0, straight.error, twisted.error)
     assert whole.all()

@@ -12,6 +12,7 @@ import pytest
 
 from base import InputError
 from flankfilm import figures
+from flankfilm.building.face import face
 from flankfilm.building.pair import gear_pair, warm_pair
 from flankfilm.figures.style import narrow
 from flankfilm.files.cache import Cache
@@ -192,7 +193,6 @@ class TestTable:
         ("stiffness.plane", "stress", False),
         ("stiffness.contact_beyond_path", True, False),
         ("film.model", "dowson", False),
-        ("shafts", {"pinion": {"inertia_kg_m2": 1.0}}, False),
         ("pair.tight", True, False),
         ("pair.wheel.hub", {"hub_mm": 40.0}, False),
         ("pair.pinion.blank", {"rim_thickness_mm": 6.0, "web_thickness_mm": 12.0}, False),
@@ -242,6 +242,20 @@ class TestTable:
         assert check_scene(
             parse_scene(text.replace("WANTS", '"stiffness"') + "[alignment]\nin_plane_um = 20\n")
         )
+
+    def test_shafts_bend_under_lines_without_an_alignment(self):
+        shaft = """[shafts.pinion]
+segments = [{ length_mm = 200, diameter_mm = 40 }]
+bearings = [{ position_mm = 20, stiffness_N_per_m = 4e8 }, { position_mm = 180, stiffness_N_per_m = 4e8 }]
+gear_position_mm = 100
+"""
+        text = SCENE.replace("WANTS", '"stiffness"') + shaft
+        pinion, wheel = face(parse_scene(text))["shafts"]
+        assert pinion.gear_position == pytest.approx(0.1)
+        assert wheel is None
+        assert check_scene(parse_scene(text))
+        assert parse_scene(text).face != parse_scene(SCENE.replace("WANTS", '"stiffness"')).face
+        assert "shafts" not in face(parse_scene(text.replace("deg = 20", "deg = 0")))
 
     def test_all_at_once_with_status_2_before_anything_is_computed(self, tmp_path):
         text = SCENE.replace("WANTS", '"stiffness", "film", "sweep"').replace("= 600", "= -600")
