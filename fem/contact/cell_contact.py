@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Self, TypeAlias
 
 import numpy as np
 
@@ -324,7 +324,7 @@ class CellContact:
         wide = hertz_half_width(load, radius, 2.0 / (1.0 / modulus + 1.0 / other))
         return np.asarray(wide.max(axis=(1, 2, 3)))
 
-    def at(self, torque: int, pitch: int, position: int) -> CellContact:
+    def at(self, torque: int, pitch: int, position: int) -> Self:
         """The same at a single torque and position."""
         whole = np.broadcast_to(self.whole, (len(self.whole), *self.sides.gaps.shape[:-1]))
         single = whole[torque, pitch, position].reshape(1, 1, 1)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -107,14 +107,14 @@ class LineContact(CellContact):
 
     def _places(self, cells: LineCells) -> PlacesOnLines:
         """Middles of cells, line after line, and the gaps there without load."""
-        gaps, flat = line_gaps(self.setup, cells.z, cells.rho), (len(cells.z), -1)
+        gaps, flat = self._gaps_at(cells.z, cells.rho), (len(cells.z), -1)
         length = np.where(cells.used, cells.length[..., None], 0.0)
         return PlacesOnLines(
             cells.z.reshape(flat),
             cells.rho.reshape(2, *flat),
             cells.used.reshape(flat),
             length.reshape(flat),
-            gaps.reshape(1, *flat),
+            gaps.reshape(-1, *flat),
         )
 
     def spread(self, face: FaceSetting, near: Array) -> Array:
@@ -199,11 +199,29 @@ class LineContact(CellContact):
         return np.where(cells.used, apart, np.inf).reshape(*apart.shape[:-2], -1)
 
     def _gaps_within(self, cells: LineCells, within: Array) -> Array:
-        """Gaps in the section at places of every cell (positions, lines, cells, places) [m], -1/2 to 1/2 of it."""
+        """Gaps in the section at places of every cell (pitches, positions, lines, cells, places) [m], -1/2 to 1/2."""
         along = cells.length[..., None, None] * within
         rho1 = cells.rho[0][..., None] + self.lines.slope * along
         rho = np.stack([rho1, self.lines.line_of_action - rho1])
-        return line_gaps(self.setup, cells.z[..., None] + along, rho)
+        flat = (*cells.z.shape[:2], -1)
+        gaps = self._gaps_at((cells.z[..., None] + along).reshape(flat), rho.reshape(2, *flat))
+        return gaps.reshape(-1, *rho1.shape)
+
+    def _gaps_at(self, z: Array, rho: Array) -> Array:
+        """Gaps in the section at places of each line, by its teeth (pitches, positions, lines, places) [m]."""
+        candidates = self.sides.flanks[0].candidates
+        teeth = candidates.teeth.reshape(2, -1, *z.shape[:2])
+        rolling = self.setup.rolling_gap(self.lines.middle)
+        return line_gaps(self.setup, z, rho, teeth) + rolling[..., None]
+
+    def at(self, torque: int, pitch: int, position: int) -> Self:
+        """The same at a single torque and position, with the teeth that meet there."""
+        (flanks,), teeth = self.sides.flanks, self.sides.flanks[0].candidates.teeth
+        single = super().at(torque, pitch, position)
+        (there,) = single.sides.flanks
+        number = pitch * len(flanks.candidates.place) + position
+        candidates = replace(there.candidates, teeth=teeth[:, number : number + 1])
+        return replace(single, sides=replace(single.sides, flanks=(replace(there, candidates=candidates),)))
 
 
 def _slopes(bends: Array, before: LineCells, cells: LineCells) -> Array:

@@ -212,7 +212,7 @@ def _remarks(
             f"the teeth jam: without load their back flanks overlap by up to {overlap:.3g} um{left_out}"
         )
     closing = contact.closing[number] + contact.tilted(number)
-    if setup.helical and (closed := 1e6 * float(np.max(closing - candidates.back_gap))) > 0.0:
+    if setup.helical and (closed := 1e6 * float(np.max(closing.ravel() - candidates.back_gap))) > 0.0:
         remarks.append(
             f"the deflection exceeds the gap of the back flanks by up to {closed:.3g} um; with a helix these are not "
             "looked at: give more backlash where they would touch"

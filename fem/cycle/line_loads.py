@@ -271,23 +271,26 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
     if lines is None:
         return None
     over, pair = contact.contacts, setup.pair
-    forces = contact.cell_forces(number)[0]
-    cells = lines.divided(forces.shape[-1])
+    forces = contact.cell_forces(number)
+    pitches, cells = len(forces), lines.divided(forces.shape[-1])
     length = np.where(lines.touches, cells.length, 0.0) / pair.helix.base_cosine
     per_length = forces / np.where(length > 0.0, length, 1.0)[..., None]
 
     def of_cells(values: Array) -> Array:
-        return np.where(cells.used, values, np.nan)
+        known = np.where(cells.used, values, np.nan)
+        known = known if known.ndim == forces.ndim else np.tile(known, (pitches, 1, 1, 1))
+        return known.reshape(-1, *known.shape[2:])
+
+    largest = cells.largest_mean(forces, WINDOW * pair.module * pair.helix.base_cosine)
 
     return LineLoads(
         position=contact.candidates.position,
         z=of_cells(cells.z),
         travel=of_cells(cells.rho[0] - pair.points.A),
-        length=length,
+        length=np.tile(length, (pitches, 1)),
         line_load=of_cells(per_length),
-        gap=of_cells(np.maximum(over.remaining_gaps[number][0], 0.0)),
-        most_loaded=cells.largest_mean(forces, WINDOW * pair.module * pair.helix.base_cosine)
-        * pair.helix.base_cosine,
+        gap=of_cells(np.maximum(over.remaining_gaps[number], 0.0)),
+        most_loaded=largest.reshape(-1, largest.shape[-1]) * pair.helix.base_cosine,
         pair=pair,
         setting=setup.face,
         slope=lines.slope,

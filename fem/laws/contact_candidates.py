@@ -213,17 +213,20 @@ def _lines(setup: MeshSetup) -> ContactCandidates:
     touchable = lines.touches
     place = np.where(touchable, lines.place, 0.5 * (pair.points.A + pair.points.E))
     rho = np.stack([place, pair.line_of_action - place])
-    cells = lines.divided(SEEN_ALONG)
-    nearest = np.where(cells.used, line_gaps(setup, cells.z, cells.rho), np.inf).min(axis=-1)
-    ahead = offset - turned[:, None] if setup.back else -offset
-    steps = np.broadcast_to(ahead, place.shape)
+    number = np.arange(setup.pitches)[:, None, None]
     if setup.stations is not None:
-        steps = steps + setup.stations.pitch[:, None]
+        number = setup.stations.pitch[:, None]
+    ahead = offset - turned[:, None] if setup.back else -offset
+    steps = np.broadcast_to(number + ahead, (setup.pitches, *place.shape))
+    teeth, other = setup.teeth(steps), setup.opposite
+    cells = lines.divided(SEEN_ALONG)
+    seen = line_gaps(setup, cells.z, cells.rho, teeth) + setup.rolling_gap(middle)[..., None]
+    gap = np.where(cells.used, seen, np.inf).min(axis=-1)
     numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
-    none = np.zeros_like(touchable)
-    gap = nearest[None]
+    none, tiles = np.zeros_like(touchable), (1, setup.pitches, 1)
+    behind = np.where(touchable, other.pitch_gap(other.teeth(steps)), np.inf).min(axis=-1)
     return ContactCandidates(
-        position=position if setup.stations is None else setup.stations.pitch + position,
+        position=(number[..., 0] + position).ravel(),
         offset=offset,
         place=place,
         rho=rho,
@@ -231,20 +234,20 @@ def _lines(setup: MeshSetup) -> ContactCandidates:
         edge=none,
         curvature=np.ones_like(place),
         lacking=np.where(touchable, 0.0, np.inf),
-        lever=np.full_like(rho, pair.helix.base_cosine),
-        tangent_arm=np.where(touchable, rho, np.nan),
+        lever=np.tile(np.full_like(rho, pair.helix.base_cosine), tiles),
+        tangent_arm=np.tile(np.where(touchable, rho, np.nan), tiles),
         leaning=np.zeros_like(rho),
         gap=gap,
-        teeth=setup.teeth(steps) % numbers,
-        back_gap=setup.backlash + gap.min(axis=-1).ravel() + setup.opposite.face.least_gap(pair),
+        teeth=teeth.reshape(2, -1, len(offset)) % numbers,
+        back_gap=(setup.backlash + gap.min(axis=-1) + behind + other.face.least_gap(pair)).ravel(),
         chamfered=none,
         reach_gap=np.inf,
         lines=lines,
     )
 
 
-def line_gaps(setup: MeshSetup, z: Array, rho: Array) -> Array:
-    """Gaps along the transverse line of action without load (..., cells) [m].
+def line_gaps(setup: MeshSetup, z: Array, rho: Array, teeth: Integers | None = None) -> Array:
+    """Gaps along the transverse line of action without load (..., cells) [m], but for unequal base pitches.
 
     Parameters
     ----------
@@ -254,10 +257,14 @@ def line_gaps(setup: MeshSetup, z: Array, rho: Array) -> Array:
         Places along the face [m].
     rho : (2, ..., cells) array
         Curvature radii on pinion and wheel there [m].
+    teeth : (2, pitches, ...) array of int, optional
+        Numbers of the teeth of each line, whose own deviations count then (pitches, ..., cells).
     """
     gaps = setup.face.gaps_at(setup.pair, z, rho)
     if setup.removed is not None:
         gaps = gaps + setup.removed[0](rho[0]) + setup.removed[1](rho[1])
+    if teeth is not None:
+        gaps = gaps + setup.pitch_gap(teeth)[..., None] + setup.tooth_gap(teeth[..., None], rho)
     return np.asarray(gaps)
 
 

@@ -8,10 +8,8 @@ from base import Faults
 from fem.pair.face_setting import FREE_ENDS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from fem.pair.face_setting import FaceSetting
-    from gears import GearDeviations, GearPair
+    from gears import GearPair
 
 __all__ = ["check_helical"]
 
@@ -30,24 +28,12 @@ class Setting(Protocol):
         """Whether tip edges may touch outside the path."""
 
     @property
-    def deviations(self) -> Sequence[GearDeviations | None] | None:
-        """Of pinion and wheel."""
-
-    @property
-    def pitches(self) -> int:
-        """Base pitches."""
-
-    @property
     def radii(self) -> tuple[float, ...]:
         """Of rounded tip edges [m]."""
 
     @property
     def friction(self) -> float:
         """Coefficient of friction."""
-
-    @property
-    def base_pitch_difference(self) -> float:
-        """Of pinion and wheel [m]."""
 
     @property
     def moving_contact(self) -> bool:
@@ -66,17 +52,10 @@ def check_helical(faults: Faults, setup: Setting) -> None:
     if setup.beyond_path:
         allowed = "must be False with a helix: contact is held to the path, from A to E"
         faults.add("beyond_path", True, allowed, "leave it out")
-    if setup.deviations is not None and any(each is not None for each in setup.deviations):
-        faults.add("deviations", "of a helical pair", "must be None with a helix", SPUR)
-    if setup.pitches != 1:
-        allowed = "must be 1 with a helix, whose teeth are alike"
-        faults.add("pitches", setup.pitches, allowed, "leave it out")
     if any(radius != 0.0 for radius in setup.radii):
         faults.add("tip_rounding", setup.radii, "must be 0 with a helix", SPUR)
     if setup.friction:
         faults.add("friction", setup.friction, "must be 0 with a helix", SPUR)
-    if setup.base_pitch_difference:
-        faults.add("base_pitch_difference", setup.base_pitch_difference, "must be 0 with a helix", SPUR)
     if setup.moving_contact:
         allowed = "must be False with a helix: contacts stay where undeformed teeth touch"
         faults.add("moving_contact", True, allowed, "give moving_contact=False")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import cos, sin
+from math import sin
 from numbers import Integral, Real
 from typing import TYPE_CHECKING
 
@@ -296,7 +296,7 @@ class MeshSetup:
             gap += first.late(teeth[0])
         if second is not None:
             gap -= second.late(teeth[1])
-        return np.asarray(gap * cos(self.pair.rack.alpha) * (-1 if self.back else 1))
+        return np.asarray(gap * self.pair.helix.transverse_cosine * (-1 if self.back else 1))
 
     def tooth_gap(self, teeth: Integers, rho: Array) -> Array:
         """Gap from what teeth (2, ...) lack compared with the mean of their gear at curvature radii (2, ...) [m].
@@ -304,7 +304,7 @@ class MeshSetup:
         `removed` is that mean, by which tip edges have their laws: over a contact of their size what a tooth differs
         by is taken as even.
         """
-        gap = np.zeros(teeth.shape[1:])
+        gap = np.zeros(np.broadcast_shapes(teeth.shape[1:], rho.shape[1:]))
         for deviations, tooth, place in zip(self._by_gear, teeth, rho, strict=True):
             if deviations is not None:
                 gap -= deviations.of_tooth(tooth, place)

@@ -29,7 +29,6 @@ _MOTION = "motion with axial forces and tilting gears"
 _FILM = "films along oblique lines"
 
 WANTS_OF_SPUR: Mapping[str, str] = {
-    "revolution": "loaded contact on oblique lines with deviations of each tooth",
     "root-stress": "stress at the roots under oblique lines",
     "film": _FILM,
     "losses": "friction and heat of films along oblique lines",
@@ -49,14 +48,6 @@ ANSWERED = tuple(want for want in WANTS if want not in WANTS_OF_SPUR)
 def _anything(value: Any) -> bool:
     """Whether a key is given at all: a number or a text that is not 0, or a table."""
     return isinstance(value, Mapping) or bool(value)
-
-
-def _negative(value: Any) -> bool:
-    return isinstance(value, int | float) and value < 0
-
-
-def _any_negative(values: Any) -> bool:
-    return isinstance(values, list | tuple) and any(map(_negative, values))
 
 
 def _without_model(film: Any) -> bool:
@@ -113,30 +104,7 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
         always=True,
     ),
     SpurKey("stiffness.moving_contact", "contacts that the deflection moves", "must be false", always=True),
-    SpurKey("pair.*.deviations", "deviations of twisted flanks", always=True),
-    SpurKey("pair.*.wear", "wear of twisted flanks", always=True),
     # what loaded teeth on oblique lines do not know
-    SpurKey(
-        "operating.pinion_torque_Nm",
-        "mesh cycle on the back flanks",
-        "must be above 0",
-        "Give the torque of a driving pinion",
-        _negative,
-    ),
-    SpurKey(
-        "operating.power_kW",
-        "mesh cycle on the back flanks",
-        "must be above 0",
-        "Give the power of a driving pinion",
-        _negative,
-    ),
-    SpurKey(
-        "operating.torques_Nm",
-        "mesh cycle on the back flanks",
-        "must be above 0",
-        "Leave those below 0 out",
-        _any_negative,
-    ),
     SpurKey("operating.friction", "friction on oblique lines", "must be 0"),
     SpurKey(
         "stiffness.plane",

@@ -11,7 +11,7 @@ import pytest
 from base import Array, InputError
 from fem import MeshCycle, PairCompliance, compliance, mesh_cycle
 from fem.laws.line_candidates import LineCells
-from gears import Alignment, Bearing, Gear, GearDeviations, GearPair, Lead, Shaft, ShaftSegment
+from gears import Alignment, Bearing, Gear, GearPair, Lead, Shaft, ShaftSegment
 
 SMALL = GearPair(Gear(18), Gear(23), module=1e-3, face_width=5e-3, helix_angle=radians(18.0))
 
@@ -79,6 +79,12 @@ def test_back_flanks_are_those_of_the_other_hand(bodies: PairCompliance) -> None
     left = replace(SMALL, helix_angle=-SMALL.helix_angle)
     other = mesh_cycle(left, 8.0, 6, compliance(left, tolerance=0.02), cells=24)
     assert braking.mean_secant_stiffness == pytest.approx(other.mean_secant_stiffness, rel=1e-3)
+    assert braking.transmission_error_range == pytest.approx(other.transmission_error_range, rel=0.02)
+    assert braking.lines is not None
+    assert other.lines is not None
+    assert braking.lines.axial_force == pytest.approx(SMALL.axial_force(-8.0), rel=1e-9)
+    errors = braking.lines.line_load_error + other.lines.line_load_error  # at other positions, too
+    assert braking.lines.greatest_line_load == pytest.approx(other.lines.greatest_line_load, rel=errors)
     assert np.all(braking.transmission_error < 0.0)
 
 
@@ -142,17 +148,14 @@ def test_what_helices_do_not_have_is_refused_at_once(bodies: PairCompliance) -> 
             bodies,
             beyond_path=True,
             film=lambda rho, force: (force, force),
-            deviations=(GearDeviations(), None),
             tip_rounding=1e-5,
             friction=0.1,
             moving_contact=True,
-            base_pitch_difference=1e-6,
             face_model="walls",
         )
     named = str(raised.value)
     for key in (
-        "beyond_path", "film", "deviations", "tip_rounding", "friction", "moving_contact",
-        "base_pitch_difference", "face_model",
+        "beyond_path", "film", "tip_rounding", "friction", "moving_contact", "face_model",
     ):  # fmt: skip
         assert key in named
 
