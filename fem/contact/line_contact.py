@@ -80,7 +80,7 @@ class LineContact(CellContact):
             used = cells.used.reshape(len(blocks), -1)
             return CellCoupling(tuple(np.flatnonzero(row) for row in used), blocks, used.shape[1])
 
-        key = coupled_by(bodies, face, lines.middle, *own)
+        key = coupled_by(bodies, face, lines.middle, np.array(_held_by(bodies)), *own)
         numbers = int(np.sum(cells.count.sum(axis=-1) ** 2))
         return kept_unless_large("lines", (lines.slope, *key), numbers, cut)
 
@@ -284,5 +284,9 @@ def lines_compliance(
                 compliance[own, other] += moved
                 compliance[other, own] += moved.T
     # what hubs and supports move all teeth by, by the part of the normal force across the axis
-    common = (sum(bodies.support) + sum(bodies.step_windup)) * bodies.pair.helix.base_cosine**2
-    return compliance + common
+    return compliance + _held_by(bodies) * bodies.pair.helix.base_cosine**2
+
+
+def _held_by(bodies: PairCompliance) -> float:
+    """What hubs and supports move all teeth by along the transverse line of action [m/N]."""
+    return sum(bodies.support) + sum(bodies.step_windup)

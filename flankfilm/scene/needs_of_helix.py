@@ -123,7 +123,6 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
     SpurKey("film", _FILM, 'must be of model = "none"', 'Take film.model = "none"', _without_model),
     SpurKey("heat", "loaded teeth at other temperatures"),
     SpurKey("pair.tight", "twisted teeth that bear on both sides", "must be false", "Give more backlash"),
-    SpurKey("pair.*.hub", "rigid hubs in twisted bodies"),
     SpurKey("pair.*.blank", "webs of twisted bodies"),
     SpurKey("pair.*.tip_rounding_um", "contact with tip edges outside the path", "must be 0"),
 )

@@ -190,7 +190,6 @@ class TestTable:
         ("stiffness.contact_beyond_path", True, False),
         ("film.model", "dowson", False),
         ("pair.tight", True, False),
-        ("pair.wheel.hub", {"hub_mm": 40.0}, False),
         ("pair.pinion.blank", {"rim_thickness_mm": 6.0, "web_thickness_mm": 12.0}, False),
         ("pair.wheel.tip_rounding_um", 20.0, False),
     )
