@@ -121,8 +121,7 @@ class CellContact:
             Whether the share is measured from the first touch on shafts that are held; else it counts the shafts.
         """
         cells = face.cells
-        apart, oil = self._apart(face), self.sides.oil
-        film = None if oil is None else CellLaws(oil, cells)
+        apart, film = self._apart(face), self.films(face)
         ahead, reach = np.repeat(self.sides.sign > 0.0, cells), np.repeat(self.sides.reach, cells, axis=-1)
         levers = np.repeat(self.sides.sign * self.sides.tilted_lever_ratios, cells, axis=-1)
         start, laws = _flat(self.spread(face, near)), self.laws(face)
@@ -192,6 +191,10 @@ class CellContact:
     def laws(self, face: FaceSetting) -> JointLaw:
         """Laws of cells that touch all over."""
         return CellLaws(self.sides.laws, face.cells)
+
+    def films(self, face: FaceSetting) -> JointLaw | None:
+        """Films of cells; None where they are dry."""
+        return None if self.sides.oil is None else CellLaws(self.sides.oil, face.cells)
 
     def spread(self, face: FaceSetting, near: Array) -> Array:
         """Forces on parts of the pairs (torques, ..., pairs, parts) as those on cells (..., pairs, cells) [N]."""
@@ -285,9 +288,9 @@ class CellContact:
         wanted, shafts = np.ones(loads.shape[:-1], dtype=bool), self.shafts(face)
         coupling = self._on_shafts(self.coupling(face), shafts)
         bends = coupling.applied(loads, wanted, np.zeros_like(loads))
-        gaps, oil = bends + self._apart(face) - reach * approach[..., None], self.sides.oil
-        if oil is not None:
-            gaps = gaps - CellLaws(oil, face.cells).approach(np.zeros_like(loads))
+        gaps, film = bends + self._apart(face) - reach * approach[..., None], self.films(face)
+        if film is not None:
+            gaps = gaps - film.approach(np.zeros_like(loads))
         drops = gap_drops(self._over_sides(face, _gaps_within), _by_cells(bends, face.cells))
         return np.asarray(_by_cells(gaps, face.cells) - drops)
 

@@ -9,7 +9,7 @@ import numpy as np
 from base import Array, record
 from gears.sharing.staying_contacts import JointLaw
 
-__all__ = ["FEW_CELLS", "CellLaws", "between_middles", "face_load_factors", "greatest_error"]
+__all__ = ["FEW_CELLS", "CellLaws", "LineFilmLaw", "between_middles", "face_load_factors", "greatest_error"]
 
 FEW_CELLS = 4
 """Cells that a contact needs; with fewer the result says so."""
@@ -38,6 +38,27 @@ class CellLaws(JointLaw):
     def _apart(self, values: Array) -> Array:
         last = values.reshape(self.cells, -1).T
         return last.reshape(*values.shape[1:-1], -1)
+
+
+@record
+class LineFilmLaw(JointLaw):
+    """Films on cells of lines of contact: (..., positions, lines cells).
+
+    Attributes
+    ----------
+    whole : JointLaw
+        Films at the places of the cells, under forces of whole faces at their line loads.
+    faces : (positions, lines cells) array
+        Force of a whole face at a cell's line load over that of the cell.
+    """
+
+    whole: JointLaw
+    faces: Array
+
+    def value_and_slope(self, force: Array) -> tuple[Array, Array]:
+        """Both together."""
+        value, slope = self.whole.value_and_slope(force * self.faces)
+        return value, slope * self.faces
 
 
 def between_middles(values: Array, cells: int) -> Array:

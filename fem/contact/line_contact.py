@@ -16,11 +16,12 @@ import numpy as np
 from base import Array, Integers, record
 from fem.contact.cell_contact import CellContact, CellShare
 from fem.contact.cell_coupling import CellCoupling
+from fem.contact.cell_laws import LineFilmLaw
 from fem.contact.cell_matrix import coupled_by, kept_unless_large
 from fem.contact.partial_cells import WITHIN, drops_within
 from fem.elasticity.flamant import hertz_half_width
 from fem.laws.contact_candidates import SEEN_ALONG, line_gaps
-from fem.laws.local_law import PairLaws
+from fem.laws.local_law import FilmLaw, PairLaws
 from fem.pair.line_compliance import GearLines, gear_lines
 from fem.pair.line_shafts import PlacesOnLines, ShaftsUnderLines, shafts_under_lines
 from fem.pair.wide_contact import NARROW, shares_together
@@ -115,6 +116,18 @@ class LineContact(CellContact):
             cells.used.reshape(flat),
             length.reshape(flat),
             gaps.reshape(-1, *flat),
+        )
+
+    def films(self, face: FaceSetting) -> JointLaw | None:
+        """Films of cells, each under its line load along the line; None where they are dry."""
+        oil = self.sides.flanks[0].oil
+        if oil is None:
+            return None
+        cells, pair, positions = self.lines.divided(face.cells), self.pair, len(self.lines.middle)
+        shape = (positions, -1)
+        return LineFilmLaw(
+            FilmLaw(oil.film, cells.film_places.reshape(shape)),
+            cells.faces(pair.face_width, pair.helix.base_cosine).reshape(shape),
         )
 
     def spread(self, face: FaceSetting, near: Array) -> Array:

@@ -201,23 +201,30 @@ def settled_gaps(remaining_gaps: Array, forces: Array) -> Array:
     return np.where(forces > 0.0, np.minimum(remaining_gaps, 0.0), remaining_gaps)
 
 
-def yielding_over_face(film: Film, rho1: Array, forces: Array, shares: Array) -> Array:
+def yielding_over_face(
+    film: Film, rho1: Array, forces: Array, shares: Array, faces: Array | None = None
+) -> Array:
     """What films of all cells yield beyond the transmission error (positions,) [m], see ``film_yielding``.
+
+    Along the common normal: over cos(beta_b) it is along the transmission error of a helical pair.
 
     Parameters
     ----------
     film : Film
         Of a whole face.
-    rho1 : (positions, pairs) array
-        Places [m]; nan where a pair is dry.
+    rho1 : (positions, pairs) or (positions, pairs, cells) array
+        Places of pairs, or of their cells [m]; nan where these are dry.
     forces : (positions, pairs, cells) array
         [N]
     shares : (positions, pairs) array
         Of the pairs, of the whole force.
+    faces : (positions, pairs, cells) array, optional
+        Force of a whole face at a cell's line load over that of the cell; the number of cells unless given.
     """
     positions, pairs, cells = forces.shape
     whole = forces.sum(axis=-1, keepdims=True)
     part = np.divide(forces, whole, out=np.zeros_like(forces), where=whole > 0.0)
     flat = (positions, pairs * cells)
-    places = np.repeat(rho1, cells, axis=-1)
-    return film_yielding(film, places, cells * forces.reshape(flat), (shares[..., None] * part).reshape(flat))
+    places = np.repeat(rho1, cells, axis=-1) if rho1.ndim == 2 else rho1.reshape(flat)
+    whole_faces = (cells if faces is None else faces.reshape(flat)) * forces.reshape(flat)
+    return film_yielding(film, places, whole_faces, (shares[..., None] * part).reshape(flat))

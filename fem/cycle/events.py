@@ -173,17 +173,14 @@ class ContactProblem:
 
     def _curves(self, state: ContactState) -> Array:
         """Transmission error, tangent and secant stiffness, moments and their slopes (7, positions)."""
-        share, candidates = state.share, state.candidates
+        share = state.share
         size, deflection = abs(self.force), state.deflection(0)[0]
         moved, tangent = state.turn(0)[0], share.stiffness[0, 0]
         secant = size / deflection if size else tangent
         if self.film is not None and self.film_yields:
-            rho1 = np.where(
-                candidates.touchable & ~candidates.edge, np.clip(candidates.place, *self.setup.ends), np.nan
-            )
             torques = share.forces[0, 0] * state.flanks.tilted_lever_ratios
             shares = torques / (size or torques.sum(axis=-1, keepdims=True))
-            added = yielding_over_face(self.film, rho1, state.cell_forces(0)[0], shares)
+            added = self._yielding(self.film, state, shares)
             secant = size / (size / secant + added) if size else secant
         if self.setup.back:
             moved = -(self.setup.backlash + moved)
@@ -191,6 +188,17 @@ class ContactProblem:
         moments = moments / size if size else np.zeros_like(moments)
         curves = np.stack([moved, tangent, secant, *moments, *slopes])
         return curves if self.turn is None else _less(curves, self.force, self.turn, self.setup.pair.tight)
+
+    def _yielding(self, film: Film, state: ContactState, shares: Array) -> Array:
+        """What films yield beyond the transmission error (positions,) [m], by shares of the pairs."""
+        candidates, forces, pair = state.candidates, state.cell_forces(0)[0], self.setup.pair
+        if candidates.lines is None:
+            on_path = candidates.touchable & ~candidates.edge
+            rho1 = np.where(on_path, np.clip(candidates.place, *self.setup.ends), np.nan)
+            return yielding_over_face(film, rho1, forces, shares)
+        cells, cosine = candidates.lines.divided(forces.shape[-1]), pair.helix.base_cosine
+        faces = cells.faces(pair.face_width, cosine)
+        return yielding_over_face(film, cells.film_places, forces, shares, faces) / cosine
 
 
 def measured_less(mesh_arcs: MeshArcs, force: float, turn: Array, pressed: bool = False) -> MeshArcs:

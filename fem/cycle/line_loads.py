@@ -9,6 +9,7 @@ import numpy as np
 from base import Array, InputError, described, part, quantity, record
 from base.results import EXACT, ITSELF
 from fem.contact.line_contact import WINDOW
+from fem.cycle.line_cells import IN_SINGLE_CELLS, CellsOfLines
 from fem.cycle.shaft_figures import shaft_figures
 from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.pair.face_setting import FaceSetting
@@ -18,11 +19,8 @@ from gears.pair.tilting_shaft import bearing_forces
 if TYPE_CHECKING:
     from fem.contact.contact_state import ContactState
     from fem.laws.mesh_setup import MeshSetup
-    from gears import GearPair
 
 __all__ = ["LineLoads", "line_loads"]
-
-IN_SINGLE_CELLS = "not estimated cell by cell; line_load_error is that of the largest"
 
 HERTZ = "not estimated: Hertz's law of the cell's line load, whose error is not known in single cells"
 
@@ -32,50 +30,12 @@ BY_LEVER = "off by the force times centre_error: it passes through zero"
 
 
 @record
-class LineLoads:
-    """Lines of contact over the positions of a mesh cycle, each divided into equal cells.
-
-    Where a line has fewer cells than others, further ones are nan. Loads are per length of the line of contact, which
-    is 1/cos(beta_b) of that along the axis.
-    """
+class LineLoads(CellsOfLines):
+    """Lines of contact over the positions of a mesh cycle, each divided into equal cells."""
 
     no_error = IN_SINGLE_CELLS
     headline: ClassVar[tuple[str, ...]] = ("greatest_line_load_factor", "greatest_line_load", "axial_force")
 
-    position: Array = quantity(
-        "1",
-        "base pitches from A, of the pair that entered last at mid-face",
-        "position",
-        no_error=EXACT,
-    )
-    z: Array = quantity(
-        "m",
-        "middles of the cells along the face, 0 at mid-face",
-        "position pair cell",
-        shown="mm",
-        no_error=EXACT,
-    )
-    travel: Array = quantity(
-        "m",
-        "travel of each cell along the transverse path of contact, from A",
-        "position pair cell",
-        shown="mm",
-        no_error=EXACT,
-    )
-    length: Array = quantity(
-        "m",
-        "length of a cell along its line of contact; zero where a line does not touch",
-        "position pair",
-        shown="mm",
-        no_error=EXACT,
-    )
-    line_load: Array = quantity(
-        "N/m",
-        "normal force per length of the line of contact; zero where flanks stand clear",
-        "position pair cell",
-        shown="N/mm",
-        no_error=IN_SINGLE_CELLS,
-    )
     gap: Array = quantity(
         "m",
         "gap left under load along the common normal; zero where flanks touch",
@@ -84,7 +44,6 @@ class LineLoads:
         no_error=IN_SINGLE_CELLS,
     )
     most_loaded: Array = part("largest mean over half a module of each line (positions, pairs) [N/m]")
-    pair: GearPair = part("the gears")
     setting: FaceSetting = part("cells, alignment and leads")
     slope: float = quantity(
         "1", "change of the pinion's curvature radius along the face: tan(beta_b)", no_error=EXACT
@@ -139,17 +98,6 @@ class LineLoads:
     tilt_error: float | None = quantity(
         "1", "estimated relative error of the shafts' tilt and of what it adds, of the largest", default=None
     )
-
-    @property
-    def rho(self) -> Array:
-        """Curvature radii on pinion and wheel (2, positions, pairs, cells) [m]."""
-        rho1 = self.travel + self.pair.points.A
-        return np.stack([rho1, self.pair.line_of_action - rho1])
-
-    @property
-    def force(self) -> Array:
-        """Normal force on each cell (positions, pairs, cells) [N]; zero where there is none."""
-        return np.nan_to_num(self.line_load) * self.length[..., None]
 
     @described("m", "position pair cell", shown="mm", no_error=EXACT)
     def curvature_radius(self) -> Array:

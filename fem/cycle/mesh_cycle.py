@@ -233,9 +233,6 @@ def _check(
             "must not be 0 with a helix: only teeth that are pressed together have an answer without a torque"
         )
         faults.add("torque", "0", allowed, "give the pinion's torque")
-    if setup.helical and film is not None:
-        allowed = "must be None with a helix: there are no films on lines of contact across the face"
-        faults.add("film", shorten(film), allowed, "give helix_angle = 0 for a spur pair, or leave it out")
     if reference is not None:
         faults.choice("reference", reference, REFERENCES)
     if not torque.size:

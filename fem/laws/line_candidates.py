@@ -83,6 +83,19 @@ class LineCells:
         return np.asarray(np.maximum(ahead, behind).max(axis=-1) / window)
 
     @property
+    def film_places(self) -> Array:
+        """rho1 of the cells that there are (positions, pairs, cells) [m]; nan of others, which have no film."""
+        return np.where(self.used, self.rho[0], np.nan)
+
+    def faces(self, face_width: float, base_cosine: float) -> Array:
+        """Force of a whole face [m] at a cell's load per length of the line, over the cell's (positions, pairs, cells).
+
+        A cell of length h along the axis is h/cos(beta_b) long on its line.
+        """
+        faces = face_width * base_cosine / self.length
+        return np.broadcast_to(faces[..., None], self.z.shape)
+
+    @property
     def count(self) -> Integers:
         """Cells of each line (positions, pairs)."""
         return np.asarray(self.used.sum(axis=-1))

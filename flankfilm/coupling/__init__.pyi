@@ -5,6 +5,7 @@ from .films.along_path import FilmAlongPath as FilmAlongPath
 from .films.face_films import FaceFilms as FaceFilms
 from .films.films import FilmModel as FilmModel
 from .films.films import PlacedMeniscus as PlacedMeniscus
+from .films.line_films import LineFilms as LineFilms
 from .films.lubricated import film_along_path as film_along_path
 from .films.lubricated import lubricate as lubricate
 from .films.lubricated import lubricated_cycle as lubricated_cycle
@@ -15,6 +16,7 @@ from .losses.hot_contacts import HeatScreen as HeatScreen
 from .losses.hot_contacts import heat_screen as heat_screen
 from .losses.hot_contacts import hottest_film as hottest_film
 from .losses.losses_along_path import LossesAlongPath as LossesAlongPath
+from .losses.losses_on_lines import LineLosses as LineLosses
 from .losses.losses_over_face import FaceLosses as FaceLosses
 from .losses.losses_record import BoundaryBand as BoundaryBand
 from .losses.losses_record import LossBand as LossBand

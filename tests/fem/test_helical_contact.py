@@ -39,6 +39,45 @@ def test_forces_carry_the_torque(cycle: MeshCycle) -> None:
 
 
 @pytest.mark.slow
+def test_a_film_of_one_thickness_props_the_lines_apart(bodies: PairCompliance, cycle: MeshCycle) -> None:
+    """By the thickness along the normal, which is more in the section; forces and stiffness stay."""
+
+    def film(rho1: Array, force: Array) -> tuple[Array, Array]:
+        return np.where(np.isfinite(rho1), 2e-6, 0.0), np.zeros_like(force)
+
+    propped = mesh_cycle(SMALL, 8.0, 6, bodies, cells=24, film=film)
+    apart = cycle.transmission_error - propped.transmission_error
+    assert apart == pytest.approx(2e-6 / SMALL.helix.base_cosine, rel=1e-6)
+    assert propped.forces == pytest.approx(cycle.forces, rel=1e-6, abs=1e-6)
+    assert propped.stiffness == pytest.approx(cycle.stiffness, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_films_are_asked_for_places_and_line_loads_of_cells(bodies: PairCompliance) -> None:
+    """A film that gives way in proportion to the load per length of line is a spring of each cell, in series."""
+    softness, asked = 2e-12, []
+
+    def film(rho1: Array, force: Array) -> tuple[Array, Array]:
+        asked.append(rho1[np.isfinite(rho1)])
+        line_load = force / SMALL.face_width
+        return 20e-6 - softness * line_load, np.full_like(force, -softness / SMALL.face_width)
+
+    soft = mesh_cycle(SMALL, 8.0, 6, bodies, cells=24, film=film)
+    lines = soft.lines
+    assert lines is not None
+    # what cells bear gives the work of the springs, whose part of the approach is their mean by the load
+    load, force = np.nan_to_num(lines.line_load), lines.force
+    yields = (softness * load * force).sum(axis=(1, 2)) / force.sum(axis=(1, 2))
+    rigid = mesh_cycle(SMALL, 8.0, 6, bodies, cells=24)
+    changed = (soft.transmission_error + 20e-6 / SMALL.helix.base_cosine) - rigid.transmission_error
+    # loads move a little to where bodies and films together give way least, in the second order
+    assert changed == pytest.approx(yields / SMALL.helix.base_cosine, rel=0.03)
+    places = np.concatenate(asked)
+    assert places.min() >= SMALL.points.A
+    assert places.max() <= SMALL.points.E
+
+
+@pytest.mark.slow
 def test_cells_that_stand_clear_have_no_load(cycle: MeshCycle) -> None:
     lines = cycle.lines
     assert lines is not None
@@ -147,7 +186,6 @@ def test_what_helices_do_not_have_is_refused_at_once(bodies: PairCompliance) -> 
             6,
             bodies,
             beyond_path=True,
-            film=lambda rho, force: (force, force),
             tip_rounding=1e-5,
             friction=0.1,
             moving_contact=True,
@@ -155,7 +193,7 @@ def test_what_helices_do_not_have_is_refused_at_once(bodies: PairCompliance) -> 
         )
     named = str(raised.value)
     for key in (
-        "beyond_path", "film", "tip_rounding", "friction", "moving_contact", "face_model",
+        "beyond_path", "tip_rounding", "friction", "moving_contact", "face_model",
     ):  # fmt: skip
         assert key in named
 

@@ -13,7 +13,7 @@ from base import Array, Cost, described, part, quantity, record
 from fem.cycle.pair_figures import HERTZ
 from flankfilm.coupling.films import film_points
 from flankfilm.coupling.films.films import FilmModel, PathFilms, film_inside
-from flankfilm.coupling.films.least_film import least_of
+from flankfilm.coupling.films.least_film import least_of, least_sampled
 from flankfilm.coupling.mesh.extreme_errors import of_greatest, of_sampled_greatest
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 
@@ -62,11 +62,15 @@ class FilmAlongPath:
         "1", "estimated relative error of the asperities' share", "point"
     )
     at_pitch: tuple[ehl.StiffnessRow, ...] = part(
-        "film stiffness by every definition at the contact nearest to C, in series with the stiffness of its teeth"
+        "film stiffness by every definition at the contact nearest to C, in series with the stiffness of its teeth; "
+        "none of helical pairs, whose lines of contact cross C"
     )
     profiles: Mapping[str, ehl.Film] = part("whole films at points of the path by label, for pictures")
     error: float | None
     cost: Cost
+    on_lines: bool = part(
+        "whether films are those of the most loaded cells of lines of contact that come by", default=False
+    )
     converged: bool = True
     message: str = ""
 
@@ -89,11 +93,15 @@ class FilmAlongPath:
     @described("1", error="least_film_error")
     def least_film_ratio(self) -> float | None:
         """Minimum film ratio Lambda along the path, between the films as well; None for smooth flanks."""
-        return None if self.film_ratio is None else least_of(self.film_ratio, self.load)[0]
+        return None if self.film_ratio is None else self._least_of(self.film_ratio)[0]
 
     @cached_property
     def _least(self) -> tuple[float, float]:
-        return least_of(self.minimum_thickness, self.load)
+        return self._least_of(self.minimum_thickness)
+
+    def _least_of(self, film: Array) -> tuple[float, float]:
+        """Minimum of films, or of film ratios, and how far it may be off by their places."""
+        return least_sampled(film) if self.on_lines else least_of(film, self.load)
 
     @described("Pa", shown="GPa", error="greatest_pressure_error")
     def greatest_pressure(self) -> float:
@@ -160,9 +168,10 @@ def gathered(
         film_ratio=_each(films, "film_ratio") if rough else None,
         asperity_share=_each(films, "asperity_share") if rough else None,
         asperity_share_error=_each(films, "asperity_share_error") if rough else None,
-        at_pitch=film_points.stiffness_rows(pair, dry, path) if solved else (),
+        at_pitch=film_points.stiffness_rows(pair, dry, path) if solved and not pair.helix_angle else (),
         profiles=film_points.profiles(pair, path, positions, model.grid) if solved and positions else {},
         error=max(film.error for film in films) if solved else None,
+        on_lines=dry.lines is not None,
         cost=Cost(seconds, max((film.cost.unknowns for film in inside), default=0)),
     )
 

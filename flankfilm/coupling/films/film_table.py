@@ -36,7 +36,7 @@ from flankfilm.coupling.films.films import (
 )
 from flankfilm.coupling.films.line_contacts import line_contacts
 from flankfilm.coupling.films.sloped_figure import SlopedFigure
-from flankfilm.coupling.mesh.cells import line_loads
+from flankfilm.coupling.mesh.cells import cells_of, line_loads
 from gears.pair.hertz import half_width
 
 if TYPE_CHECKING:
@@ -239,6 +239,9 @@ def film_table(
     _check(model)
     greatest = line_loads(dry, pair.face_width).max()
     loaded = dry.rho1[np.isfinite(dry.rho1) & (dry.forces > 0.0)]
+    if dry.lines is not None:  # whose cells each have their place
+        cells = cells_of(dry)
+        loaded, greatest = cells.rho1[cells.bear], cells.greatest
     half = 0.5 * pair.base_pitch / dry.position.size
     ends = max(float(loaded.min()) - half, pair.points.A), min(float(loaded.max()) + half, pair.points.E)
     rho1 = np.linspace(*ends, PLACES)

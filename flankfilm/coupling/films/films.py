@@ -192,7 +192,9 @@ def contacts_of(
 def _require_even(pair: gears.GearPair, cycle: MeshCycle) -> None:
     """Refuse loads that vary along the face."""
     by = "with leads" if not pair.straight else "with cells of the face"
-    if not pair.straight or cycle.face is not None:
+    if cycle.lines is not None:
+        by = "with lines of contact across the face"
+    if not pair.straight or cycle.face is not None or cycle.lines is not None:
         allowed = "must be loaded evenly along the face for these films"
         remedy = "leave leads, alignment and cells out; lubricated_cycle by finite elements has films over the face"
         raise InputError.at("pair", by, allowed, remedy)

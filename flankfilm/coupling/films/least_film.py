@@ -43,6 +43,16 @@ def least_of(film: Array, load: Array) -> tuple[float, float]:
     return least, max(off for value, off in candidates if value - off <= least)
 
 
+def least_sampled(film: Array) -> tuple[float, float]:
+    """Minimum of films whose loads scatter from place to place, and its change to the farther of its neighbours [m].
+
+    So they do where cells of lines of contact come by: no curve through them says more.
+    """
+    at = int(np.argmin(film))
+    beside = film[max(at - 1, 0) : at + 2]
+    return float(film[at]), float(beside.max() - film[at])
+
+
 def _candidates(film: Array) -> list[tuple[float, float]]:
     """Minimum values within and at both ends of a smooth part, each with its error."""
     if film.size < 3:

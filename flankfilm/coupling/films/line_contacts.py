@@ -7,7 +7,6 @@ from dataclasses import replace
 import ehl
 import gears
 from base import Array
-from gears.pair.spur_only import require_spur
 
 __all__ = ["line_contacts", "with_sliding"]
 
@@ -23,19 +22,19 @@ def line_contacts(
     rho1 : ndarray, shape (n,)
         Curvature radius of the pinion's flank [m].
     load : ndarray, shape (n,)
-        Force per length of face [N/m].
+        Force per length of face, of helical pairs per length of the line of contact [N/m].
     speed : float
         Of the pinion [rad/s].
     lubricant : ehl.Lubricant
 
-    Raises
-    ------
-    gears.GeometryError
-        Of helical pairs, whose radii are those of the section over cos(beta_b).
+    Notes
+    -----
+    A line of contact of a helical pair is straight, and at right angles to it the flanks have the radii of the section
+    over cos(beta_b). Sliding and entrainment are those of the section: along the line both flanks move by
+    w1 r_b1 sin(beta_b), which carries oil and pressure along, but slides nowhere. It is left out.
     """
-    require_spur(pair, "films")
     path = pair.path_at(rho1)
-    columns = load, path.entrainment(speed), path.radius
+    columns = load, path.entrainment(speed), path.radius / pair.helix.base_cosine
     return tuple(
         ehl.LineContact(
             load=w, entrainment=u, radius=r, reduced_modulus=pair.reduced_modulus, lubricant=lubricant

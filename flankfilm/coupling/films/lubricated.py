@@ -15,6 +15,7 @@ from flankfilm.coupling.films.films import FilmModel
 from flankfilm.coupling.films.lubricated_cells import lubricate_cells
 from flankfilm.coupling.films.lubricated_path import FilmRun, lubricate_path
 from flankfilm.coupling.films.lubricated_record import LubricatedCycle
+from flankfilm.coupling.mesh.cells import has_cells
 from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth, TeethOptions
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 from flankfilm.coupling.mesh.mesh_cycles import resolved
@@ -157,7 +158,7 @@ def lubricate(
     with unclocked():
         ehl.solve  # noqa: B018 - loads the solver
     with pressures_unsaid():
-        over_loads = dry.face is not None or (
+        over_loads = has_cells(dry) or (
             model.follows_load and _carried_behind(teeth, dry, speed, lubricant) > BEHIND
         )
         put_in = lubricate_cells if over_loads else lubricate_path

@@ -10,16 +10,20 @@ from dataclasses import replace
 
 import numpy as np
 
+import gears
 from base import Array, Integers, Stopwatch
 from fem.contact.shared_contacts import yielding_over_face
 from flankfilm.coupling.films import films
 from flankfilm.coupling.films.along_path import gathered
 from flankfilm.coupling.films.face_films import face_films
 from flankfilm.coupling.films.film_table import FilmTable, film_table
-from flankfilm.coupling.films.films import PathFilms, contacts_of, films_of
+from flankfilm.coupling.films.films import PathFilms, films_of
+from flankfilm.coupling.films.line_contacts import line_contacts
+from flankfilm.coupling.films.line_films import line_films
 from flankfilm.coupling.films.lubricated_path import FilmRun
 from flankfilm.coupling.films.lubricated_record import LubricatedCycle
-from flankfilm.coupling.mesh.cells import line_loads
+from flankfilm.coupling.films.most_loaded import most_loaded
+from flankfilm.coupling.mesh.cells import cells_of, has_cells, line_loads
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 
 __all__ = ["lubricate_cells"]
@@ -37,9 +41,9 @@ def lubricate_cells(run: FilmRun, *, profiles: bool) -> LubricatedCycle:
     seconds = watch.seconds
     cycle = _in_series(run, table, f"{dry.label} with film")
     load = line_loads(cycle, pair.face_width)
-    least = table.thickness("minimum_thickness", np.broadcast_to(cycle.rho1[..., None], load.shape), load)
+    least = table.thickness("minimum_thickness", _places(cycle, load), load)
     watch, shown = Stopwatch(), _shown(cycle.position.size)
-    path = _of_most_loaded(run, cycle, load)
+    path = _of_most_loaded(run, cycle)
     return LubricatedCycle(
         **MeshCycle.fields_of(cycle),
         least_film=_least(least),
@@ -49,6 +53,7 @@ def lubricate_cells(run: FilmRun, *, profiles: bool) -> LubricatedCycle:
         film=gathered(run.model, path, pair, cycle, watch.seconds, shown.size if profiles else None),
         otherwise={},
         over_face=None if cycle.face is None else face_films(cycle, table, seconds),
+        over_lines=None if cycle.lines is None else line_films(cycle, table, seconds),
     )
 
 
@@ -57,14 +62,32 @@ def _in_series(run: FilmRun, table: FilmTable, label: str) -> MeshCycle:
     teeth, dry = run.teeth, run.dry
     tolerance = min(run.resolution.sampling, run.resolution.transmission_error)
     cycle = teeth.with_films(dry.position.size, table, tolerance, table.varied())
-    load = line_loads(cycle, teeth.pair.face_width)
-    forces = load * teeth.pair.face_width / load.shape[-1]
-    yields = yielding_over_face(table, cycle.rho1, forces, cycle.load_share)
-    secant = teeth.force / (teeth.force / cycle.secant_stiffness + yields)
+    # in the section, as the deflection is counted
+    force, yields = teeth.force * teeth.pair.helix.base_cosine, _yielding(table, cycle, teeth.pair)
+    secant = force / (force / cycle.secant_stiffness + yields)
     changed = float(np.max(np.abs(secant / dry.secant_stiffness - 1.0)))
     unknown = 0.0 if table.error is None else table.error
     error = None if cycle.error is None else cycle.error + unknown * changed
     return replace(cycle, label=label, secant_stiffness=secant, error=error)
+
+
+def _places(cycle: MeshCycle, load: Array) -> Array:
+    """Places of all cells (positions, pairs, cells) [m]: each of lines of contact, others with their pair."""
+    return cells_of(cycle).rho1 if has_cells(cycle) else np.broadcast_to(cycle.rho1[..., None], load.shape)
+
+
+def _yielding(table: FilmTable, cycle: MeshCycle, pair: gears.GearPair) -> Array:
+    """What films of all cells yield beyond the transmission error (positions,) [m]."""
+    if cycle.lines is None:
+        load = line_loads(cycle, pair.face_width)
+        forces = load * pair.face_width / load.shape[-1]
+        return yielding_over_face(table, cycle.rho1, forces, cycle.load_share)
+    cells = cells_of(cycle)
+    faces = np.divide(
+        pair.face_width, cells.length, out=np.zeros(cells.length.shape), where=cells.length > 0.0
+    )
+    yields = yielding_over_face(table, cells.rho1, cells.force, cycle.load_share, faces)
+    return yields / pair.helix.base_cosine
 
 
 def _least(thickness: Array) -> Array:
@@ -79,16 +102,8 @@ def _shown(positions: int) -> Integers:
     return np.arange(step // 2, positions, step)
 
 
-def _of_most_loaded(run: FilmRun, cycle: MeshCycle, load: Array) -> PathFilms:
-    """Films of the most loaded cells at some of the positions."""
-    kept = _shown(cycle.position.size)
-    few = replace(
-        cycle,
-        rho1=cycle.rho1[kept],
-        forces=cycle.forces[kept],
-        load_share=cycle.load_share[kept],
-        contact=None,
-    )
-    greatest = load.max(axis=-1)[kept]
-    rho1, contacts = contacts_of(run.teeth.pair, few, run.speed, run.lubricant, greatest)
+def _of_most_loaded(run: FilmRun, cycle: MeshCycle) -> PathFilms:
+    """Films of the most loaded cells, at some of the positions."""
+    rho1, load = most_loaded(run.teeth.pair, cycle, _shown(cycle.position.size))
+    contacts = line_contacts(run.teeth.pair, rho1, load, run.speed, run.lubricant)
     return films_of(run.model, rho1, contacts, None, run.resolution.films)

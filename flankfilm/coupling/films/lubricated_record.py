@@ -10,6 +10,7 @@ from base import Array, described, part, quantity, record
 from base.results import EXACT, ITSELF
 from flankfilm.coupling.films.along_path import FORMULA, FilmAlongPath
 from flankfilm.coupling.films.face_films import FaceFilms
+from flankfilm.coupling.films.line_films import LineFilms
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 
 DIFFERENCE = "not estimated: the difference of two means that have errors"
@@ -46,6 +47,7 @@ class LubricatedCycle(MeshCycle):
     over_face: FaceFilms | None = part(
         "films over the face; None where the load is even along it", default=None
     )
+    over_lines: LineFilms | None = part("films on lines of contact; None of spur pairs", default=None)
 
     def against(self, reference: str, bore_inertia: tuple[float, float] = (0.0, 0.0)) -> Self:
         """Measure the deflections of this cycle, of the dry one and of those with other films against something else.

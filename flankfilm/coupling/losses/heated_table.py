@@ -83,8 +83,8 @@ class HeatedTable(FilmField):
     def borne(self, cycle: MeshCycle, face_width: float) -> Borne:
         """What the cells of a cycle bear, with friction and rolling."""
         cells = cells_of(cycle)
-        width = face_width / cells.rho1.shape[-1]
-        rho1, load = cells.rho1[cells.bear], cells.face.line_load[cells.bear]
+        width = cells.length[cells.bear]
+        rho1, load = cells.rho1[cells.bear], cells.line_load[cells.bear]
         friction, rolling, first = (
             self.at(name, rho1, load) for name in ("friction", "rolling", "first_part")
         )
@@ -151,7 +151,7 @@ def heated_table(
         Where a film has no solution.
     """
     places, loads = grid
-    greatest = HEAVIEST * cells_of(cycle).face.greatest_line_load
+    greatest = HEAVIEST * cells_of(cycle).greatest
     load = np.geomspace(greatest, LIGHTEST * greatest, loads)
     rho1 = _places(pair, places)
     rows: list[HeatedFilms] = []

@@ -156,7 +156,7 @@ def _contact(
         load=load,
         entrainment=float(along.entrainment(speed)[0]),
         sliding=float(along.sliding(speed)[0]),
-        radius=float(along.radius[0]),
+        radius=float(along.radius[0]) / pair.helix.base_cosine,
         reduced_modulus=pair.reduced_modulus,
         lubricant=lubricant,
     )

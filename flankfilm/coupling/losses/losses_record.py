@@ -9,6 +9,7 @@ import numpy as np
 from base import Array, Cost, described, part, quantity, record
 from base.results import EXACT, ITSELF
 from flankfilm.coupling.losses.losses_along_path import LossesAlongPath
+from flankfilm.coupling.losses.losses_on_lines import LineLosses
 from flankfilm.coupling.losses.losses_over_face import FaceLosses
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 
@@ -129,6 +130,9 @@ class MeshLosses:
     message: str = ""
     over_face: FaceLosses | None = part(
         "friction, losses and temperatures over the face; None where the load is even along it", default=None
+    )
+    over_lines: LineLosses | None = part(
+        "friction, losses and temperatures on lines of contact; None of spur pairs", default=None
     )
 
     @described("W", error="error")

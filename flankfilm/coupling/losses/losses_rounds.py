@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 import ehl
 from base import Array, SolverError
 from flankfilm.coupling.films.agreement import MOST_ROUNDS, in_agreement
+from flankfilm.coupling.films.line_contacts import line_contacts, with_sliding
+from flankfilm.coupling.films.most_loaded import most_loaded
 from flankfilm.coupling.losses.bulk_balance import BulkTrial
 from flankfilm.coupling.losses.heated_films import (
     HeatedFilms,
@@ -21,7 +25,7 @@ from flankfilm.coupling.losses.heated_table import FEW as FEW_GRID
 from flankfilm.coupling.losses.heated_table import GRID, HeatedTable, heated_table
 from flankfilm.coupling.losses.losses_faults import TEMPERATURE
 from flankfilm.coupling.losses.mean_losses import Carried, Means, means_of
-from flankfilm.coupling.mesh.cells import cells_of
+from flankfilm.coupling.mesh.cells import cells_of, has_cells
 from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 
@@ -31,7 +35,7 @@ FINER = 8
 """Times as many positions that means are taken over, friction and rolling being carried between the films."""
 
 FINER_FACE = 3
-"""The same where the load varies along the face, whose cells take their time; that of films is reported as an error."""
+"""The same where the load varies along the contact, whose cells take their time; that of films is part of the error."""
 
 WARMER = 0.2
 """Change of bulk temperatures that is left where they are balanced [K]."""
@@ -87,9 +91,29 @@ class LossRounds:
         return abs(self.teeth.torque) * self.speed
 
     def cycle(self, friction: float, positions: int) -> MeshCycle:
-        """Dry mesh cycle whose forces a mean friction tilts."""
+        """Dry mesh cycle whose forces a mean friction tilts; those on lines of contact do not tilt (`untilted`)."""
+        if self.teeth.pair.helix_angle:
+            return self._untilted(positions)
         flanks = replace(self.teeth.flanks, friction=friction)
         return replace(self.teeth, flanks=flanks).cycle(positions)
+
+    @cached_property
+    def _untilted(self) -> Callable[[int], MeshCycle]:
+        return lru_cache(maxsize=2)(self.teeth.cycle)
+
+    def untilted(self, cycle: MeshCycle, friction: float) -> float:
+        """What friction would change of the forces on lines of contact, relative, which do not tilt; 0 of spur pairs.
+
+        Friction acts in the section, on the pinion by the lever rho1: sum N (cos(beta_b) r_b1 + mu sign(u1 - u2) rho1)
+        is the torque.
+        """
+        if cycle.lines is None:
+            return 0.0
+        cells, pair = cells_of(cycle), self.teeth.pair
+        arm = np.nan_to_num(cells.rho1) * np.sign(np.nan_to_num(cells.rho1) - pair.points.C)
+        return float(
+            friction * np.mean(np.abs(np.sum(cells.force * arm, axis=(1, 2)))) / abs(self.teeth.torque)
+        )
 
     def means(
         self, cycle: MeshCycle, films: HeatedFilms | HeatedTable, ratios: Carried | None = None
@@ -102,9 +126,10 @@ class LossRounds:
         """Films along the path; those of the most loaded cells where the load varies along the face."""
         if isinstance(agreed.films, HeatedFilms):
             return agreed.films
-        greatest = cells_of(cycle).greatest
-        rho1, contacts = sliding_contacts(self.teeth.pair, cycle, self.speed, self.lubricant, greatest)
-        return heated_films(rho1, contacts, self.oil, agreed.bulk)
+        pair = self.teeth.pair
+        rho1, load = most_loaded(pair, cycle, np.arange(cycle.position.size))
+        contacts = line_contacts(pair, rho1, load, self.speed, self.lubricant)
+        return heated_films(rho1, with_sliding(pair, rho1, contacts, self.speed), self.oil, agreed.bulk)
 
     def agree(
         self,
@@ -154,7 +179,7 @@ class LossRounds:
         bulk: tuple[float, float],
         before: HeatedFilms | HeatedTable | None,
     ) -> HeatedFilms | HeatedTable:
-        if cycle.face is not None:
+        if has_cells(cycle):
             return self._table(cycle, GRID if most is None else FEW_GRID, bulk, before)
         assert not isinstance(before, HeatedTable)
         rho1, contacts = sliding_contacts(self.teeth.pair, cycle, self.speed, self.lubricant)
@@ -173,7 +198,7 @@ class LossRounds:
     ) -> HeatedTable:
         """Films over place and line load: those of the round before where these are the same."""
         table = before if isinstance(before, HeatedTable) and len(before.rows) == grid[0] else None
-        greatest = cells_of(cycle).face.greatest_line_load
+        greatest = cells_of(cycle).greatest
         if table is not None and table.bulk == bulk and greatest <= table.load[0]:
             return table
         return heated_table(self.teeth.pair, cycle, self.speed, self.lubricant, self.oil, bulk, grid, table)

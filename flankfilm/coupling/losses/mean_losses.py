@@ -23,15 +23,15 @@ class Borne:
         Places [m].
     force : ndarray, shape (n,)
         [N]
-    width : float
-        Length of face that each has [m].
+    width : float or ndarray, shape (n,)
+        Length of face, or of a line of contact, that each has [m].
     friction, rolling, first_part : ndarray, shape (n,)
         As of `Carried`.
     """
 
     rho1: Array
     force: Array
-    width: float
+    width: float | Array
     friction: Array
     rolling: Array
     first_part: Array

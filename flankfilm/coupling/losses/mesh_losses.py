@@ -17,6 +17,7 @@ from flankfilm.coupling.losses.heated_table import HeatedTable
 from flankfilm.coupling.losses.loss_band import boundary_band_of, loss_band
 from flankfilm.coupling.losses.losses_along_path import losses_along
 from flankfilm.coupling.losses.losses_faults import check_bodies, check_numbers, check_temperatures
+from flankfilm.coupling.losses.losses_on_lines import line_losses, of_all_lines
 from flankfilm.coupling.losses.losses_over_face import face_losses, of_all_cells
 from flankfilm.coupling.losses.losses_record import MeshLosses
 from flankfilm.coupling.losses.losses_rounds import LossRounds
@@ -109,7 +110,9 @@ def mesh_losses(
 
     Notes
     -----
-    Where the load varies along the face (leads, ``Flanks(alignment=, cells=)``) cells add up, and `over_face` has them.
+    Where the load varies along the face (leads, ``Flanks(alignment=, cells=)``) cells add up, and `over_face` has them;
+    those on lines of contact of helical pairs are in `over_lines`. Forces on these do not tilt by the friction, and
+    what that would change of them is part of the error.
 
     The films change the load share by friction alone. What asperities carry makes heat that no film feels. Equations
     and limits: docs/theory/losses.md.
@@ -159,15 +162,21 @@ def _solved(rounds: LossRounds, bulk: tuple[float, float], ends: tuple[float, fl
     means, full_cycle = agreed.means, rounds.cycle(agreed.means.friction, rounds.positions)
     along = rounds.along(agreed, full_cycle)
     path = losses_along(rounds.teeth.pair, along, agreed.bulk)
-    over, carried = None, 0.0
+    over, over_lines, carried = None, None, 0.0
     if isinstance(agreed.films, HeatedTable):
         halves = (rounds.means(agreed.cycle, agreed.films.every_second(axis)) for axis in (0, 1))
         carried = sum(HALVED * half.off(means) for half in halves)
-        over = face_losses(rounds.teeth.pair, full_cycle, rounds.speed, agreed.films, carried)
-        path = of_all_cells(path, over, full_cycle)
+        known = rounds.teeth.pair, full_cycle, rounds.speed, agreed.films, carried
+        if full_cycle.lines is None:
+            over = face_losses(*known)
+            path = of_all_cells(path, over, full_cycle)
+        else:
+            over_lines = line_losses(*known)
+            path = of_all_lines(path, over_lines, full_cycle)
     lost = path.sliding_loss
     by_films = np.average(path.friction_error, weights=lost) if lost.any() else 0.0
     error = float(by_films) + rounds.means(full_cycle, agreed.films).off(means) + agreed.shares + carried
+    error += rounds.untilted(full_cycle, means.friction)
     return MeshLosses(
         cycle=agreed.cycle,
         path=path,
@@ -191,6 +200,7 @@ def _solved(rounds: LossRounds, bulk: tuple[float, float], ends: tuple[float, fl
         message=_message(error, carried) if error > rounds.oil.tolerance else "",
         cost=Cost(watch.seconds, max(film.cost.unknowns for film in agreed.films.films)),
         over_face=over,
+        over_lines=over_lines,
     )
 
 

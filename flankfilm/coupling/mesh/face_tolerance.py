@@ -9,7 +9,6 @@ import numpy as np
 import gears
 from base import Array, Cost, Faults, Limit, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
-from flankfilm.coupling.mesh.cells import cells_of
 from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth
 from gears.tooth.face import ALIGNED, ALIGNMENT_LIMITS
 
@@ -95,5 +94,6 @@ def face_load_tolerance(teeth: LoadedTeeth, tolerance: float, positions: int = P
 def _factor(teeth: LoadedTeeth, alignment: gears.Alignment, positions: int) -> tuple[float, float]:
     """Maximum face-load factor with an alignment, and its error."""
     cycle = replace(teeth, flanks=replace(teeth.flanks, alignment=alignment)).cycle(positions)
-    face = cells_of(cycle).face
+    face = cycle.face
+    assert face is not None  # alignment makes cells
     return face.greatest_face_load_factor, face.error

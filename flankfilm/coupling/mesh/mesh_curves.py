@@ -153,6 +153,11 @@ class MeshCycle(MeshFigures):
         """What cells of the face bear; None where the load is even along it, as closed forms take it."""
         return None if self.contact is None else self.contact.face
 
+    @property
+    def lines(self) -> fem.LineLoads | None:
+        """What lines of contact across the face carry; None of spur pairs, and of other models."""
+        return None if self.contact is None else self.contact.lines
+
     def curve(self, kind: str) -> Array:
         """Curve of a kind of stiffness, ``"secant"`` or ``"tangent"`` (positions,) [N/m]."""
         return {"secant": self.secant_stiffness, "tangent": self.stiffness}[kind]

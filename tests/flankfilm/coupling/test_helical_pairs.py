@@ -1,4 +1,4 @@
-"""Loaded teeth, films and motion refuse helical pairs, whatever the model of their stiffness."""
+"""Closed forms of loaded teeth, films on them and motion refuse helical pairs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import pytest
 from base import InputError
 from ehl import Lubricant
 from flankfilm import coupling
-from flankfilm.coupling.films.line_contacts import line_contacts
 from gears import Gear, GearPair
 
 PAIR = GearPair(Gear(teeth=24), Gear(teeth=31), 2e-3, 20e-3, helix_angle=math.radians(15.0))
@@ -26,7 +25,6 @@ ASKED = {
     "films": lambda: coupling.lubricated_cycle(
         PAIR, 100.0, 200.0, OIL, model="potential-energy", film=coupling.FilmModel("dowson")
     ),
-    "contacts": lambda: line_contacts(PAIR, np.array([PAIR.points.C]), np.array([1e5]), 200.0, OIL),
     "oscillator": lambda: coupling.pair_oscillator(PAIR, SERIES, 100.0, 200.0),
     "unloaded error": lambda: coupling.unloaded_error(PAIR),
     "closed forms beside": lambda: coupling.compare_closed_forms(PAIR, 100.0),
