@@ -12,6 +12,8 @@ from .laws.local_law import Film as Film
 from .pair.compliance import compliance as compliance
 from .pair.face_gears import FaceGears as FaceGears
 from .pair.face_gears import face_gears as face_gears
+from .pair.line_fillets import LineFillets as LineFillets
+from .pair.line_fillets import line_fillets as line_fillets
 from .pair.options import Options as Options
 from .pair.pair_compliance import PairCompliance as PairCompliance
 from .pair.pair_fillets import Fillets as Fillets

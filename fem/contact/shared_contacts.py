@@ -53,6 +53,8 @@ class SharedContacts:
         By the cells, and of the face-load factor by free ends.
     shafts : HeldShafts or None
         None where they are rigid.
+    fewer : (torques, pitches, positions, pairs, cells) array or None
+        Forces with half as many cells [N], of lines of contact.
     """
 
     share: LoadShare
@@ -63,6 +65,7 @@ class SharedContacts:
     lost: Array
     errors: CellErrors
     shafts: HeldShafts | None = None
+    fewer: Array | None = None
 
     @classmethod
     def even(cls, share: LoadShare, open_: Array) -> SharedContacts:
@@ -184,6 +187,7 @@ def share_staying(bodies: PairCompliance, whole: Array, sides: ContactSides) -> 
         np.zeros((2, 2, *share.forces.shape)),
         cell_errors(over, face, fine, coarse),
         fine.shafts,
+        coarse.forces if sides.setups[0].helical else None,
     )
 
 

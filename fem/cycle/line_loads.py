@@ -45,6 +45,7 @@ class LineLoads(CellsOfLines):
     )
     most_loaded: Array = part("largest mean over half a module of each line (positions, pairs) [N/m]")
     setting: FaceSetting = part("cells, alignment and leads")
+    fewer: Array = part("forces with half as many cells of each line (positions, pairs, cells) [N]")
     slope: float = quantity(
         "1", "change of the pinion's curvature radius along the face: tan(beta_b)", no_error=EXACT
     )
@@ -241,6 +242,7 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         most_loaded=largest.reshape(-1, largest.shape[-1]) * pair.helix.base_cosine,
         pair=pair,
         setting=setup.face,
+        fewer=forces if over.fewer is None else over.fewer[number][0],
         slope=lines.slope,
         plane=plane,
         error=float(over.errors.factor[number]),

@@ -34,7 +34,7 @@ from fem.influence.gear_store import GearStore
 from fem.influence.helix_lines import ContactLine
 from meshes.outline import Sizes
 
-__all__ = ["HelixEnds", "helix_ends"]
+__all__ = ["HelixEnds", "depth_of", "helix_ends", "lengths"]
 
 PLACES = 5
 """Places of loads. More of them follow the nodes of the section, where a load is within an edge of the end."""
@@ -178,7 +178,7 @@ def helix_ends(
     ends = [(-half, 1, pieces, lower), (half, -1, pieces, upper)]
     if twist < 0.0:
         ends = [(-half, 1, pieces, upper), (half, -1, pieces, lower)]
-    if face_width < WIDE * _depth(meshed):
+    if face_width < WIDE * depth_of(meshed):
         wide = rounded(face_width)
         between, tables = gears.record(
             "helix ends together", (meshed, size, wide), partial(_both_ends, meshed, size, wide)
@@ -187,13 +187,13 @@ def helix_ends(
     return HelixEnds(tuple(_Effect(start, sense, over, place, tables) for start, sense, over, tables in ends))
 
 
-def _depth(meshed: MeshedShape) -> float:
+def depth_of(meshed: MeshedShape) -> float:
     """Depth of the body under the teeth [modules]."""
     profile = meshed.shape.profile
     return max(profile.root_radius - profile.bore_radius, LEAST_DEPTH)
 
 
-def _lengths(short: Sequence[float], long: Sequence[float], depth: float) -> Array:
+def lengths(short: Sequence[float], long: Sequence[float], depth: float) -> Array:
     """Lengths of pieces [modules], of which the last are in depths of the body."""
     return np.array([*short, *(depth * each for each in long)])
 
@@ -202,10 +202,10 @@ def _single_ends(
     meshed: MeshedShape, twist: float
 ) -> tuple[FacePieces, FlankVariable, Mapping[int, Array], Mapping[int, Array]]:
     """What either end of a right hand does, from the end inwards: pieces, places, the lower and the upper end."""
-    depth = _depth(meshed)
-    inwards = np.concatenate([[0.0], np.cumsum(_lengths(INWARDS, BODY_INWARDS, depth))])
+    depth = depth_of(meshed)
+    inwards = np.concatenate([[0.0], np.cumsum(lengths(INWARDS, BODY_INWARDS, depth))])
     pieces = FacePieces(inwards)
-    longer = pieces.lengthened(_lengths(OUTWARDS, BODY_OUTWARDS, depth), np.zeros(0))
+    longer = pieces.lengthened(lengths(OUTWARDS, BODY_OUTWARDS, depth), np.zeros(0))
     solve = _Solver(meshed, twist, SECTION)
     free, without = solve(pieces, pieces), solve(longer, pieces)
     lower, upper = (end - whole for end, whole in zip(free, without, strict=True))
@@ -217,7 +217,7 @@ def _both_ends(
 ) -> tuple[FacePieces, Mapping[int, Array]]:
     """What one end of a right hand does to the effect of the other, from the lower end on: pieces and tables."""
     pieces = FacePieces(face_width * np.concatenate([[0.0], np.cumsum(ACROSS)]))
-    beyond, none = _lengths(FURTHER, BODY_OUTWARDS, _depth(meshed)), np.zeros(0)
+    beyond, none = lengths(FURTHER, BODY_OUTWARDS, depth_of(meshed)), np.zeros(0)
     solve = _Solver(meshed, twist, COARSE_SECTION)
     bodies = (pieces, pieces.lengthened(none, beyond), pieces.lengthened(beyond, beyond))
     free, above, without = (solve(body, pieces) for body in bodies)

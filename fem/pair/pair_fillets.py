@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from gears import GearPair
     from meshes import SectorMesh, Sizes
 
-__all__ = ["Fillets", "LoadedShape", "SolvedFillets", "fillets"]
+__all__ = ["Fillets", "LoadedShape", "SolvedFillets", "fillet_sizes", "fillets"]
 
 COARSEST, HALVINGS = 0.16, 3
 """Edge length on the fillets of the first mesh in modules (before its refinement), and how often a tolerance
@@ -110,7 +110,7 @@ class LoadedShape:
         """Finer one of the two meshes."""
         from meshes import mesh_sector, refined
 
-        return refined(mesh_sector(self.shape.profile, _sizes(edge)))
+        return refined(mesh_sector(self.shape.profile, fillet_sizes(edge)))
 
 
 def fillets(
@@ -226,7 +226,7 @@ def _two_meshes(gears: GearStore, shape: GearShape, edge: float, low: float) -> 
     from meshes import mesh_sector, refined
 
     profile, law = shape.profile, shape.law
-    coarse_mesh = mesh_sector(profile, _sizes(edge))
+    coarse_mesh = mesh_sector(profile, fillet_sizes(edge))
     coarse = fillet_influence(ring_of(coarse_mesh, law), profile, 0, low)
     ring = ring_of(refined(coarse_mesh), law)
     fine = fillet_influence(ring, profile, shape.reach + 1, low)
@@ -237,7 +237,7 @@ def _two_meshes(gears: GearStore, shape: GearShape, edge: float, low: float) -> 
     return SolvedFillets(fine, error, ring.cost.unknowns, ring.unknowns)
 
 
-def _sizes(edge: float) -> Sizes:
+def fillet_sizes(edge: float) -> Sizes:
     """Fine on the fillets alone; a load near the tip needs no fine corner for what the root feels."""
     from meshes import Sizes
 

@@ -118,6 +118,7 @@ class GearRootStress:
         default=None,
     )
     webbed: bool = part("whether the gear has a rim on a web", default=False)
+    helical: bool = part("whether lines of contact cross the face", default=False)
 
     @property
     def errors(self) -> Mapping[str, float]:

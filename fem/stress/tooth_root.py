@@ -17,12 +17,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Cost, Faults, InputError, Stopwatch, described, part, quantity, record
+from fem.cycle.line_loads import LineLoads
 from fem.cycle.mesh_cycle import MeshCycle
 from fem.laws.mesh_setup import MeshSetup
+from fem.pair.line_fillets import LineFillets, line_fillets
 from fem.pair.pair_fillets import Fillets
 from fem.pair.pair_fillets import fillets as _fillets
 from fem.stress.face_fillets import EVEN, root_influences
 from fem.stress.gear_root import GearRootStress
+from fem.stress.line_roots import LineRoots
 from fem.stress.root_peaks import LOADED, OTHER
 from fem.stress.root_search import RootSearch, face_root_stress
 from fem.stress.tooth_stress import CellLoads, ToothStress
@@ -69,7 +72,10 @@ class RootStress:
 
 
 def root_stress(
-    pair: GearPair, cycle: MeshCycle, fillets: Fillets | None = None, tolerance: float = 0.005
+    pair: GearPair,
+    cycle: MeshCycle,
+    fillets: Fillets | LineFillets | None = None,
+    tolerance: float = 0.005,
 ) -> RootStress:
     """Stress along the fillets of every loaded tooth and its neighbours.
 
@@ -79,9 +85,9 @@ def root_stress(
     cycle : MeshCycle
         Of this pair; its normal forces are used, friction is left out. A tip edge is taken to press along the
         normal of the edge's flank at the end of the involute.
-    fillets : Fillets, optional
+    fillets : Fillets or LineFillets, optional
         Of this pair in the cycle's plane, to be used again for other torques or positions; computed to
-        ``tolerance`` unless given.
+        ``tolerance`` unless given. Of a helical pair they are `LineFillets`.
     tolerance : float
         Relative, on the maximum stress.
 
@@ -89,7 +95,7 @@ def root_stress(
     -------
     RootStress
         With cells of the face also over the face; what else is given for all teeth and samples is then at the place of
-        the maximum tension along the face.
+        the maximum tension along the face. So with lines of contact, where the cycle's positions alone are looked at.
 
     Raises
     ------
@@ -111,7 +117,11 @@ def root_stress(
     faults = Faults()
     if fillets is not None and fillets.pair != pair:
         faults.add("fillets", "of another pair", "must be of this pair", "compute them anew")
-    if fillets is not None and fillets.plane != cycle.plane:
+    if cycle.lines is not None and isinstance(fillets, Fillets):
+        faults.add("fillets", "of a spur pair", "must be LineFillets", "take them from line_fillets")
+    if cycle.lines is None and isinstance(fillets, LineFillets):
+        faults.add("fillets", "of a helical pair", "must be Fillets", "take them from fillets")
+    if isinstance(fillets, Fillets) and fillets.plane != cycle.plane:
         faults.add("fillets", f"plane {fillets.plane}", f"must be of plane {cycle.plane}", "use one plane")
     if not np.all(np.isfinite(cycle.forces)):
         faults.add("cycle", "not converged", "must have finite forces", cycle.message)
@@ -119,6 +129,10 @@ def root_stress(
         allowed = "must have flanks that bear on one side of the teeth"
         faults.add("cycle", "flanks that bear on both sides", allowed, "give more backlash")
     faults.raise_if_any()
+    if cycle.lines is not None:
+        assert not isinstance(fillets, Fillets)  # refused above
+        return _of_lines(pair, cycle, cycle.lines, fillets, tolerance)
+    assert not isinstance(fillets, LineFillets)
     arcs = cycle.arcs
     if arcs is None:
         raise InputError.at(
@@ -140,6 +154,30 @@ def root_stress(
         wheel,
         max(max(stress.errors.values()) for stress in (pinion, wheel)),
         cost,
+        roots.converged and cycle.converged,
+        roots.message,
+    )
+
+
+def _of_lines(
+    pair: GearPair, cycle: MeshCycle, lines: LineLoads, fillets: LineFillets | None, tolerance: float
+) -> RootStress:
+    """Stress under the lines of contact of a helical pair."""
+    watch = Stopwatch()
+    roots = fillets if fillets is not None else line_fillets(pair, tolerance)
+    ready = watch.seconds
+    pinion, wheel = (
+        LineRoots(
+            of_gear, lines, gear, cycle.pair_offset, float(roots.errors[gear]), cycle.error
+        ).along_cycle()
+        for gear, of_gear in enumerate((roots.pinion, roots.wheel))
+    )
+    parts = {**({} if fillets is not None else roots.cost.parts), "superpose": watch.seconds - ready}
+    return RootStress(
+        pinion,
+        wheel,
+        max(max(stress.errors.values()) for stress in (pinion, wheel)),
+        Cost(watch.seconds, parts=parts),
         roots.converged and cycle.converged,
         roots.message,
     )

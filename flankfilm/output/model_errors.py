@@ -152,6 +152,13 @@ def _face(face: Any) -> float | None:
     return FACTOR if face.setting.model == "free-ends" else FACTOR_UNCOUPLED
 
 
+def _root(gear: Any) -> float | None:
+    """Of the root stress of a gear; its contact decides that of a helical one, whose model error is not estimated."""
+    if gear.helical:
+        return None
+    return ROOT_WEB if gear.webbed else ROOT
+
+
 def _band(whole: str) -> Callable[[Any], float | None]:
     """What the band of the damping and the search leave of a peak beside its samples."""
 
@@ -189,15 +196,11 @@ MODEL_ERRORS: Mapping[tuple[str, str], ModelError] = {
     ("FaceLoads", "greatest_face_load_factor"): ModelError(_face, _FACE),
     ("FaceLoads", "greatest_line_load"): ModelError(_face, _FACE),
     **{
-        ("GearRootStress", name): ModelError(lambda gear: ROOT_WEB if gear.webbed else ROOT, page)
+        ("GearRootStress", name): ModelError(_root, page)
         for name, page in (("greatest_tension_Pa", _FACE), ("greatest_compression_Pa", _FACE))
     },
-    ("RootStress", "pinion_tension_Pa"): ModelError(
-        lambda stress: ROOT_WEB if stress.pinion.webbed else ROOT, _FACE
-    ),
-    ("RootStress", "wheel_tension_Pa"): ModelError(
-        lambda stress: ROOT_WEB if stress.wheel.webbed else ROOT, _FACE
-    ),
+    ("RootStress", "pinion_tension_Pa"): ModelError(lambda stress: _root(stress.pinion), _FACE),
+    ("RootStress", "wheel_tension_Pa"): ModelError(lambda stress: _root(stress.wheel), _FACE),
     **{
         ("MeshLosses", name): ModelError(_held(name), _LOSSES)
         for name in ("mean_friction", "sliding_loss", "mesh_loss", "efficiency")

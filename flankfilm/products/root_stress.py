@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from fem.stress.root_peaks import RootPeak
+    from flankfilm.scene.schema import Scene
 
 EVEN = "{}; nan where the load is even along the face"
 
@@ -62,7 +63,7 @@ PICTURES: Pictures = {"root_stress": "root_pinion_tension", "root_face_map": "ro
     by_parts=True,
     of=plain_flanks,
 )
-def FILLETS(run: Engine) -> fem.Fillets:
+def FILLETS(run: Engine) -> fem.Fillets | fem.LineFillets:
     """What loads anywhere on the flanks do to the fillets."""
     scene = run.scene
     return coupling.fillets_of(
@@ -81,16 +82,22 @@ def FILLETS(run: Engine) -> fem.Fillets:
 )
 def FACE_FILLETS(run: Engine) -> fem.FaceFillets:
     """What loads that vary along the face do to the fillets."""
-    model = face(run.scene).get("face_model", FREE_ENDS)
-    return coupling.fillets_over_face(run[FILLETS], run[PAIR], model, run.parts)
+    model, fillets = face(run.scene).get("face_model", FREE_ENDS), run[FILLETS]
+    assert isinstance(fillets, fem.Fillets)  # those of a helical pair know the face
+    return coupling.fillets_over_face(fillets, run[PAIR], model, run.parts)
 
 
 @stage("root stress", "root stress over the mesh cycle", "", MESH, FILLETS, PAIR, FACE_FILLETS)
 def ROOT_STRESS(run: Engine) -> coupling.RootStresses:
     """Stress at the fillets with the forces of the mesh cycle, with the film where there is one."""
-    if varies_by(run.scene):
+    if varies_by(run.scene) and not _across(run.scene):
         _ = run[FACE_FILLETS]  # root stresses find them in the process
     return coupling.root_stresses(run[PAIR], loaded_contact(run), run[FILLETS])
+
+
+def _across(scene: Scene) -> bool:
+    """Whether lines of contact cross the face."""
+    return scene.pair is not None and scene.pair.helical
 
 
 def variables(roots: coupling.RootStresses) -> Iterator[xr.Dataset]:
@@ -101,9 +108,10 @@ def variables(roots: coupling.RootStresses) -> Iterator[xr.Dataset]:
             stresses = [quantity.name for quantity in quantities if quantity.figure.unit == "Pa"]
             data = of_quantities(prefix, quantities, dict.fromkeys(stresses, roots.stress.error))
             known = entry(gear, "greatest_tension_Pa")
-            if known is not None:
+            error = None if known is None else known.of(gear)
+            if known is not None and error is not None:
                 for name_of in stresses:
-                    about = {"model_error": known.of(gear), "model_error_source": known.source}
+                    about = {"model_error": error, "model_error_source": known.source}
                     data[joined(prefix, name_of)].attrs.update(about)
             yield data
         if gear.face is not None:
@@ -142,8 +150,17 @@ def section(stage: coupling.RootStresses, results: xr.Dataset) -> Part:
         places = "at D for the pinion and at B for the wheel"
         note = said("iso6336_3", where="at the tip" if stage.iso.load_at == "tip" else places)
     drawn = pictures(results, PICTURES)
-    notes = (note, *((said("root_over_face", left_out=stage.iso_left_out),) if over_face else ()))
+    notes = (note, *_notes(stage))
     return Part("roots", "Root stress", figures=drawn, tables=tuple(tables), notes=notes)
+
+
+def _notes(stage: coupling.RootStresses) -> tuple[str, ...]:
+    """What is said about the face."""
+    if stage.stress.pinion.helical:
+        return (said("root_of_lines"),)
+    if stage.stress.pinion.face is not None:
+        return (said("root_over_face", left_out=stage.iso_left_out),)
+    return ()
 
 
 def _over_face(stage: coupling.RootStresses) -> Table:
@@ -174,7 +191,7 @@ def headlines(stage: coupling.RootStresses) -> list[Headline]:
     return [Headline(name, values, note, largest[0].unit, Uncertainty(stage.error, model))]
 
 
-def _of_fillets(value: fem.Fillets, computed: Computed) -> Work:
+def _of_fillets(value: fem.Fillets | fem.LineFillets, computed: Computed) -> Work:
     unknowns = counted(value.cost.unknowns, "unknown")
     return Work("maximum root stress per load", computed.scene.tolerance, value.error, unknowns)
 
@@ -199,7 +216,9 @@ def _of_root(name: str, about: Figure, value: Take, said: str = EVEN, error: Tak
     """Figure of the root stress over the face."""
 
     def over_face(take: Take) -> Of:
-        return lambda engine: take(engine[ROOT_STRESS]) if varies_by(engine.scene) else None
+        return lambda engine: (
+            take(engine[ROOT_STRESS]) if varies_by(engine.scene) or _across(engine.scene) else None
+        )
 
     known = None if error is None else over_face(error)
     return output_of(name, about, "root-stress", over_face(value), said, known)

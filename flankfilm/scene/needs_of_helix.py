@@ -29,7 +29,6 @@ _MOTION = "motion with axial forces and tilting gears"
 _FILM = "films along oblique lines"
 
 WANTS_OF_SPUR: Mapping[str, str] = {
-    "root-stress": "stress at the roots under oblique lines",
     "film": _FILM,
     "losses": "friction and heat of films along oblique lines",
     "sweep": _MOTION,

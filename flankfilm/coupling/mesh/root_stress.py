@@ -54,7 +54,9 @@ class LoadedFields:
     message: str = ""
 
 
-def root_stresses(pair: gears.GearPair, cycle: fem.MeshCycle, fillets: fem.Fillets) -> RootStresses:
+def root_stresses(
+    pair: gears.GearPair, cycle: fem.MeshCycle, fillets: fem.Fillets | fem.LineFillets
+) -> RootStresses:
     """Stress at the fillets with the forces of a loaded contact.
 
     Parameters
@@ -62,7 +64,7 @@ def root_stresses(pair: gears.GearPair, cycle: fem.MeshCycle, fillets: fem.Fille
     pair : gears.GearPair
     cycle : fem.MeshCycle
         With the film where there is one.
-    fillets : fem.Fillets
+    fillets : fem.Fillets or fem.LineFillets
         Of the same gears with plain flanks.
 
     Examples
@@ -125,8 +127,8 @@ def fillets_over_face(
 
 def fillets_of(
     pair: gears.GearPair, tolerance: float, plane: str = "strain", kept: ResultStore | None = None
-) -> fem.Fillets:
-    """What loads anywhere on the flanks do to the fillets, by a mesh made for them.
+) -> fem.Fillets | fem.LineFillets:
+    """What loads anywhere on the flanks do to the fillets, by a mesh made for them; of a helical pair with its ends.
 
     Parameters
     ----------
@@ -151,6 +153,8 @@ def fillets_of(
     >>> fillets_of(pair, tolerance=0.05).error < 0.05
     True
     """
+    if pair.helix_angle != 0.0:
+        return believed(fem.line_fillets(pair, tolerance=tolerance, kept=kept), "root stress")
     return believed(fem.fillets(pair, tolerance=tolerance, plane=plane, kept=kept), "root stress")
 
 
