@@ -14,9 +14,10 @@ from fem.laws.mesh_setup import Deviations, MeshSetup
 from fem.laws.relieved_flanks import gentle, touch
 from fem.laws.tip_contact import nearest_gap
 from fem.laws.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_gap
+from fem.pair.face_setting import EVEN, FREE_ENDS, face_setting
 
 if TYPE_CHECKING:
-    from gears import GearPair
+    from gears import Alignment, GearPair
 
 __all__ = [
     "SEEN_ALONG",
@@ -316,12 +317,14 @@ def unloaded_transmission_error(
     pitches: int = 1,
     first_teeth: tuple[int, int] = (0, 0),
     tip_rounding: float | tuple[float, float] = 0.0,
+    alignment: Alignment | None = None,
 ) -> Array:
     """Transmission error of rigid gears under no load, from the geometry alone (pitches*positions,) [m].
 
     The smallest gap of all pairs, D_0: zero for perfect involutes while one of them is between A and E; with
     relief or deviations the pair that touches first, which may do so with a tip edge outside A..E. Positive
-    when the wheel lags. Parameters as for ``mesh_cycle``.
+    when the wheel lags. Parameters as for ``mesh_cycle``. Of spur pairs leads and alignment shift it by a constant,
+    which is left out; with a helix they decide where on the lines of contact teeth touch first.
 
     Raises
     ------
@@ -337,7 +340,10 @@ def unloaded_transmission_error(
     array([0., 0., 0.])
     """
     tip_edges = pair.helix_angle == 0.0 if beyond_path is None else beyond_path
-    setup = MeshSetup(pair, positions, tip_edges, deviations, pitches, first_teeth, tip_rounding)
+    face = EVEN
+    if pair.helix_angle != 0.0:
+        face = face_setting(pair, alignment, None, FREE_ENDS) or EVEN
+    setup = MeshSetup(pair, positions, tip_edges, deviations, pitches, first_teeth, tip_rounding, face=face)
     faults = Faults()
     setup.check(faults)
     faults.raise_if_any()

@@ -100,7 +100,7 @@ class MeshSetup:
     @property
     def backlash(self) -> float:
         """Backlash along the transverse line of action, along which D is counted [m]."""
-        return self.pair.backlash / self.pair.helix.base_cosine
+        return self.pair.base_tangent_backlash
 
     @cached_property
     def mirror(self) -> float:

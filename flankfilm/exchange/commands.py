@@ -188,13 +188,11 @@ def export_table(scene: Path, /, *, out: Path | None = None) -> int:
     from flankfilm.exchange.mesh_files import refuse_others, write_table
     from flankfilm.files.cache import results_cache
     from flankfilm.output.reproduce import scene_in
-    from flankfilm.scene.needs_of_helix import refuse_helix
     from flankfilm.scene.sections.section import required
     from flankfilm.stages.engine import Engine
     from flankfilm.stages.mesh import MESH, PAIR
 
     wanted, _ = scene_in(scene)
-    refuse_helix(wanted, "the table of a mesh cycle")
     target = out if out is not None else Path(f"{scene.stem}-mesh.csv")
     refuse_others(target)
     for name in ("pair", "material", "operating"):

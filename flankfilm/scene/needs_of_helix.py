@@ -1,8 +1,8 @@
 """What a scene cannot want, nor give, of a helical pair: one table, of which a row goes when its model takes a helix.
 
-`WANTS_OF_SPUR` lists wants. `KEYS_OF_SPUR` lists keys: those that ask for a model of spur gears in any case, and those
-that count only where loaded teeth are wanted. Everything else of a helical pair is answered: sizes, inspection, lines
-of contact, forces of the mesh, stiffness and stresses by ISO 6336.
+`WANTS_OF_SPUR` lists wants. `KEYS_OF_SPUR` lists keys, each with the wants beside which it is refused: any, those of
+loaded teeth, or those of motion. Everything else of a helical pair is answered: sizes, inspection, lines
+of contact, forces of the mesh, loaded contact, motion that turns alone, stiffness and stresses by ISO 6336.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
 from base import Fault, InputError, shorten
+from flankfilm.scene.sections.dynamics import BY_FILM
 from flankfilm.scene.traits import given_keys, named
-from flankfilm.scene.wants import UNLOADED, WANTS
+from flankfilm.scene.wants import MOTIONS, UNLOADED, WANTS
 
 if TYPE_CHECKING:
     from flankfilm.scene.schema import Scene
@@ -25,17 +26,11 @@ __all__ = ["HELIX", "KEYS_OF_SPUR", "WANTS_OF_SPUR", "faults_of_helix", "refuse_
 HELIX = "pair.helix_angle_deg"
 """Key of the helix."""
 
-_MOTION = "motion with axial forces and tilting gears"
 _FILM = "films along oblique lines"
 
 WANTS_OF_SPUR: Mapping[str, str] = {
     "film": _FILM,
     "losses": "friction and heat of films along oblique lines",
-    "sweep": _MOTION,
-    "diagram": _MOTION,
-    "spectrum": _MOTION,
-    "run-up": _MOTION,
-    "dynamic-map": _MOTION,
     "vtk": "fields of twisted teeth",
 }
 """Wants that only spur pairs have, each with what is missing for a helical one."""
@@ -58,6 +53,13 @@ def _other_than(*words: Any) -> Callable[[Any], bool]:
     return lambda value: value not in words
 
 
+ANY = frozenset(WANTS)
+"""All wants."""
+
+LOADED = ANY - UNLOADED - {"closed-forms"}
+"""Wants of loaded teeth, beyond sizes and standards' formulas."""
+
+
 @dataclass(frozen=True)
 class SpurKey:
     """Key, or several by a pattern, that only a spur pair may have.
@@ -72,8 +74,8 @@ class SpurKey:
         What must hold, and what to do, beside taking a spur pair.
     refuses : callable
         Whether a given value is refused.
-    always : bool
-        Whether it is refused whatever is wanted; else only where loaded teeth are.
+    beside : frozenset of str
+        Wants beside which it is refused; those of loaded teeth unless given.
     """
 
     path: str
@@ -81,7 +83,7 @@ class SpurKey:
     allowed: str = "must be left out"
     remedy: str = "Leave it out"
     refuses: Callable[[Any], bool] = _anything
-    always: bool = False
+    beside: frozenset[str] = LOADED
 
 
 KEYS_OF_SPUR: tuple[SpurKey, ...] = (
@@ -92,7 +94,7 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
         'must be "fem"',
         'Leave it out: the wanted "closed-forms" gives ISO 6336',
         _other_than("fem", "auto", "given"),
-        always=True,
+        beside=ANY,
     ),
     SpurKey(
         "stiffness.pairs",
@@ -100,9 +102,9 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
         'must be "coupled"',
         'Take "coupled"',
         _other_than("coupled"),
-        always=True,
+        beside=ANY,
     ),
-    SpurKey("stiffness.moving_contact", "contacts that the deflection moves", "must be false", always=True),
+    SpurKey("stiffness.moving_contact", "contacts that the deflection moves", "must be false", beside=ANY),
     # what loaded teeth on oblique lines do not know
     SpurKey("operating.friction", "friction on oblique lines", "must be 0"),
     SpurKey(
@@ -120,7 +122,20 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
     ),
     SpurKey("film.model", _FILM, 'must be "none"', 'Take film.model = "none"', _other_than("none")),
     SpurKey("film", _FILM, 'must be of model = "none"', 'Take film.model = "none"', _without_model),
+    SpurKey(
+        "dynamics.damping_ratio",
+        _FILM,
+        "must be a number",
+        "Give a number, such as 0.05",
+        lambda value: value == BY_FILM,
+    ),
     SpurKey("heat", "loaded teeth at other temperatures"),
+    SpurKey(
+        "shafts.*.segments",
+        "motion on shafts that bend, whose axial forces and tilting moments count",
+        remedy="Leave it out; inertias of motor and load, behind couplings or not, may stay",
+        beside=frozenset(MOTIONS),
+    ),
     SpurKey("pair.tight", "twisted teeth that bear on both sides", "must be false", "Give more backlash"),
     SpurKey("pair.*.blank", "webs of twisted bodies"),
     SpurKey("pair.*.tip_rounding_um", "contact with tip edges outside the path", "must be 0"),
@@ -141,7 +156,7 @@ def faults_of_helix(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault]
         allowed = f"must be any of {answered} {lacking} {missing}"
         yield Fault("wants", value, allowed, f"Leave it out of wants, or give {HELIX} = 0")
     for path, value, row in _given(raw):
-        if (row.always or wants_load(listed)) and row.refuses(value):
+        if row.beside & listed and row.refuses(value):
             remedy = f"{row.remedy}, or give {HELIX} = 0"
             yield Fault(named(path), _shown(value), f"{row.allowed} {lacking} {row.missing}", remedy)
 
@@ -155,7 +170,7 @@ def _shown(value: Any) -> str:
 
 def wants_load(wants: Iterable[str]) -> bool:
     """Whether loaded teeth are wanted, beyond sizes and standards' formulas."""
-    return bool(set(wants) & set(WANTS) - UNLOADED - {"closed-forms"})
+    return not LOADED.isdisjoint(wants)
 
 
 def _helix_angle(raw: Mapping[str, Any]) -> float:

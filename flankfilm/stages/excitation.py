@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from flankfilm import coupling
+from flankfilm.building.face import face
 from flankfilm.building.flanks import deviations
 from flankfilm.building.pair import pinion_torque, tip_roundings
 from flankfilm.scene.sections.section import required
@@ -16,7 +17,7 @@ from flankfilm.stages.ranges import deflection, frequency_range
 KEYS = "operating dynamics pair material heat stiffness.contact_beyond_path tolerance"
 
 
-@stage("excitation", "unloaded transmission error", f"{KEYS} wants", PAIR, MESH, FILM_DAMPING)
+@stage("excitation", "unloaded transmission error", f"{KEYS} alignment wants", PAIR, MESH, FILM_DAMPING)
 def EXCITATION(run: Engine) -> coupling.ErrorSeries | None:
     """Harmonics of the scene's curve of the error; None where it gives harmonics."""
     scene = run.scene
@@ -41,8 +42,9 @@ def EXCITATION(run: Engine) -> coupling.ErrorSeries | None:
         run[PAIR],
         deviations=deviations(scene, run[PAIR], every_tooth=False),
         tip_rounding=tip_roundings(scene),
-        beyond_path=scene.stiffness.contact_beyond_path,
+        beyond_path=scene.tip_edges,
         back=pinion_torque(scene) < 0.0,
+        alignment=face(scene).get("alignment"),
         **asked,
     )
 

@@ -42,5 +42,5 @@ def speeds_looked_at(run: Engine, series: coupling.MeshSeries, speed: float) -> 
 
 def deflection(run: Engine, section: DynamicsSection) -> float:
     """Deflection of the mesh under the scene's torque by its mean stiffness [m]."""
-    force = abs(run[PAIR].normal_force(pinion_torque(run.scene)))
+    force = abs(run[PAIR].base_tangent_force(pinion_torque(run.scene)))
     return force / run[MESH].mean(section.stiffness)

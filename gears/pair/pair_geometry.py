@@ -238,6 +238,11 @@ class PairGeometry:
         """Transverse backlash, arc of the working pitch circles j_wt = j_bn / (cos alpha_wt cos beta_b)."""
         return self.backlash * math.hypot(1.0, self._working_tangent) / self.helix.base_cosine
 
+    @property
+    def base_tangent_backlash(self) -> float:
+        """Backlash along the transverse line of action, j_bn / cos beta_b = j_wt cos alpha_wt [m]."""
+        return self.backlash / self.helix.base_cosine
+
     def _rounded(self, backlash: float) -> float:
         """Backlash [m], 0 where it is what rounding leaves of none."""
         return 0.0 if abs(backlash) < ROUNDING * self.module else backlash
@@ -290,6 +295,10 @@ class PairGeometry:
     def normal_force(self, torque: float) -> float:
         """Return the normal force F_bn = T / (r_b1 cos beta_b) [N] of a pinion torque T [N m]."""
         return torque / self.base_radii[0] / self.helix.base_cosine
+
+    def base_tangent_force(self, torque: float) -> float:
+        """Return the force along the transverse line of action F_bt = T / r_b1 [N] of a pinion torque T [N m]."""
+        return torque / self.base_radii[0]
 
     def tangential_force(self, torque: float) -> float:
         """Return the tangential force F_t = T / r_1 [N] at the reference cylinders, of a pinion torque T [N m]."""

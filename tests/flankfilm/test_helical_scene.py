@@ -23,7 +23,7 @@ from flankfilm.scene.needs_of_helix import HELIX, KEYS_OF_SPUR, WANTS_OF_SPUR
 from flankfilm.scene.reader import parse_toml, validated
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.sections.key import key_of
-from flankfilm.scene.wants import WANTS
+from flankfilm.scene.wants import MOTIONS, WANTS
 from flankfilm.stages.engine import Engine
 from flankfilm.studies.outputs import OUTPUTS
 from gears import Gear, GearPair
@@ -47,6 +47,12 @@ poisson_ratio = 0.3
 [operating]
 pinion_torque_Nm = 600
 pinion_speed_rpm = 2000
+"""
+MOTION = """
+[dynamics]
+sweep = { speed_rpm = [4000, 14000], points = 12 }
+diagram = { speed_rpm = [4000, 14000] }
+run_up = { speed_rpm = [4000, 14000], seconds = 0.2 }
 """
 ANSWERED = '"geometry", "closed-forms"'
 
@@ -167,7 +173,9 @@ class TestTable:
     @pytest.mark.parametrize("want", WANTS)
     def test_each_want_is_answered_or_refused(self, want):
         text = SCENE.replace("WANTS", f'"{want}"')
-        if want == "torques":
+        if want in MOTIONS:
+            text += MOTION
+        if want in ("torques", "dynamic-map"):
             text = text.replace("pinion_speed", "torques_Nm = [300, 600]\npinion_speed")
         if want not in WANTS_OF_SPUR:
             assert check_scene(parse_scene(text))
@@ -189,6 +197,8 @@ class TestTable:
         ("stiffness.plane", "stress", False),
         ("stiffness.contact_beyond_path", True, False),
         ("film.model", "dowson", False),
+        ("dynamics.damping_ratio", "film", False),
+        ("shafts.wheel.segments", [{"length_mm": 200.0, "diameter_mm": 40.0}], "motion"),
         ("pair.tight", True, False),
         ("pair.pinion.blank", {"rim_thickness_mm": 6.0, "web_thickness_mm": 12.0}, False),
         ("pair.wheel.tip_rounding_um", 20.0, False),
@@ -196,7 +206,12 @@ class TestTable:
 
     @pytest.mark.parametrize(("path", "value", "always"), GIVEN)
     def test_each_key_is_refused_beside_loaded_teeth(self, path, value, always):
-        for wants, refused in ((["stiffness"], True), (["geometry", "closed-forms"], always)):
+        beside = (
+            (["stiffness"], always != "motion"),
+            (["sweep"], True),
+            (["geometry", "closed-forms"], always is True),
+        )
+        for wants, refused in beside:
             raw = put(parse_toml(SCENE.replace("WANTS", '"geometry"'), "scene"), path, value) | {
                 "wants": wants
             }
@@ -210,7 +225,11 @@ class TestTable:
                 assert "must be" in found[path]
                 assert found[path].endswith("or give pair.helix_angle_deg = 0")
         spur = put(put(raw, HELIX, 0.0), "wants", ["stiffness"])
-        with pytest.raises(InputError) if path == "film.model" else nullcontext() as caught:
+        with (
+            pytest.raises(InputError)
+            if path in ("film.model", "shafts.wheel.segments")
+            else nullcontext() as caught
+        ):
             validated(spur)
         assert "helical" not in str(caught.value if caught is not None else "")
 
@@ -266,13 +285,13 @@ gear_position_mm = 100
         assert "shafts" not in face(parse_scene(text.replace("deg = 20", "deg = 0")))
 
     def test_all_at_once_with_status_2_before_anything_is_computed(self, tmp_path):
-        text = SCENE.replace("WANTS", '"stiffness", "film", "sweep"')
+        text = SCENE.replace("WANTS", '"stiffness", "film", "vtk"')
         text += '[stiffness]\nmodel = "weber-banaschek"\nmoving_contact = true\n'
         (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
         for arguments in (("check", "scene.toml"), ("run", "scene.toml", "--out", "out")):
             done = command(*arguments, cwd=tmp_path, status=2)
             for said in (
-                'wants = "film"', 'wants = "sweep"',
+                'wants = "film"', 'wants = "vtk"',
                 "stiffness.model = 'weber-banaschek'", "stiffness.moving_contact = true",
             ):  # fmt: skip
                 assert said in done.stderr
@@ -282,7 +301,6 @@ gear_position_mm = 100
         "arguments",
         [
             ("verify", "scene.toml", "--out", "out"),
-            ("export-table", "scene.toml"),
             ("export-traction", "scene.toml"),
         ],
         ids=lambda arguments: arguments[0],

@@ -30,6 +30,7 @@ from flankfilm.coupling.drive.train import ShaftDamping, Train, joined, lowest_m
 from flankfilm.coupling.vibration.oscillator import PairOscillator, pair_oscillator
 from flankfilm.coupling.vibration.part_loads import DriveOutput
 from gears.pair.beams import ReducedShaft
+from gears.pair.spur_only import require_spur
 
 if TYPE_CHECKING:
     from flankfilm.coupling.mesh.mesh_curves import MeshCycle
@@ -220,7 +221,8 @@ def pair_drive(
     Displacements are turns times base radius, positive as the pinion drives, and deflections along the line of action
     towards the wheel. Shafts are beams and torsion bars of many elements (`gears.pair.beams`), gears are rigid bodies
     that tilt with them; the train is reduced to modes (`flankfilm.coupling.drive.reduction`). The back flanks press
-    along the other line of action; here they press along the same. Free rotation of the train is taken out.
+    along the other line of action; here they press along the same. Free rotation of the train is taken out. Helical
+    pairs twist alone: shafts that bend are refused, whose gears axial forces tilt.
 
     Parameters
     ----------
@@ -230,7 +232,7 @@ def pair_drive(
     torque, speed : float
         Of the pinion [N m], [rad/s].
     shafts : (Shaft or None, Shaft or None)
-        Of pinion and wheel; None: rigid in rigid bearings.
+        Of pinion and wheel; None: rigid in rigid bearings, as both must be of a helical pair.
     end_inertias : (float, float)
         Of motor and load, or what else is coupled at the shafts' torque positions [kg m2].
     couplings : (float or None, float or None)
@@ -284,6 +286,8 @@ def pair_drive(
     True
     """
     watch = Stopwatch()
+    if shafts != (None, None):
+        require_spur(pair, "shafts that bend, with a mesh that presses across them alone")
     ratios = checked_arguments(
         end_inertias, couplings, shaft_damping_ratio, rayleigh, reduction_tolerance, damping_band, tilt_stiffness,
         load_centre,

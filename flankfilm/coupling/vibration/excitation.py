@@ -11,6 +11,7 @@ larger, and of the motion where a range of frequencies is given.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,7 +22,6 @@ from base import Array, Cost, Faults, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
 from dynamics.model.stiffness import MAX_ORDER
 from fem.laws.mesh_setup import Deviations, MeshSetup
-from gears.pair.spur_only import require_spur
 
 SAMPLES = 4096
 """Samples of a curve that is given at unequal positions, and of a sum of harmonics whose range is looked for."""
@@ -36,7 +36,7 @@ _FREQUENCIES = 2000
 
 @record
 class ErrorSeries:
-    """Harmonics of an unloaded transmission error along the line of action; tau = 0 with a pair at A."""
+    """Harmonics of an unloaded transmission error along the transverse line of action; tau = 0 with a pair at A."""
 
     headline = ("order", "range", "remainder")
 
@@ -185,8 +185,9 @@ def unloaded_error(
     *,
     deviations: Deviations | None = None,
     tip_rounding: tuple[float, float] = (0.0, 0.0),
-    beyond_path: bool = True,
+    beyond_path: bool | None = None,
     back: bool = False,
+    alignment: gears.Alignment | None = None,
     meshes: int = 1,
     positions: int = POSITIONS,
     order: int | None = None,
@@ -205,10 +206,12 @@ def unloaded_error(
         Of pinion and wheel.
     tip_rounding : (float, float)
         Radii of the tip edges [m].
-    beyond_path : bool
-        Whether tip edges may touch outside A..E.
+    beyond_path : bool, optional
+        Whether tip edges may touch outside A..E; of helical pairs they may not. None: of spur pairs alone.
     back : bool
         Whether the wheel drives, so that the flanks are the back ones.
+    alignment : gears.Alignment, optional
+        Of the axes: of helical pairs it decides, with leads, where on the lines of contact teeth touch first.
     meshes, order, share, deflection, bounds, damping_ratio
         As of `error_series`; the revolution begins with the teeth 0 of both gears in mesh.
     positions : int
@@ -223,9 +226,12 @@ def unloaded_error(
     >>> found.converged, 0.0 < found.range < 20e-6
     (True, True)
     """
-    require_spur(pair, "errors of rigid teeth that excite a motion")
+    bearing, aligned = pair, alignment
+    if back and pair.helix_angle != 0.0:  # back flanks are front flanks of the other hand
+        bearing = replace(pair, helix_angle=-pair.helix_angle)
+        aligned = None if alignment is None else alignment.opposite(pair.working_pressure_angle)
     curve = fem.unloaded_transmission_error(
-        pair, positions, beyond_path, deviations, meshes, tip_rounding=tip_rounding
+        bearing, positions, beyond_path, deviations, meshes, tip_rounding=tip_rounding, alignment=aligned
     )
     places = (np.arange(curve.size) + 0.5) / positions
     if back:  # their path is the mirror of that of the flanks in front

@@ -16,7 +16,7 @@ from flankfilm.coupling.vibration.oscillator import pair_inertias, pair_scales
 
 @record
 class MeshTable:
-    """A pair over one base pitch as a spring between two rigid discs, acting along the line of action.
+    """A pair over one base pitch as a spring between two rigid discs, acting along the transverse line of action.
 
     The spring's force is f = k (r_b1 theta_1 - r_b2 theta_2 - e) with k over the pinion's turn; on the discs it acts by
     the moments f r_b1 and f r_b2. The stiffness is measured against the bodies, as discs turn, where the model has a
@@ -45,8 +45,8 @@ class MeshTable:
         "N/m", "mean of the tangent stiffness", error="error", called="mean_tangent_stiffness"
     )
     mean_secant_stiffness: float = quantity("N/m", "mean of the secant stiffness", error="error")
-    force: float = quantity("N", "normal force of the mesh")
-    backlash: float = quantity("m", "normal backlash", shown="um")
+    force: float = quantity("N", "force of the mesh along the transverse line of action")
+    backlash: float = quantity("m", "backlash along the transverse line of action", shown="um")
     equivalent_mass: float = quantity("kg", "equivalent mass along the line of action")
     inertias: tuple[float, float] = quantity("kg m2", "moments of inertia of pinion and wheel", "gear")
     base_radii: tuple[float, float] = quantity("m", "base radii of pinion and wheel", "gear", shown="mm")
@@ -90,7 +90,7 @@ def mesh_table(
     if cycle.contact is not None:
         measured = cycle.against("body", extra_inertia)
     pitch = pair.teeth_profiles[0].pitch_angle
-    force = float(np.sum(measured.forces[0]))
+    force = float(np.sum(measured.forces[0])) * pair.helix.base_cosine
     scales = pair_scales(pair, force * pair.base_radii[0], measured.mean_stiffness, extra)
     return MeshTable(
         angle=measured.position * pitch,
@@ -100,7 +100,7 @@ def mesh_table(
         mean_stiffness=measured.mean_stiffness,
         mean_secant_stiffness=measured.mean_secant_stiffness,
         force=force,
-        backlash=pair.backlash,
+        backlash=pair.base_tangent_backlash,
         equivalent_mass=scales.equivalent_mass,
         inertias=pair_inertias(pair, extra),
         base_radii=pair.base_radii,

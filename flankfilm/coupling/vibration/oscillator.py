@@ -18,7 +18,6 @@ from flankfilm.coupling.mesh.references import MEANINGS
 from flankfilm.coupling.vibration.excitation import peak_to_peak
 from flankfilm.coupling.vibration.part_loads import DriveOutput
 from flankfilm.coupling.vibration.series import MOST_HARMONICS, MeshSeries, mesh_series
-from gears.pair.spur_only import require_spur
 
 MEAN_FORCE = 0.1
 """Dimensionless mean force that the length scale is chosen for, unless that is given."""
@@ -39,7 +38,12 @@ class PairOscillator:
     )
     series: MeshSeries = part("of the mesh stiffness")
     pair: gears.GearPair | None = part("the gears; None for an oscillator in its own units", default=None)
-    force: float = quantity("N", "normal force", no_error=EXACT, default=0.0)
+    force: float = quantity(
+        "N",
+        "force of the mesh along the transverse line of action: of spur pairs the normal force",
+        no_error=EXACT,
+        default=0.0,
+    )
     error_amplitude: Array = quantity(
         "m",
         "amplitudes of the harmonics of the unloaded transmission error",
@@ -57,7 +61,7 @@ class PairOscillator:
         default_factory=lambda: np.zeros(1),
     )
     backlash: float = quantity(
-        "m", "whole backlash along the line of action", shown="um", no_error=EXACT, default=0.0
+        "m", "whole backlash along the transverse line of action", shown="um", no_error=EXACT, default=0.0
     )
     inertias: tuple[float, float] = quantity(
         "kg m2", "moments of inertia of pinion and wheel", "gear", no_error=EXACT, default=(0.0, 0.0)
@@ -139,7 +143,7 @@ class PairOscillator:
 
     @described("kg", no_error=EXACT)
     def equivalent_mass(self) -> float | None:
-        """Equivalent mass along the line of action; None for an oscillator in its own units."""
+        """Equivalent mass along the transverse line of action; None for an oscillator in its own units."""
         return None if self.scales is None else self.scales.equivalent_mass
 
 
@@ -161,16 +165,20 @@ def pair_oscillator(
     tolerance: float = 0.005,
     speeds: tuple[float, float] | None = None,
 ) -> PairOscillator:
-    """Oscillator of a pair along the line of action, driven by its mesh stiffness.
+    """Oscillator of a pair along the transverse line of action, driven by its mesh stiffness.
 
     Its coordinate is the rotation of rigid inertias, so that the deflection of finite elements is measured against the
     bodies, whatever it was measured against before, unless another reference is asked for. Closed forms,
     independent pairs and given series have no rotation that all pairs share, and are used unchanged; the message says
     which it was.
 
+    A helical pair turns alone, on shafts that neither bend nor move along their axes: deflection, force T/r_b1 and
+    backlash j_bn/cos(beta_b) are along the transverse line of action, masses follow from the base radii of the
+    transverse section. Axial forces do no work on such gears.
+
     On the far side of the backlash the flanks that the load does not press bear with the same k(t). Theirs is its
     mirror image, k(c - t) with c of `fem.laws.mesh_setup.MeshSetup.mirror`: of the same mean and harmonics, in other
-    phases.
+    phases. Those of a helix are of the other hand, with the same k where faces are symmetric about their middle.
 
     Parameters
     ----------
@@ -236,7 +244,7 @@ def pair_oscillator(
         allowed = "must be at least 0 for the motion, in which back flanks touch alternately"
         remedy = "give more backlash; the mesh cycle of pressed teeth needs no motion"
         raise InputError.at("pair.backlash", f"{1e6 * pair.backlash:.4g} um", allowed, remedy)
-    force = abs(pair.normal_force(torque))
+    force, backlash = abs(pair.base_tangent_force(torque)), pair.base_tangent_backlash
     amplitudes, phases = (
         np.asarray(harmonics, dtype=np.float64) for harmonics in (error_amplitude, error_phase)
     )
@@ -248,7 +256,7 @@ def pair_oscillator(
         damping_ratio=damping_ratio,
         force=force,
         error_amplitude=error_amplitude,
-        half_backlash=0.5 * max(pair.backlash, 0.0),
+        half_backlash=0.5 * max(backlash, 0.0),
         speed=speed,
         error_phase=_as_given(phases + (0.0 if torque > 0.0 else math.pi)),
     )
@@ -260,7 +268,7 @@ def pair_oscillator(
         force,
         np.atleast_1d(amplitudes),
         np.atleast_1d(phases),
-        pair.backlash,
+        backlash,
         pair_inertias(pair, extra_inertia),
         message=said,
     )
@@ -320,11 +328,6 @@ def pair_scales(
 ) -> dynamics.Scaling:
     """Scales of a pair's oscillator for a mean stiffness [N/m]; arguments as of `pair_oscillator`.
 
-    Raises
-    ------
-    gears.GeometryError
-        Of helical pairs, which move along their axes too.
-
     Examples
     --------
     >>> from gears import Gear, GearPair
@@ -332,13 +335,12 @@ def pair_scales(
     >>> 6e3 < pair_scales(pair, 600.0, 8e8).natural_frequency < 8e3
     True
     """
-    require_spur(pair, "motion")
     return dynamics.Scaling.from_inertias(
         inertias=pair_inertias(pair, extra_inertia),
         base_radii=pair.base_radii,
         mean_stiffness=mean_stiffness,
         cycles_per_revolution=pair.pinion.teeth,
         length=length_scale,
-        force=abs(pair.normal_force(torque)) if length_scale is None else None,
+        force=abs(pair.base_tangent_force(torque)) if length_scale is None else None,
         mean_force=MEAN_FORCE if length_scale is None else None,
     )

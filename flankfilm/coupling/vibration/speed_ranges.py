@@ -62,7 +62,7 @@ def standard_factors(motion: PairOscillator, frequency: Array) -> Array:
     reliefs = [gear.tip_relief.amount for gear in (pair.pinion, pair.wheel) if gear.tip_relief is not None]
     factor = gears.closed_form.iso6336_dynamic(
         pair,
-        motion.force,
+        motion.force / pair.helix.base_cosine,  # normal force
         scales.equivalent_mass,
         scales.speed(1.0) * frequency,
         pitch_deviation=motion.error_range,

@@ -1,4 +1,4 @@
-"""Closed forms of loaded teeth, films on them and motion refuse helical pairs."""
+"""Closed forms, films on them and shafts that bend refuse helical pairs, whatever the model of their stiffness."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ import pytest
 from base import InputError
 from ehl import Lubricant
 from flankfilm import coupling
-from gears import Gear, GearPair
+from gears import Bearing, Gear, GearPair, Shaft, ShaftSegment
 
 PAIR = GearPair(Gear(teeth=24), Gear(teeth=31), 2e-3, 20e-3, helix_angle=math.radians(15.0))
 OIL = Lubricant(viscosity=0.06, pressure_viscosity=22.6e-9, density=910.0)
+SHAFT = Shaft((ShaftSegment(0.2, 0.03),), (Bearing(0.0, 3e8), Bearing(0.2, 3e8)), 0.06, 0.2)
 SERIES = coupling.given_series(4e8, [0.1], [0.0])
 
 ASKED = {
@@ -25,8 +26,7 @@ ASKED = {
     "films": lambda: coupling.lubricated_cycle(
         PAIR, 100.0, 200.0, OIL, model="potential-energy", film=coupling.FilmModel("dowson")
     ),
-    "oscillator": lambda: coupling.pair_oscillator(PAIR, SERIES, 100.0, 200.0),
-    "unloaded error": lambda: coupling.unloaded_error(PAIR),
+    "shafts that bend": lambda: coupling.pair_drive(PAIR, SERIES, 100.0, 200.0, shafts=(None, SHAFT)),
     "closed forms beside": lambda: coupling.compare_closed_forms(PAIR, 100.0),
 }
 
