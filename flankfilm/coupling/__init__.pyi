@@ -1,5 +1,12 @@
+from .drive.mesh_in_space import SpatialMesh as SpatialMesh
+from .drive.mesh_in_space import cell_wrenches as cell_wrenches
+from .drive.mesh_in_space import spatial_mesh as spatial_mesh
 from .drive.pair_drive import PairDrive as PairDrive
 from .drive.pair_drive import pair_drive as pair_drive
+from .drive.pair_in_space import BearingForces as BearingForces
+from .drive.pair_in_space import SpatialPair as SpatialPair
+from .drive.pair_in_space import bearing_stiffness as bearing_stiffness
+from .drive.pair_in_space import spatial_pair as spatial_pair
 from .drive.tilting_mesh import tilting_mesh as tilting_mesh
 from .films.along_path import FilmAlongPath as FilmAlongPath
 from .films.face_films import FaceFilms as FaceFilms
