@@ -1,0 +1,47 @@
+"""Scenes of the motion of helical pairs: what they report is along the transverse line of action, trains that twist."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from flankfilm.runs.run_scene import run_scene
+from flankfilm.scene import parse_scene
+from tests.flankfilm.test_helical_scene import BETA_B, R_B1, SCENE
+
+GIVEN = """
+[stiffness]
+model = "given"
+mean_N_per_m = 7.4e8
+amplitudes = [0.013]
+[dynamics]
+error_amplitude_um = 2
+sweep = { speed_rpm = [5000, 9000], points = 5 }
+"""
+SHAFTS = """
+[shafts.pinion]
+inertia_kg_m2 = 0.02
+coupling_stiffness_Nm_per_rad = 2e4
+"""
+
+
+def text(more: str = "") -> str:
+    scene = SCENE.replace("WANTS", '"sweep"').replace("face_width_mm", "backlash_um = 50\nface_width_mm", 1)
+    return scene + GIVEN + more
+
+
+def test_force_and_backlash_are_those_of_the_section(tmp_path):
+    found = run_scene(parse_scene(text()), tmp_path, use_cache=False)
+    assert not found.failures
+    data = found.dataset
+    assert float(data["oscillator_force"]) == pytest.approx(600 / R_B1, rel=1e-12)
+    assert float(data["oscillator_backlash"]) == pytest.approx(50e-6 / math.cos(BETA_B), rel=1e-9)
+    assert float(data["pair_backlash"]) == pytest.approx(50e-6, rel=1e-9)
+
+
+def test_motor_and_load_twist_with_the_pair(tmp_path):
+    found = run_scene(parse_scene(text(SHAFTS)), tmp_path, use_cache=False)
+    assert not found.failures
+    torque = found.dataset["drive_sweep_shaft_torque_up"]
+    assert float(torque.min()) > 600.0
