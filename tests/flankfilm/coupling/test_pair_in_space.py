@@ -270,6 +270,7 @@ class TestPair:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_of_a_loaded_contact_the_turn_meets_its_tangent_and_its_moments() -> None:
     small = GearPair(Gear(18), Gear(23), module=1e-3, face_width=5e-3, helix_angle=math.radians(18.0))
     cycle = mesh_cycle(small, 8.0, 16, compliance(small, tolerance=0.02), cells=24)
