@@ -40,6 +40,7 @@ from .orbits import basins as basins
 from .orbits import exponents as exponents
 from .orbits import locus as locus
 from .orbits import trajectory as trajectory
+from .plane_of_action import film_line_map as film_line_map
 from .plane_of_action import line_load_map as line_load_map
 from .plane_of_action import lines_of_contact as lines_of_contact
 from .plane_of_action import load_centre as load_centre

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array
+from flankfilm.figures.face import TIMES_LEAST
 from flankfilm.figures.panels import over_path
 from flankfilm.figures.reading import need, read
 from flankfilm.figures.style import colours, from_zero, looks, sheet
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from flankfilm.figures.style import Style
 
 HELICAL = "run a scene whose pair has a helix angle"
+HELICAL_FILM = "run a scene with a film whose pair has a helix angle"
 NAMES = ("length", "position", "mean", "shown_position", "shown_travel", "shown_face")
 
 LEVEL = 1e-9
@@ -106,8 +108,51 @@ def line_load_map(results: xr.Dataset, *, prefix: str = PREFIX, style: Style | N
     return drawn
 
 
-def _paint(axes: Axes, travel: Array, z: Array, values: Array, label: str, half: float) -> None:
-    """Paint cells of lines of all positions, between which values are interpolated; white where flanks stand clear."""
+def film_line_map(results: xr.Dataset, *, prefix: str = "film_lines", style: Style | None = None) -> Figure:
+    """Draw minimum film and Hertz pressure with films over path and face, of all positions together.
+
+    Films of cells that bear little are many times as thick: colours end half as thick again as the smallest. At ends
+    of lines of contact, which the smallest leaves out, films may be thinner.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run with a film whose pair has a helix angle.
+    prefix : str
+        Of the variables of ``flankfilm.coupling.LineFilms``.
+    style : mapping, optional
+        rcParams that overrule the house's; ``image.cmap`` is the scale of colours.
+    """
+    names = ("travel", "z", "minimum_thickness", "hertz_pressure", "least_film")
+    needed = [f"{prefix}_{name}" for name in names]
+    need(results, HELICAL_FILM, *needed, "path_point_rho1")
+    travel, z, film, pressure, least = (read(results, name) for name in needed)
+    half, thin = float(np.nanmax(np.abs(z.values))), float(least.values)
+    most = min(TIMES_LEAST * thin, float(np.nanmax(film.values)))
+    with sheet(style, 2, height=5.2, legend=0) as (drawn, panels):
+        for axes, shown, span in (
+            (panels[0], film.named("minimum film"), (thin, most)),
+            (panels[1], pressure.named("Hertz pressure"), None),
+        ):
+            values = film.values if span is not None else pressure.values
+            _paint(axes, travel.values.ravel(), z.values.ravel(), values.ravel(), shown, half, span)
+        over_path(results, *panels)
+    return drawn
+
+
+def _paint(
+    axes: Axes,
+    travel: Array,
+    z: Array,
+    values: Array,
+    label: str,
+    half: float,
+    span: tuple[float, float] | None = None,
+) -> None:
+    """Paint cells of lines of all positions, between which values are interpolated; white where flanks stand clear.
+
+    Over a span that counts, if there is one.
+    """
     from scipy.interpolate import griddata
 
     known = np.isfinite(values)
@@ -117,12 +162,19 @@ def _paint(axes: Axes, travel: Array, z: Array, values: Array, label: str, half:
     face = np.linspace(-half, half, GRID[1])
     asked = np.stack(np.meshgrid(along / size[0], face / size[1]), axis=-1)
     painted = griddata(places, values[known], asked, method="nearest")
+    low, high = (0.0, None) if span is None else span
     shown = axes.pcolormesh(
-        along, face, np.where(painted > 0.0, painted, np.nan), vmin=0.0, shading="nearest", rasterized=True
+        along,
+        face,
+        np.where(painted > 0.0, painted, np.nan),
+        vmin=low,
+        vmax=high,
+        shading="nearest",
+        rasterized=True,
     )
     figure = axes.get_figure()
     assert figure is not None
-    figure.colorbar(shown, ax=axes, label=label)
+    figure.colorbar(shown, ax=axes, label=label, extend="neither" if span is None else "both")
     axes.grid(visible=False)
     axes.set(ylabel="place on the\nface [mm]", ylim=(-half, half))
 

@@ -52,6 +52,7 @@ _DYNAMICS = {
 _COUPLING = {
     "mesh.mesh_curves:MeshCycle": Picture("stiffness.mesh_cycle", "dry", "cycle"),
     "films.face_films:FaceFilms": Picture(OF_PRODUCT, "film_face", "with_points"),
+    "films.line_films:LineFilms": Picture(OF_PRODUCT, "film_lines", "with_points"),
     "films.along_path:FilmAlongPath": Picture(OF_PRODUCT, "film"),
     "losses.losses_along_path:LossesAlongPath": Picture("heat.heat_along_path", "losses_path"),
     "losses.losses_record:MeshLosses": Picture("heat.heat_along_path", "losses", "losses"),

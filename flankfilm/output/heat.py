@@ -27,6 +27,8 @@ def losses(mesh_losses: MeshLosses) -> Iterator[xr.Dataset]:
     yield of_record("losses_path", mesh_losses.path)
     if mesh_losses.over_face is not None:
         yield of_record("losses_face", mesh_losses.over_face)
+    if mesh_losses.over_lines is not None:
+        yield of_record("losses_lines", mesh_losses.over_lines)
 
 
 def hot_contact(film: ehl.ThermalFilm, bulk: Array) -> Iterator[xr.Dataset]:

@@ -53,6 +53,8 @@ def variables(computed: Computed) -> Iterator[xr.Dataset]:
     yield of_record("film", cycle.film)
     if cycle.over_face is not None:
         yield of_record("film_face", cycle.over_face)
+    if cycle.over_lines is not None:
+        yield of_record("film_lines", cycle.over_lines)
     for name, film in cycle.film.profiles.items():
         prefix = f"film_profile_{name.replace(' ', '_')}"
         yield of_record(prefix, film, THROUGH)
@@ -286,6 +288,11 @@ PRODUCT = Product(
     tables={
         "mesh_cycle_lubricated": CurveTable("lubricated", "position", CYCLE),
         "film_along_path": CurveTable("film", "rho1", axis="point"),
+        "film_on_lines": CurveTable(
+            "film_lines",
+            "minimum_thickness",
+            ("z", "travel", "line_load", "minimum_thickness", "central_thickness", "hertz_pressure"),
+        ),
     },
     headlines=headlines,
     pictures=film_parts.PICTURES,

@@ -233,6 +233,11 @@ PRODUCT = Product(
     variables=variables,
     tables={
         "losses_along_path": CurveTable("losses_path", "rho1", axis="point"),
+        "losses_on_lines": CurveTable(
+            "losses_lines",
+            "sliding_loss",
+            ("z", "travel", "line_load", "friction_coefficient", "sliding_loss", "contact_temperature"),
+        ),
         "losses_by_eyring_stress": CurveTable("losses_band", "eyring_stress", STRESSES),
     },
     headlines=when(LOSSES, lambda lost: ranked(losses_parts.headlines(lost), 2, 2, 3, 1, 1)),

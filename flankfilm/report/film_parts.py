@@ -31,6 +31,7 @@ HELD = {"meniscus": "The meniscus", "oil-layer": "The layer of oil"}
 PICTURES: Pictures = {
     "film_along_path": "film_central_thickness",
     "film_map": "film_face_minimum_thickness",
+    "film_line_map": "film_lines_minimum_thickness",
     "film_shares": ("film_starvation", "film_ratio", "film_asperity_share"),
     "film_profiles": "film_profile",
     "film_changes": "held_tangent_stiffness",
@@ -57,7 +58,7 @@ def film(cycle: LubricatedCycle, results: xr.Dataset, tolerance: float) -> Part:
     return Part(
         "film",
         "Oil film",
-        (verdict, *_over_face(cycle), *_supply(stage), *_mixed(stage)),
+        (verdict, *_over_face(cycle), *_over_lines(cycle), *_supply(stage), *_mixed(stage)),
         pictures(results, PICTURES, **_captions(stage)),
         tables,
         (rounds, "Steady, isothermal, " + ("fully flooded." if stage.supply == "flooded" else "starved.")),
@@ -96,6 +97,21 @@ def _over_face(cycle: LubricatedCycle) -> Iterator[str]:
             table=percent(face_films.table_error),
             zone=number(1e3 * face_films.end_zone, 2),
             side=percent(face_films.side_flow, 2),
+        )
+
+
+def _over_lines(cycle: LubricatedCycle) -> Iterator[str]:
+    """Composition of films on lines of contact, and the effects that they leave out."""
+    films = cycle.over_lines
+    if films is not None:
+        yield said(
+            "film_over_lines",
+            least=number(1e6 * films.least_film),
+            place=number(1e3 * films.least_film_place, 3),
+            films=counted(films.films, "film"),
+            table=percent(films.table_error),
+            zone=number(1e3 * films.end_zone, 2),
+            side=percent(films.side_flow, 2),
         )
 
 

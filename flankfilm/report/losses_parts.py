@@ -40,6 +40,7 @@ def losses(mesh_losses: MeshLosses, results: xr.Dataset, scene: Scene) -> Part:
         "Friction, losses and temperatures",
         (
             _lost(mesh_losses),
+            *((said("losses_on_lines"),) if mesh_losses.over_lines is not None else ()),
             _by_stress(mesh_losses, scene),
             *_rubbing(mesh_losses, scene),
             _warm(mesh_losses, scene),

@@ -26,11 +26,8 @@ __all__ = ["HELIX", "KEYS_OF_SPUR", "WANTS_OF_SPUR", "faults_of_helix", "refuse_
 HELIX = "pair.helix_angle_deg"
 """Key of the helix."""
 
-_FILM = "films along oblique lines"
 
 WANTS_OF_SPUR: Mapping[str, str] = {
-    "film": _FILM,
-    "losses": "friction and heat of films along oblique lines",
     "vtk": "fields of twisted teeth",
 }
 """Wants that only spur pairs have, each with what is missing for a helical one."""
@@ -42,11 +39,6 @@ ANSWERED = tuple(want for want in WANTS if want not in WANTS_OF_SPUR)
 def _anything(value: Any) -> bool:
     """Whether a key is given at all: a number or a text that is not 0, or a table."""
     return isinstance(value, Mapping) or bool(value)
-
-
-def _without_model(film: Any) -> bool:
-    """Whether [film] leaves the model to the tolerance."""
-    return isinstance(film, Mapping) and "model" not in film
 
 
 def _other_than(*words: Any) -> Callable[[Any], bool]:
@@ -120,11 +112,9 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
         "must be false",
         "Give contact_beyond_path = false",
     ),
-    SpurKey("film.model", _FILM, 'must be "none"', 'Take film.model = "none"', _other_than("none")),
-    SpurKey("film", _FILM, 'must be of model = "none"', 'Take film.model = "none"', _without_model),
     SpurKey(
         "dynamics.damping_ratio",
-        _FILM,
+        "damping by films along oblique lines",
         "must be a number",
         "Give a number, such as 0.05",
         lambda value: value == BY_FILM,

@@ -111,7 +111,7 @@ model = "dowson"
 """Friction, losses and temperatures."""
 
 HELICAL = """
-wants = ["geometry", "stiffness"]
+wants = ["geometry", "stiffness", "film"]
 tolerance = 0.02
 [pair]
 module_mm = 1.0
@@ -125,10 +125,14 @@ youngs_modulus_GPa = 206
 poisson_ratio = 0.3
 [operating]
 pinion_torque_Nm = 8
+pinion_speed_rpm = 3000
+[lubricant]
+viscosity_Pa_s = 0.05
+pressure_viscosity_per_GPa = 19
 [film]
-model = "none"
+model = "dowson"
 """
-"""Lines of contact."""
+"""Lines of contact, with films by formula."""
 
 
 @cache
@@ -209,7 +213,7 @@ def face() -> Results:
 
 
 def helical() -> Results:
-    """Sizes of a helical pair, and the load along its lines of contact."""
+    """Sizes of a helical pair, and load and films along its lines of contact."""
     return run(HELICAL)
 
 
@@ -290,6 +294,7 @@ RECORDS: Mapping[str, Callable[[], Any]] = {
     "dynamics.motion.run_ups:RunUp": lambda: dynamics.run_up(OSCILLATOR, (0.5, 0.6), 160),
     "flankfilm.coupling.mesh.mesh_curves:MeshCycle": cycle,
     "flankfilm.coupling.films.face_films:FaceFilms": lambda: face().values["film"].over_face,
+    "flankfilm.coupling.films.line_films:LineFilms": lambda: helical().values["film"].over_lines,
     "flankfilm.coupling.films.along_path:FilmAlongPath": lambda: motion().values["film"].film,
     "flankfilm.coupling.losses.losses_along_path:LossesAlongPath": lambda: losses().values["losses"].path,
     "flankfilm.coupling.losses.losses_record:MeshLosses": of_run(losses, "losses"),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import math
-from contextlib import nullcontext
 from fnmatch import fnmatchcase
 
 import numpy as np
@@ -55,6 +54,13 @@ diagram = { speed_rpm = [4000, 14000] }
 run_up = { speed_rpm = [4000, 14000], seconds = 0.2 }
 """
 ANSWERED = '"geometry", "closed-forms"'
+OIL = """
+[lubricant]
+viscosity_Pa_s = 0.075
+pressure_viscosity_per_GPa = 19.6
+eyring_stress_MPa = 5
+temperature_C = 80
+"""
 
 # by hand: m_n 2, z 36/40, b 40, beta 20 deg, 600 N m
 BETA, ALPHA_N = math.radians(20.0), math.radians(20.0)
@@ -177,6 +183,8 @@ class TestTable:
             text += MOTION
         if want in ("torques", "dynamic-map"):
             text = text.replace("pinion_speed", "torques_Nm = [300, 600]\npinion_speed")
+        if want in ("film", "losses"):
+            text += OIL
         if want not in WANTS_OF_SPUR:
             assert check_scene(parse_scene(text))
             return
@@ -192,11 +200,9 @@ class TestTable:
         ("stiffness.pairs", "independent", True),
         ("stiffness.moving_contact", True, True),
         ("operating.friction", 0.05, False),
-        ("film", {"supply": "flooded"}, False),
         ("heat", {"pinion_temperature_C": 60.0}, False),
         ("stiffness.plane", "stress", False),
         ("stiffness.contact_beyond_path", True, False),
-        ("film.model", "dowson", False),
         ("dynamics.damping_ratio", "film", False),
         ("shafts.wheel.segments", [{"length_mm": 200.0, "diameter_mm": 40.0}], "motion"),
         ("pair.tight", True, False),
@@ -225,11 +231,7 @@ class TestTable:
                 assert "must be" in found[path]
                 assert found[path].endswith("or give pair.helix_angle_deg = 0")
         spur = put(put(raw, HELIX, 0.0), "wants", ["stiffness"])
-        with (
-            pytest.raises(InputError)
-            if path in ("film.model", "shafts.wheel.segments")
-            else nullcontext() as caught
-        ):
+        with pytest.raises(InputError) if path == "shafts.wheel.segments" else nullcontext() as caught:
             validated(spur)
         assert "helical" not in str(caught.value if caught is not None else "")
 
@@ -284,14 +286,23 @@ gear_position_mm = 100
         assert parse_scene(text).face != parse_scene(SCENE.replace("WANTS", '"stiffness"')).face
         assert "shafts" not in face(parse_scene(text.replace("deg = 20", "deg = 0")))
 
+    def test_films_of_every_model_are_taken(self):
+        for film in (
+            'model = "dowson"',
+            'model = "ehl"',
+            'supply = "meniscus"\nmeniscus_mm = 2.0',
+            'model = "none"',
+        ):
+            text = SCENE.replace("WANTS", '"stiffness"') + OIL + f"[film]\n{film}\n"
+            assert check_scene(parse_scene(text)), film
+
     def test_all_at_once_with_status_2_before_anything_is_computed(self, tmp_path):
-        text = SCENE.replace("WANTS", '"stiffness", "film", "vtk"')
+        text = SCENE.replace("WANTS", '"stiffness", "film", "sweep"')
         text += '[stiffness]\nmodel = "weber-banaschek"\nmoving_contact = true\n'
         (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
         for arguments in (("check", "scene.toml"), ("run", "scene.toml", "--out", "out")):
             done = command(*arguments, cwd=tmp_path, status=2)
             for said in (
-                'wants = "film"', 'wants = "vtk"',
                 "stiffness.model = 'weber-banaschek'", "stiffness.moving_contact = true",
             ):  # fmt: skip
                 assert said in done.stderr

@@ -40,7 +40,9 @@ OF_RUNS: dict[str, tuple[Any, ...]] = {
         figures.run_up, figures.waterfall, figures.dynamic_map,
     ),
     "error_curve": (figures.excitation,),
-    "helical": (figures.lines_of_contact, figures.line_load_map, figures.load_centre),
+    "helical": (
+        figures.lines_of_contact, figures.line_load_map, figures.load_centre, figures.film_line_map,
+    ),
 }  # fmt: skip
 """Run, or record, to the functions that are drawn from it."""
 

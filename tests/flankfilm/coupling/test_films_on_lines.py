@@ -249,4 +249,5 @@ def test_a_small_helix_has_the_films_of_the_spur_face():
     assert np.nanmin(lines.minimum_thickness[..., inner]) == pytest.approx(
         np.nanmin(face.minimum_thickness[..., inner]), rel=error
     )
-    assert twisted.secant_stiffness_change == pytest.approx(straight.secant_stiffness_change, rel=0.05)
+    softer = [cycle.secant_stiffness.mean() / cycle.dry.secant_stiffness.mean() - 1.0 for cycle in found]
+    assert softer[1] == pytest.approx(softer[0], rel=0.05)
