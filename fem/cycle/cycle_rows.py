@@ -15,12 +15,20 @@ if TYPE_CHECKING:
 __all__ = ["check_row", "require_row"]
 
 
-def check_row(faults: Faults, cycle: MeshCycle, row: int, *, over_face: bool = False) -> None:
+def check_row(
+    faults: Faults, cycle: MeshCycle, row: int, *, over_face: bool = False, on_lines: bool = False
+) -> None:
     """Note a row that the cycle does not have, that has no finite forces, or with flanks that bear on both sides.
 
-    Of fields over the face also one without cells, of others one with them.
+    Of fields over the face also one without cells, of others one with them; lines of contact are those of a helical
+    pair, which others do not know.
     """
-    check_spur(faults, cycle.pair, "fields and forces on meshes")
+    if not on_lines:
+        check_spur(faults, cycle.pair, "fields and forces on meshes")
+    elif cycle.lines is None:
+        faults.add(
+            "cycle", "of a spur pair", "must have lines of contact", "take face_fields or loaded_fields"
+        )
     last = len(cycle.position) - 1
     known = np.isfinite(
         faults.number("row", row, Limit(0, last, remedy="give a row of the cycle", whole=True))

@@ -53,6 +53,21 @@ class FacePieces:
         functions = np.ix_(*2 * [np.tile(np.arange(count), 2)])
         return Face(count, count, *(table[functions] for table in (whole.mass, whole.mixed, whole.stiffness)))
 
+    def values(self, z: Array) -> Array:
+        """Every function at places on the pieces (places, functions).
+
+        Parameters
+        ----------
+        z : (places,) array
+            [m]
+        """
+        piece = np.clip(np.searchsorted(self.ends, z) - 1, 0, len(self.ends) - 2)
+        local = 2.0 * (z - self.ends[piece]) / np.diff(self.ends)[piece] - 1.0
+        values = np.zeros((len(z), self.functions))
+        columns = ORDER * piece[:, None] + np.arange(ORDER + 1)
+        values[np.arange(len(z))[:, None], columns] = piece_values(local)
+        return values
+
     def means(self, middle: Array, length: float) -> Array:
         """Means of every function over cells (cells, functions), exact; outside the pieces all vanish.
 

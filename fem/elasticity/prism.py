@@ -305,6 +305,56 @@ class Prism:
             moved.append(self.condensed.down(cuts, loads).reshape(nodes, -1, reduced.shape[1]))
         return np.asarray(moved)
 
+    def moved(self, forces: Array, loaded: Sequence[int], teeth: Sequence[int]) -> Array:
+        """Displacements of all nodes of some teeth's sectors by all forces together (teeth, nodes, n).
+
+        Parameters
+        ----------
+        forces : (unknowns, loads) array
+            On the nodes of a sector, such as ``nodal_forces`` [N/m].
+        loaded : sequence of int
+            Tooth of each load, counted anticlockwise.
+        teeth : sequence of int
+            Counted the same way; each in its own tooth's frame.
+        """
+        reduced, on_cuts, _ = self.condensed.up(forces)
+        pull, on_tooth = np.asarray(self.polar.T @ on_cuts), np.array(loaded)
+        moved = []
+        for tooth in teeth:
+            each = [self.links.at_ends(pull[:, [k]], tooth - other) for k, other in enumerate(loaded)]
+            own = reduced[:, (on_tooth - tooth) % self.mesh.teeth == 0].sum(axis=1, keepdims=True)
+            down = self.condensed.down(np.asarray(self.polar @ np.sum(each, axis=0)), own)
+            moved.append(down.reshape(len(self.mesh.points), -1))
+        return np.asarray(moved)
+
+    def nodal_forces(self, at: FlankPoints, amounts: Array) -> Array:
+        """Nodal forces that stand for normal line loads, sums of psi(z), all together (unknowns,).
+
+        Parameters
+        ----------
+        at : FlankPoints
+            Places on tooth 0.
+        amounts : (loads, psi) array
+            Of every function in the load at each place.
+        """
+        direction, along_axis = self._directions(at)
+        at_nodes = at.weights[:, :, None] * amounts[:, None, :]  # (loads, nodes, psi)
+        force = np.zeros((len(self.mesh.points), 2 * self.psi + self.phi))
+        functions = np.arange(self.psi)
+        parts = [(2 * functions, direction[:, 0]), (2 * functions + 1, direction[:, 1])]
+        if self.twist:  # without one nothing, whatever the functions of w
+            parts.append((2 * self.psi + functions, along_axis))
+        for column, component in parts:
+            np.add.at(force, (at.nodes[:, :, None], column), at_nodes * component[:, None, None])
+        return force.ravel()
+
+    def _directions(self, at: FlankPoints) -> tuple[Array, Array]:
+        """Unit normals of a helix' surface: in the section (loads, 2), and along the axis (loads,)."""
+        (x, y), (d_x, d_y) = at.points.T, at.direction.T
+        along_axis = -self.twist * (x * d_y - y * d_x)
+        size = 1.0 / np.sqrt(1.0 + along_axis**2)
+        return size[:, None] * at.direction, size * along_axis
+
     def _nodal(self, at: FlankPoints) -> Array:
         """Nodal forces that stand for unit line loads psi(z) (unknowns, loads psi).
 
@@ -313,18 +363,16 @@ class Prism:
         """
         count, n = len(at.rho), 2 * self.psi + self.phi
         force = np.zeros((n * len(self.mesh.points), count, self.psi))
-        (x, y), (d_x, d_y) = at.points.T, at.direction.T
-        along_axis = -self.twist * (x * d_y - y * d_x)
-        size = 1.0 / np.sqrt(1.0 + along_axis**2)
+        direction, along_axis = self._directions(at)
         load = np.arange(count)[:, None]
         for p in range(self.psi):
             for a in range(2):
                 rows = n * at.nodes + 2 * p + a
-                np.add.at(force[..., p], (rows, load), at.weights * (size * at.direction[:, a])[:, None])
+                np.add.at(force[..., p], (rows, load), at.weights * direction[:, a][:, None])
         # without a twist nothing, whatever the functions of w
         for p in range(min(self.psi, self.phi)):
             rows = n * at.nodes + 2 * self.psi + p
-            np.add.at(force[..., p], (rows, load), at.weights * (size * along_axis)[:, None])
+            np.add.at(force[..., p], (rows, load), at.weights * along_axis[:, None])
         return force.reshape(len(force), -1)
 
 

@@ -15,10 +15,11 @@ from fem.fields.flank_patches import FlankField, FlankPatch, Place, joined
 from fem.fields.loaded_gears import frames
 
 if TYPE_CHECKING:
+    from fem.fields.helix_solids import TwistedGear
     from fem.pair.pair_compliance import PairCompliance
     from gears import GearPair
 
-__all__ = ["FaceField", "ToothField", "face_fields"]
+__all__ = ["FaceField", "ToothField", "face_fields", "tooth_field"]
 
 
 @record
@@ -31,7 +32,8 @@ class ToothField:
     cells: Integers = quantity("1", "points of each wedge, a triangle along the face", "cell corner")
     displacement_m: Array = quantity(
         "m",
-        "elastic displacement of a gear on a hub that stands still, between frictionless walls",
+        "elastic displacement of a gear on a hub that stands still: of a spur gear between frictionless walls, of a "
+        "helical one with free ends",
         "point space",
     )
     tooth: Integers = quantity("1", "tooth, 0 in the pair that entered last, counted anticlockwise", "cell")
@@ -110,13 +112,32 @@ def _face_field(
         patch = FlankPatch.of(pair, cycle, row, column, gear, ready.mesh)
         index = tooth - teeth[0]
         parts.append(patch.placed(stands[index], waves.layers, moved[index], tooth))
-    return FaceField(_solid(ready, waves.layers, moved, stands, teeth, module), joined(parts))
+    return FaceField(tooth_field(ready, waves.layers, moved, stands, teeth, module), joined(parts))
 
 
-def _solid(
-    ready: GearPrisms, z: Array, moved: Array, place: Sequence[Place], teeth: Sequence[int], module: float
+def tooth_field(
+    ready: GearPrisms | TwistedGear,
+    z: Array,
+    moved: Array,
+    place: Sequence[Place],
+    teeth: Sequence[int],
+    module: float,
 ) -> ToothField:
-    """Wedges of all teeth that are drawn, each with separate points."""
+    """Wedges of all teeth that are drawn, each with separate points.
+
+    Parameters
+    ----------
+    ready : GearPrisms or TwistedGear
+    z : (layers,) array
+        [m]
+    moved : (teeth, layers, nodes, 3) array
+        Displacements in the section of each tooth [m].
+    place : sequence of Place
+        Of each tooth.
+    teeth : sequence of int
+    module : float
+        [m]
+    """
     used, triangles = np.unique(ready.triangles, return_inverse=True)
     triangles = triangles.reshape(-1, 3)
     layer = len(used) * np.arange(len(z) - 1)[:, None, None]
@@ -126,6 +147,6 @@ def _solid(
     return ToothField(
         np.concatenate([stand.points(section, z) for stand in place]),
         np.concatenate([wedges + size * i for i in range(len(teeth))]),
-        np.concatenate([stand.vectors(own[:, used]) for stand, own in zip(place, moved, strict=True)]),
+        np.concatenate([stand.vectors(own[:, used], z) for stand, own in zip(place, moved, strict=True)]),
         np.repeat(np.array(teeth), len(wedges)),
     )

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
     from gears import GearPair
 
-__all__ = ["BESIDE", "FaceWaves", "GearPrisms", "gear_prisms", "layers_of", "on_flank"]
+__all__ = ["BESIDE", "FaceWaves", "GearPrisms", "drawn_section", "gear_prisms", "layers_of", "on_flank"]
 
 DEPTH = 2.0
 """Depth below the root circle down to which the body is drawn, in modules."""
@@ -93,19 +93,26 @@ def layers_of(pair: GearPair, cells: int) -> Array:
 
 def _gear_prisms(meshed: MeshedShape) -> GearPrisms:
     over, (_, waves) = section_of(meshed, meshed.sizes, 0), solved_waves()
-    mesh = over.mesh
+    prisms = tuple(prism(over, Face.wave(float(k))) for k in waves)
+    return GearPrisms(over.mesh, prisms, *drawn_section(over.mesh, meshed.shape.profile.root_radius))
+
+
+def drawn_section(mesh: SectorMesh, root_radius: float) -> tuple[Integers, Array]:
+    """What is drawn of a sector: triangles (t, 3), and where its nodes are drawn (nodes, 2) [modules].
+
+    Second-order triangles are divided in four; nodes below a depth are on the circle there, which cuts the body off.
+    """
     a, b, c, ab, bc, ca = mesh.triangles.T
     quarters = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
     triangles = np.concatenate([np.column_stack(part) for part in quarters])
-    depth = meshed.shape.profile.root_radius - DEPTH
+    depth = root_radius - DEPTH
     points = mesh.points * np.maximum(1.0, depth / np.linalg.norm(mesh.points, axis=1))[:, None]
     p, q, r = (points[triangles[:, k]] for k in range(3))
     (ux, uy), (vx, vy) = (q - p).T, (r - p).T
     shown = (ux * vy - uy * vx > SLIVER) & np.any(
         np.linalg.norm(mesh.points[triangles], axis=2) > depth, axis=1
     )
-    prisms = tuple(prism(over, Face.wave(float(k))) for k in waves)
-    return GearPrisms(mesh, prisms, triangles[shown], points)
+    return triangles[shown], points
 
 
 @record

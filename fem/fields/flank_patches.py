@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -22,31 +22,42 @@ from meshes import SectorMesh
 if TYPE_CHECKING:
     from gears import GearPair
 
-__all__ = ["FlankField", "FlankPatch", "Place", "joined"]
+__all__ = ["FlankField", "FlankPatch", "Place", "PointCells", "half_circle", "joined"]
 
 ALONG, ACROSS = 14, 16
 """Strips of a flank from the form circle to the tip, and more of them across a contact."""
 
 
 @record
-class FlankField:
-    """Flanks in mesh of one gear, as strips along the face divided into its cells.
+class PointCells:
+    """Points in space, and cells with numbers of their points."""
+
+    no_error = "not estimated: it is for pictures"
+
+    points: Array = quantity("m", "unloaded position", "point space")
+    cells: Integers = quantity("1", "points of each cell", "cell corner")
+
+
+F = TypeVar("F", bound=PointCells)
+
+
+@record
+class FlankField(PointCells):
+    """Flanks in mesh of one gear, as strips divided into cells: of the face, or of the lines of contact of a helix.
 
     The pressures of the strips over their areas add up to the force of each pair.
     """
 
     no_error = "not estimated: it is for pictures"
 
-    points: Array = quantity("m", "unloaded position", "point space")
-    cells: Integers = quantity("1", "points of each quadrangle", "cell corner")
     displacement_m: Array = quantity("m", "elastic displacement, as of the solid", "point space")
     pressure_Pa: Array = quantity("Pa", "mean pressure over the quadrangle", "cell")
     hertz_pressure_Pa: Array = quantity(
-        "Pa", "maximum Hertz pressure of the cell of the face; nan where no two flanks touch", "cell"
+        "Pa", "maximum Hertz pressure of the cell; nan where no two flanks touch", "cell"
     )
-    line_load_N_per_m: Array = quantity("N/m", "line load of the cell of the face", "cell")
+    line_load_N_per_m: Array = quantity("N/m", "line load of the cell, per length of its line", "cell")
     gap_m: Array = quantity(
-        "m", "gap left under load along the line of action at the cell of the face", "cell"
+        "m", "gap left under load along the normal at the cell; nan beside a line of contact", "cell"
     )
     tooth: Integers = quantity("1", "tooth, 0 in the pair that entered last, counted anticlockwise", "cell")
     pair: Integers = quantity("1", "base pitches ahead of the pair that entered last", "cell")
@@ -57,20 +68,33 @@ class FlankField:
 
 @record
 class Place:
-    """Where a tooth stands."""
+    """Where a tooth stands: angle of its section at mid-face [rad], axis of its gear [m], and turn by z [rad/m]."""
 
     angle: float
     centre: Array
+    twist: float = 0.0
 
     def points(self, plane: Array, z: Array) -> Array:
         """Points (layers n, 3) of a section (n, 2) at layers."""
-        at = turned(plane, self.angle) + self.centre
-        return np.column_stack([np.tile(at, (len(z), 1)), np.repeat(z, len(at))])
+        along = np.repeat(z, len(plane))
+        if self.twist:
+            at = self.each(np.tile(plane, (len(z), 1)), along) + self.centre
+        else:
+            at = np.tile(turned(plane, self.angle) + self.centre, (len(z), 1))
+        return np.column_stack([at, along])
 
-    def vectors(self, own: Array) -> Array:
-        """Vectors (layers, n, 3) of the tooth's frame, one after the other."""
+    def vectors(self, own: Array, z: Array) -> Array:
+        """Vectors (layers, n, 3) of the tooth's section at layers, one after the other."""
         flat = own.reshape(-1, 3)
-        return np.column_stack([turned(flat[:, :2], self.angle), flat[:, 2]])
+        if not self.twist:
+            return np.column_stack([turned(flat[:, :2], self.angle), flat[:, 2]])
+        return np.column_stack([self.each(flat[:, :2], np.repeat(z, own.shape[1])), flat[:, 2]])
+
+    def each(self, vectors: Array, z: Array) -> Array:
+        """Vectors (n, 2) of the tooth's section, each as it is turned at its z."""
+        cosine, sine = np.cos(self.angle + self.twist * z), np.sin(self.angle + self.twist * z)
+        x, y = vectors.T
+        return np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=-1)
 
 
 @record
@@ -107,7 +131,7 @@ class FlankPatch:
             across = middle + half.max() * np.cos(np.pi * np.arange(ACROSS + 1) / ACROSS)
             strips = np.unique(np.clip(np.concatenate([strips, across]), *ends))
         within = np.where(half > 0.0, (strips[:, None] - middle) / np.where(half > 0.0, half, 1.0), 0.0)
-        parts = np.diff(_semicircle(within), axis=0)
+        parts = np.diff(half_circle(within), axis=0)
         parts = np.divide(parts, parts.sum(axis=0), out=np.zeros_like(parts), where=load > 0.0)
         edges = np.linspace(-0.5, 0.5, len(load) + 1) * pair.face_width
         return cls(
@@ -142,7 +166,7 @@ class FlankPatch:
         return FlankField(
             points,
             quads.reshape(-1, 4),
-            place.vectors(between.T.reshape(cells + 1, strips + 1, 3)),
+            place.vectors(between.T.reshape(cells + 1, strips + 1, 3), self.face),
             (self.force / area).T.ravel(),
             each(self.hertz),
             each(self.line_load),
@@ -153,16 +177,18 @@ class FlankPatch:
         )
 
 
-def _semicircle(place: Array) -> Array:
+def half_circle(place: Array) -> Array:
     """Part of the area of a semicircle up to a place, -1 to 1."""
     x = np.clip(place, -1.0, 1.0)
     return np.asarray(0.5 + (x * np.sqrt(1.0 - x**2) + np.arcsin(x)) / np.pi)
 
 
-def joined(parts: Sequence[FlankField]) -> FlankField:
-    """Several flanks as one."""
-    starts = np.cumsum([0, *(len(flank.points) for flank in parts[:-1])])
-    moved = [replace(flank, cells=flank.cells + start) for flank, start in zip(parts, starts, strict=True)]
-    return FlankField(
-        *(np.concatenate([getattr(flank, name.name) for flank in moved]) for name in fields(FlankField))
-    )
+def joined(parts: Sequence[F]) -> F:
+    """Fields of points and cells, such as several flanks, as one."""
+    starts = np.cumsum([0, *(len(part.points) for part in parts[:-1])])
+    moved = [replace(part, cells=part.cells + start) for part, start in zip(parts, starts, strict=True)]
+    together = {
+        field.name: np.concatenate([getattr(part, field.name) for part in moved])
+        for field in fields(parts[0])
+    }
+    return replace(parts[0], **together)

@@ -13,12 +13,14 @@ from base import replacing
 from fem.fields.contact_forces import ContactForces
 from fem.fields.face_fields import FaceField, ToothField
 from fem.fields.flank_patches import FlankField
+from fem.fields.helix_fields import HelixFields
+from fem.fields.helix_flanks import LineField
 from fem.fields.stress_fields import GearField, of_axis
 
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["face_grids", "plane_grids", "rounded", "write_grid"]
+__all__ = ["face_grids", "helix_grids", "plane_grids", "rounded", "write_grid"]
 
 DROPPED = 12
 """Bits of the mantissa that fields but the displacement lose: 12 significant ones stay (2.5e-4 of the value), which is
@@ -80,6 +82,25 @@ def face_grids(pinion: FaceField, wheel: FaceField) -> dict[str, pyvista.Unstruc
     return teeth | {
         f"{name}_flanks": _flanks(field.flanks, i) for i, (name, field) in enumerate(gears.items())
     }
+
+
+def helix_grids(fields: HelixFields) -> dict[str, pyvista.UnstructuredGrid]:
+    """Grids of both gears and of the lines of contact by the names of their blocks."""
+    return face_grids(fields.pinion, fields.wheel) | {"lines": _lines(fields.lines)}
+
+
+def _lines(field: LineField) -> pyvista.UnstructuredGrid:
+    import pyvista
+
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.LINE: field.cells}, field.points)
+    for name, values in of_axis(field, "cell").items():
+        whole = np.issubdtype(values.dtype, np.integer)
+        # forces keep all their digits, so that they add up to the torque's
+        stored = values if name == "force_N" else single_precision(values)
+        grid.cell_data[name] = values.astype(np.int16) if whole else stored
+    grid.GetCellData().SetActiveScalars("line_load_N_per_m")
+    grid.GetCellData().SetActiveVectors("force_N")
+    return grid
 
 
 def _teeth(field: ToothField, gear: int) -> pyvista.UnstructuredGrid:

@@ -15,8 +15,10 @@ from fem.fields.contact_forces import contact_forces
 from fem.fields.drawing import GearDrawing
 from fem.fields.face_fields import face_fields
 from fem.fields.face_waves import GearPrisms, gear_prisms
-from fem.fields.grids import face_grids, plane_grids, write_grid
-from fem.fields.paraview_state import fillet_stress, write_paraview_state
+from fem.fields.grids import face_grids, helix_grids, plane_grids, write_grid
+from fem.fields.helix_fields import helix_fields
+from fem.fields.helix_solids import TwistedGear, twisted_gears
+from fem.fields.paraview_state import fillet_stress, write_lines_state, write_paraview_state
 from fem.fields.stress_fields import draw_gears, loaded_fields
 from fem.pair.compliance import compliance as _compliance
 from fem.pair.pair_compliance import PairCompliance
@@ -32,7 +34,7 @@ PICTURE_REFINEMENTS = 1
 """Refinements of the mesh that is drawn: fields need no more, and files stay small."""
 
 Frame = tuple[dict[str, "pyvista.UnstructuredGrid"], tuple[float, ...]]
-"""Blocks of a position, and the stress of fillets [Pa] that the colours of a series follow."""
+"""Blocks of a position, and stresses of fillets or pressures [Pa] that the colours of a series follow."""
 
 
 def field_blocks(
@@ -56,6 +58,8 @@ def field_blocks(
         once for each gear. Fields are in single precision. Of a cycle with cells of the face ``pinion`` and ``wheel``
         are wedges of the teeth in mesh with their displacement, in single precision; ``pinion_flanks`` and
         ``wheel_flanks`` quadrangles whose ``pressure_Pa`` times their area adds up to the forces, in double precision.
+        Of a helical pair the teeth are twisted, and ``lines`` are the lines of contact, a segment a cell, once for each
+        gear, with vectors ``force_N``.
 
     Examples
     --------
@@ -69,7 +73,9 @@ def field_blocks(
     """
     import pyvista
 
-    if cycle.face is None:
+    if cycle.lines is not None:
+        grids, _ = _helix_frame(pair, cycle, row, compliance)
+    elif cycle.face is None:
         grids, _ = _plane_frame(pair, cycle, row, compliance, drawings)
     else:
         grids, _ = _face_frame(pair, cycle, row, compliance)
@@ -92,7 +98,7 @@ def write_vtk_series(
     ----------
     folder : Path
         Gets the ``.pvd``, a folder ``vtk``, and ``paraview_state.py``, which opens the series in ParaView with the mesh
-        in view and colours up to the stress of the fillets.
+        in view and colours up to the stress of the fillets, of a helical pair up to its Hertz pressure.
     pair : gears.GearPair
     cycle : MeshCycle
     bodies : PairCompliance
@@ -110,25 +116,29 @@ def write_vtk_series(
     folder = Path(folder)
     rows = range(len(cycle.position)) if positions is None else positions
     frame: Callable[..., Frame]
-    if cycle.face is None:
+    state: Callable[[Path, GearPair, MeshCycle, Sequence[int], Sequence[float]], Path] = write_paraview_state
+    if cycle.lines is not None:
+        frame = partial(_helix_frame, solids=twisted_gears(bodies, cycle.lines.slope))
+        state = write_lines_state
+    elif cycle.face is None:
         drawings = draw_gears(pair, bodies, min(bodies.refinements, PICTURE_REFINEMENTS))
         frame = partial(_plane_frame, drawings=drawings)
     else:
         frame = partial(_face_frame, prisms=gear_prisms(bodies))
-    stresses: list[float] = []
+    colours: list[float] = []
     steps: list[tuple[float, dict[str, Path]]] = []
     for done, row in enumerate(rows):
         files = {}
-        grids, of_fillets = frame(pair, cycle, row, bodies)
-        stresses.extend(of_fillets)
+        grids, largest = frame(pair, cycle, row, bodies)
+        colours.extend(largest)
         for name, grid in grids.items():
             files[name] = folder / "vtk" / f"{name}_{row:04d}.vtu"
             write_grid(files[name], grid)
         steps.append((float(cycle.position[row]), files))
         if progress is not None:
             progress(done + 1, len(rows))
-    if stresses:
-        write_paraview_state(folder, pair, cycle, rows, stresses)
+    if colours:
+        state(folder, pair, cycle, rows, colours)
     return _write_series(folder / "mesh_cycle.pvd", steps)
 
 
@@ -155,6 +165,19 @@ def _face_frame(
     """Blocks of a cycle with cells of the face, which have no stress."""
     ready = bodies or _compliance(pair, plane=cycle.plane)
     return face_grids(*face_fields(pair, cycle, row, ready, prisms)), ()
+
+
+def _helix_frame(
+    pair: GearPair,
+    cycle: MeshCycle,
+    row: int,
+    bodies: PairCompliance | None,
+    solids: tuple[TwistedGear, TwistedGear] | None = None,
+) -> Frame:
+    """Blocks of a cycle of a helical pair, and the maximum Hertz pressure."""
+    ready = bodies or _compliance(pair, plane=cycle.plane)
+    fields = helix_fields(pair, cycle, row, ready, solids)
+    return helix_grids(fields), (float(fields.lines.hertz_pressure_Pa.max()),)
 
 
 def _write_series(path: Path, steps: Sequence[tuple[float, Mapping[str, Path]]]) -> Path:

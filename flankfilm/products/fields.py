@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flankfilm.building.face import varies_by
 from flankfilm.figures.reading import Pictures
 from flankfilm.output import drawing_data as drawn
 from flankfilm.output.variables import of_quantities
@@ -17,7 +16,7 @@ from flankfilm.report.text import number
 from flankfilm.scene import Scene
 from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Stage
-from flankfilm.stages.mesh import FIELDS, MESH, PAIR
+from flankfilm.stages.mesh import FIELDS, MESH, PAIR, along_the_face
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,9 +27,9 @@ PICTURES: Pictures = {"tooth_stress": "field_von_mises"}
 
 
 def goals(scene: Scene, wants: Set[str]) -> Iterator[Stage[Any]]:
-    """Fields at the pitch point; of a load that varies along the face the files alone."""
+    """Fields at the pitch point; of a load that varies along the face, and of helical pairs, the files alone."""
     if "vtk" in wants:
-        yield MESH if varies_by(scene) else FIELDS
+        yield MESH if along_the_face(scene) else FIELDS
 
 
 def variables(computed: Computed) -> Iterator[xr.Dataset]:

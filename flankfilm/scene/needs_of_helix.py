@@ -28,7 +28,6 @@ HELIX = "pair.helix_angle_deg"
 
 
 WANTS_OF_SPUR: Mapping[str, str] = {
-    "vtk": "fields of twisted teeth",
 }
 """Wants that only spur pairs have, each with what is missing for a helical one."""
 

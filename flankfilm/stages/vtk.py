@@ -40,7 +40,7 @@ def even_rows(positions: int, steps: int = STEPS) -> range:
 def write_fields(folder: Path, run: Engine, progress: Progress = silent) -> list[Path]:
     """Write the mesh cycle for ParaView; return the ``.pvd`` that names all its files, and the state that opens it.
 
-    Fields over the face have no state.
+    Fields over the face of a spur pair have no state.
     """
     from fem.fields.paraview_state import STATE
     from fem.fields.vtk import write_vtk_series

@@ -13,9 +13,11 @@ from flankfilm import figures
 from flankfilm.runs.check import check_scene
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
+from flankfilm.scene.needs_of_helix import WANTS_OF_SPUR
 from tests.flankfilm.test_helical_scene import SCENE
 
 TEXT = SCENE.replace("WANTS", '"geometry", "closed-forms"')
+REFUSED = next(iter(WANTS_OF_SPUR))
 
 
 def answered(angle: float, width: float = 40.0, torque: float = 600.0):
@@ -45,7 +47,7 @@ def test_beyond_the_range_the_range_is_named(angle):
 
 
 def test_beyond_the_range_with_wants_of_spur_pairs_both_are_named():
-    text = TEXT.replace("deg = 20", "deg = 50").replace('"geometry"', '"vtk"')
+    text = TEXT.replace("deg = 20", "deg = 50").replace('"geometry"', f'"{REFUSED}"')
     with pytest.raises(InputError) as caught:
         parse_scene(text)
     assert {fault.where for fault in caught.value.faults} >= {"pair.helix_angle_deg", "wants"}
@@ -59,7 +61,7 @@ def test_a_helix_of_a_nanodegree_is_the_spur_pair_but_for_its_name():
     length = slight["contact_lines_length"].values
     assert {round(1e3 * value, 6) for value in length[[50, 180]]} == {80.0, 40.0}  # two pairs, then one
     with pytest.raises(InputError, match="wants"):
-        check_scene(parse_scene(TEXT.replace("deg = 20", "deg = 1e-9").replace('"geometry"', '"vtk"')))
+        check_scene(parse_scene(TEXT.replace("deg = 20", "deg = 1e-9").replace('"geometry"', f'"{REFUSED}"')))
 
 
 @pytest.mark.parametrize("overlap", [0.01, 1.0, 3.0, 40.0])
