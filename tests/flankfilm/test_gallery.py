@@ -13,7 +13,7 @@ from tests.example_scripts import FOLDER, example
 
 DOCS = FOLDER.parent / "docs"
 NAMES = sorted(path.stem for path in (FOLDER / "gallery").glob("*.py") if path.stem != "page")
-QUICK = {"closed_forms", "starved_film"}
+QUICK, LONG = {"closed_forms", "starved_film"}, {"whole_overlap"}
 NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
@@ -55,7 +55,13 @@ def test_a_number_that_has_changed_is_seen():
 
 
 def entry(name: str) -> Any:
-    return name if name in QUICK else pytest.param(name, marks=pytest.mark.slow)
+    if name in QUICK:
+        return name
+    # seven face widths from nothing, whose time is that of free ends
+    marks = (
+        [pytest.mark.slow, pytest.mark.long, pytest.mark.timeout(3600)] if name in LONG else pytest.mark.slow
+    )
+    return pytest.param(name, marks=marks)
 
 
 @pytest.mark.filterwarnings("ignore:.*:UserWarning:distributed")
