@@ -76,7 +76,7 @@ class HelixHarmonics:
 
     def helix(self, load: Array, point: Array) -> Array:
         """Length l of a helix through the flank for a unit of z, in the mean between two places (...)."""
-        return np.asarray(np.sqrt(1.0 + self.twist**2 * (self.base_radius**2 + load * point)))
+        return _helix(self.base_radius, self.twist, load * point)
 
     @property
     def mirrored(self) -> HelixHarmonics:
@@ -111,13 +111,18 @@ class HelixHarmonics:
         return _half_space(self.base_radius, self.twist, load, point, wavenumber)
 
 
+def _helix(base_radius: float, twist: float, place: Array) -> Array:
+    """Length l of a helix through the flank for a unit of z, by the product of curvature radii (...)."""
+    return np.asarray(np.sqrt(1.0 + twist**2 * (base_radius**2 + place)))
+
+
 def _half_space(base_radius: float, twist: float, load: Array, point: Array, wavenumber: Array) -> Array:
     """What S has of a half-space (..., waves), complex."""
     with unclocked():
         from scipy.special import k0
 
     place = load * point
-    helix = np.sqrt(1.0 + twist**2 * (base_radius**2 + place))
+    helix = _helix(base_radius, twist, place)
     along_profile = (load**2 - point**2) / (2.0 * base_radius)
     shift = twist * np.sqrt(place) * along_profile / helix**2
     across = np.abs(along_profile) * np.sqrt(1.0 + (twist * base_radius) ** 2) / helix**2
@@ -182,7 +187,7 @@ def _at_the_load(over: Section, at: FlankPoints, by_nodes: Array) -> Array:
     """
     straight = prism(section(over.mesh, over.law), Face.wave(0.0)).influence(at, 0)[0][:, 0, 0]
     radius, twist = over.mesh.base_radius, over.twist
-    helix = np.sqrt(1.0 + twist**2 * (radius**2 + at.rho**2))
+    helix = _helix(radius, twist, at.rho**2)
     shorter = np.sqrt(1.0 + (twist * radius) ** 2) / helix**2
     return np.asarray(by_nodes + (2.0 / np.pi * np.log(shorter) - straight) / helix)
 
