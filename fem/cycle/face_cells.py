@@ -9,9 +9,13 @@ from base import Array, part, quantity, record
 from base.results import EXACT
 
 if TYPE_CHECKING:
+    from fem.contact.shared_contacts import SharedContacts
+    from fem.laws.mesh_setup import MeshSetup
     from gears import GearPair
 
-__all__ = ["IN_SINGLE_CELLS", "FaceCells"]
+__all__ = ["HERTZ", "IN_SINGLE_CELLS", "FaceCells", "of_cells"]
+
+HERTZ = "not estimated: Hertz's law of the cell's line load, whose error is not known in single cells"
 
 IN_SINGLE_CELLS = "not estimated cell by cell; the face-load factor of the cycle has an error"
 
@@ -46,3 +50,23 @@ class FaceCells:
     def cells(self) -> dict[str, Any]:
         """These alone, as keyword arguments of another record of the same cells."""
         return {field.name: getattr(self, field.name) for field in fields(FaceCells)}
+
+
+def of_cells(setup: MeshSetup, contacts: SharedContacts, number: int, plane: str) -> dict[str, Any]:
+    """What records of line loads have in common, over the face and over lines of contact, as keyword arguments.
+
+    Parameters
+    ----------
+    setup : MeshSetup
+    contacts : SharedContacts
+    number : int
+        Of the torque.
+    plane : {"strain", "stress"}
+    """
+    return {
+        "pair": setup.pair,
+        "setting": setup.face,
+        "plane": plane,
+        "error": float(contacts.errors.factor[number]),
+        "line_load_error": float(contacts.errors.line_load[number]),
+    }

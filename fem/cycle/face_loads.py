@@ -10,7 +10,7 @@ import numpy as np
 from base import Array, Booleans, described, part, quantity, record
 from base.results import EXACT
 from fem.contact.cell_laws import face_load_factors
-from fem.cycle.face_cells import IN_SINGLE_CELLS, FaceCells
+from fem.cycle.face_cells import HERTZ, IN_SINGLE_CELLS, FaceCells, of_cells
 from fem.cycle.shaft_figures import shaft_figures
 from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.pair.face_setting import FaceSetting
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from fem.laws.mesh_setup import MeshSetup
 
 __all__ = ["FaceLoads", "face_loads"]
-
-HERTZ = "not estimated: Hertz's law of the cell's line load, whose error is not known in single cells"
 
 OF_BOTH = "off by matrix_error of the root of stiffness times tilt stiffness: it passes through zero itself"
 
@@ -194,14 +192,10 @@ def face_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         face_position=setup.face.middles(pair.face_width),
         travel=np.tile(travel, (setup.pitches, 1)),
         line_load=forces * cells / pair.face_width,
-        pair=pair,
         face_load_factor=factors,
-        setting=setup.face,
-        plane=plane,
         curvature_radius=np.tile(radius, (setup.pitches, 1)),
         gap=np.maximum(over.remaining_gaps[number], 0.0).reshape(forces.shape),
-        error=float(over.errors.factor[number]),
-        line_load_error=float(over.errors.line_load[number]),
+        **of_cells(setup, over, number, plane),
         **_shafts(setup, over, number),
     )
 

@@ -9,6 +9,7 @@ import numpy as np
 from base import Array, InputError, described, part, quantity, record
 from base.results import EXACT, ITSELF
 from fem.contact.line_contact import WINDOW
+from fem.cycle.face_cells import HERTZ, of_cells
 from fem.cycle.line_cells import IN_SINGLE_CELLS, CellsOfLines
 from fem.cycle.shaft_figures import shaft_figures
 from fem.elasticity.plane_elasticity import reduced_modulus
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
     from fem.laws.mesh_setup import MeshSetup
 
 __all__ = ["LineLoads", "line_loads"]
-
-HERTZ = "not estimated: Hertz's law of the cell's line load, whose error is not known in single cells"
 
 BY_CENTRE = "off by centre_error: it passes through zero"
 
@@ -225,28 +224,24 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
     length = np.where(lines.touches, cells.length, 0.0) / pair.helix.base_cosine
     per_length = forces / np.where(length > 0.0, length, 1.0)[..., None]
 
-    def of_cells(values: Array) -> Array:
+    def of_used(values: Array) -> Array:
         known = np.where(cells.used, values, np.nan)
         known = known if known.ndim == forces.ndim else np.tile(known, (pitches, 1, 1, 1))
         return known.reshape(-1, *known.shape[2:])
 
     largest = cells.largest_mean(forces, WINDOW * pair.module * pair.helix.base_cosine)
-
+    fewer = forces if over.fewer is None else over.fewer[number]
     return LineLoads(
         position=contact.candidates.position,
-        z=of_cells(cells.z),
-        travel=of_cells(cells.rho[0] - pair.points.A),
+        z=of_used(cells.z),
+        travel=of_used(cells.rho[0] - pair.points.A),
         length=np.tile(length, (pitches, 1)),
-        line_load=of_cells(per_length),
-        gap=of_cells(np.maximum(over.remaining_gaps[number], 0.0)),
+        line_load=of_used(per_length),
+        gap=of_used(np.maximum(over.remaining_gaps[number], 0.0)),
         most_loaded=largest.reshape(-1, largest.shape[-1]) * pair.helix.base_cosine,
-        pair=pair,
-        setting=setup.face,
-        fewer=forces if over.fewer is None else over.fewer[number][0],
+        fewer=fewer.reshape(-1, *fewer.shape[2:]),
         slope=lines.slope,
-        plane=plane,
-        error=float(over.errors.factor[number]),
-        line_load_error=float(over.errors.line_load[number]),
         centre_error=float(over.errors.centre[number]),
+        **of_cells(setup, over, number, plane),
         **shaft_figures(setup, over, number),
     )
