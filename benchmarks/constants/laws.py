@@ -60,7 +60,7 @@ LAWS: Mapping[str, str] = {
 
 SHAPES: Mapping[str, str] = {
     "dynamics.attraction.basins.UNDECIDED": "a label",
-    "fem.contact.partial_cells.WITHIN": "degree of a table whose formulas stand beside it",
+    "fem.contact.cell_laws.WITHIN": "degree of a table whose formulas stand beside it",
     "fem.influence.fillet_waves.SHEAR": "an index",
     "fem.stress.root_peaks.OTHER": "an index",
     "fem.influence.tip_strips.RATIO": "laws by strips count on it",

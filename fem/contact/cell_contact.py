@@ -11,10 +11,17 @@ import numpy as np
 
 from base import Array, Integers, record
 from fem.contact.cell_coupling import CellCoupling
-from fem.contact.cell_laws import CellLaws, between_middles, face_load_factors, greatest_error
+from fem.contact.cell_laws import (
+    WITHIN,
+    CellLaws,
+    between_middles,
+    face_load_factors,
+    gap_drops,
+    greatest_error,
+    partial_cells,
+)
 from fem.contact.cell_matrix import cell_coupling, cross_coupling
 from fem.contact.contact_sides import ContactSides
-from fem.contact.partial_cells import WITHIN, gap_drops, partial_cells
 from fem.elasticity.flamant import hertz_half_width
 from fem.pair.face_shafts import HeldShafts, ShaftsUnderFace, shafts_under_face
 from fem.pair.line_shafts import ShaftsUnderLines

@@ -16,9 +16,8 @@ import numpy as np
 from base import Array, Integers, record
 from fem.contact.cell_contact import CellContact, CellShare
 from fem.contact.cell_coupling import CellCoupling
-from fem.contact.cell_laws import LineFilmLaw
+from fem.contact.cell_laws import WITHIN, LineFilmLaw, drops_within
 from fem.contact.cell_matrix import coupled_by, kept_unless_large
-from fem.contact.partial_cells import WITHIN, drops_within
 from fem.elasticity.flamant import hertz_half_width
 from fem.laws.contact_candidates import SEEN_ALONG, line_gaps
 from fem.laws.local_law import FilmLaw, PairLaws

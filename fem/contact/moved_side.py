@@ -9,14 +9,13 @@ import numpy as np
 
 from base import Array, record
 from fem.contact.cell_contact import along_cells
-from fem.contact.cell_laws import CellLaws
+from fem.contact.cell_laws import CellLaws, PartialCells, partial_cells
 from fem.contact.cell_matrix import cell_coupling
 from fem.contact.loaded_flanks import LoadedFlanks
 from fem.contact.moving_contact import ContactMoves, contact_moves, moved_places
 from fem.contact.moving_contacts import MovingContacts
 from fem.contact.moving_corners import MovedFlanks, moved_flanks
 from fem.contact.moving_coupling import cell_roll, other_pairs, tooth_smoothing
-from fem.contact.partial_cells import PartialCells, partial_cells
 from fem.laws.local_law import PairLaws
 from fem.laws.mesh_setup import MeshSetup
 from gears.sharing.load_coupling import Coupling, DenseCoupling
