@@ -1,4 +1,4 @@
-"""First calls in a fresh process: imports and compilation, with kernels kept on disk and with none.
+"""First calls in a fresh process, with kernels kept on disk and with none; what another process prints.
 
 Run as ``python -m flankfilm.bench.first_call SOLVER``; prints the processor time of both calls as JSON.
 """
@@ -7,14 +7,20 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import nan
+from pathlib import Path
 from time import process_time
+from typing import Any
 
-from flankfilm.bench.process import output_of
 from flankfilm.processes.worker_processes import module, python
+
+LONGEST = 300.0
+"""Seconds after which a process is stopped."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +91,20 @@ def _main(solver: str) -> None:
         seconds.append(process_time() - began)
         began = process_time()
     print(json.dumps(seconds))
+
+
+def output_of(command: Sequence[str], longest: float = LONGEST, **how: Any) -> list[str] | str:
+    """Lines that a command prints, or the reason why it failed; `how` are further arguments of `subprocess.run`."""
+    how |= {"capture_output": True, "text": True, "timeout": longest, "check": False}
+    try:
+        done: subprocess.CompletedProcess[str] = subprocess.run(command, **how)
+    except subprocess.TimeoutExpired:
+        return f"took longer than {longest:g} s"
+    except OSError as error:
+        return f"{Path(command[0]).name} does not run: {error.strerror or error}"
+    if done.returncode:
+        return (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
+    return done.stdout.splitlines()
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from flankfilm.bench.case import Case, PeerWork, Value, true_error, value
-from flankfilm.bench.process import LONGEST, output_of
+from flankfilm.bench.first_call import LONGEST, output_of
 
 MAIN = Path(__file__).parents[2] / "benchmarks" / "peers" / "main.py"
 """Runs a peer; in a checkout alone."""

@@ -13,7 +13,7 @@ from .face import face_load_factor as face_load_factor
 from .face import film_map as film_map
 from .face import flank_map as flank_map
 from .face import line_load_models as line_load_models
-from .face_roots import root_face_map as root_face_map
+from .face import root_face_map as root_face_map
 from .film import film_along_path as film_along_path
 from .film import film_changes as film_changes
 from .film import film_families as film_families

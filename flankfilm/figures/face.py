@@ -1,4 +1,4 @@
-"""What the face bears: flank maps over path and face, and the face-load factor."""
+"""What the face bears: flank maps over path and face, the face-load factor, and root stress over the face."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 from base import Array
 from flankfilm.figures.panels import curves as family
 from flankfilm.figures.panels import over_path, over_two_pitches
-from flankfilm.figures.reading import Reading, need, read
-from flankfilm.figures.style import Style, from_zero, sheet
+from flankfilm.figures.reading import GEARS, Reading, need, read
+from flankfilm.figures.style import Style, colours, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,6 +29,13 @@ MAPS = ("line_load", "hertz_pressure")
 
 TIMES_LEAST = 1.5
 """How many times the minimum film colours resolve."""
+
+ROOTS = 'run a scene that wants "root-stress" and whose pair has a lead or an alignment'
+
+FEW = 0.2
+"""Part of the maximum tension below which an instant of a tooth is left out at both ends of its way."""
+
+OF_ROOTS = ("travel", "face_position", "tension", "cycle_tension")
 
 
 @dataclass(frozen=True)
@@ -200,3 +207,38 @@ def _thin(film: Reading) -> tuple[float, float]:
     """Span of the films that count: from the smallest to some times as much, if there are any so thick."""
     least, most = float(np.nanmin(film.values)), float(np.nanmax(film.values))
     return least, min(TIMES_LEAST * least, most)
+
+
+def root_face_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw the maximum tension at the roots over the way of a tooth and the face, and that of a cycle over the face.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``root-stress`` and whose pair has a lead or an alignment, or of one gear's record.
+    style : mapping, optional
+        rcParams that overrule the house's; ``image.cmap`` is the scale of colours.
+    """
+    gears = {gear: f"root_face_{gear}" for gear in GEARS}
+    if "root_face_tension" in results:
+        gears = {"root": "root_face"}
+    names = {gear: [f"{prefix}_{name}" for name in OF_ROOTS] for gear, prefix in gears.items()}
+    need(results, ROOTS, *(name for of_gear in names.values() for name in of_gear))
+    rows = 1 + len(gears)
+    with sheet(style, rows, height=2.27 * rows, legend=0, sharex=False) as (drawn, panels):
+        for axes, gear, colour in zip(panels, gears, colours(2), strict=False):
+            travel, face, tension, most = (read(results, name) for name in names[gear])
+            _paint(axes, gear, travel, face, tension)
+            panels[-1].plot(face.values, most.values, color=colour, label=gear)
+        panels[-1].set(xlabel="place on the face [mm]", ylabel=f"maximum of a\ncycle [{most.unit}]")
+        from_zero(panels[-1])
+        legend_over(panels[-1], 2)
+    return drawn
+
+
+def _paint(axes: Axes, what: str, travel: Reading, face: Reading, tension: Reading) -> None:
+    """Paint a map with its scale of colours, as long as the tooth is stressed."""
+    bears = tension.values.max(axis=-1, keepdims=True) > FEW * tension.values.max()
+    shown = Reading(np.where(bears, tension.values, 0.0), f"tension, {what}", tension.unit)
+    FlankMap.of(travel, face, shown).paint(axes)
+    axes.set_xlabel("base pitches since the tooth's pair passed A [-]")

@@ -83,7 +83,7 @@ PICTURES: Mapping[str, Picture] = {
     "fem.cycle.face_loads:FaceLoads": Picture("face.flank_map", "dry_face", "with_points"),
     "fem.cycle.line_loads:LineLoads": Picture("plane_of_action.load_centre", "dry_lines", "with_points"),
     "fem.stress.tooth_root:RootStress": Picture("gear.root_stress", "root", "passages"),
-    "fem.stress.gear_root:FaceRootStress": Picture("face_roots.root_face_map", "root_face"),
+    "fem.stress.gear_root:FaceRootStress": Picture("face.root_face_map", "root_face"),
     "ehl.films.film:Film": Picture("curves.curves", "contact_film", "contact_film"),
     "ehl.films.mixed_film:MixedFilm": Picture("curves.curves", "contact_film", "mixed"),
     "ehl.films.mixed_thermal:MixedThermalFilm": Picture("curves.curves", "contact_film", "mixed"),
