@@ -178,7 +178,12 @@ class MeshSetup:
                 faults.add(f"tip_rounding[{k}]", f"{rounding.radius:g} m", most, "round the tip less")
                 fits = False
         start, end = self.ends
-        if fits and not self.beyond_path and end - start < self.pair.base_pitch:
+        covered = end - start + self.pair.overlap_ratio * self.pair.base_pitch
+        if self.helical and not self.beyond_path and covered < self.pair.base_pitch:
+            ratio = f"{covered / self.pair.base_pitch:.4g} in all"
+            remedy = "widen the face, or give more teeth or higher ones"
+            faults.add("pair.total_contact_ratio", ratio, "must be above 1: a line must always touch", remedy)
+        elif fits and not self.beyond_path and not self.helical and end - start < self.pair.base_pitch:
             remedy = "round the tips less, or let tip edges touch"
             faults.add("tip_rounding", self.tip_rounding, "must leave a contact ratio above 1", remedy)
 

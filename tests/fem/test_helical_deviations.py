@@ -29,7 +29,9 @@ def _pitch(values: np.ndarray) -> GearDeviations:
     return GearDeviations(pitch=PitchDeviations(tuple(values.tolist())))
 
 
-def _touch(deviations, pitches: int, back: bool = False) -> np.ndarray:
+def _touch(
+    deviations: tuple[GearDeviations | None, GearDeviations | None], pitches: int, back: bool = False
+) -> np.ndarray:
     face = face_setting(SMALL, None, 16, "free-ends")
     assert face is not None
     setup = MeshSetup(SMALL, 5, False, deviations, pitches, face=face, back=back)
@@ -115,13 +117,14 @@ def test_a_profile_of_each_tooth_is_that_of_all_where_they_are_alike(bodies: Pai
     rho = np.array([low, high - relief.length, high])
     trace = ProfileDeviation(tuple(rho.tolist()), (0.0, 0.0, -relief.amount), "linear")
     each = (trace,) * 18
-    arguments = {"cells": 16, "pitches": 2}
     one, many = (
-        mesh_cycle(SMALL, TORQUE, 5, bodies, deviations=(GearDeviations(profile=p), None), **arguments)
+        mesh_cycle(
+            SMALL, TORQUE, 5, bodies, deviations=(GearDeviations(profile=p), None), cells=16, pitches=2
+        )
         for p in (trace, each)
     )
     np.testing.assert_allclose(many.forces, one.forces, rtol=1e-9)
-    by_relief = mesh_cycle(relieved, TORQUE, 5, replace(bodies, pair=relieved), **arguments)
+    by_relief = mesh_cycle(relieved, TORQUE, 5, replace(bodies, pair=relieved), cells=16, pitches=2)
     np.testing.assert_allclose(one.transmission_error, by_relief.transmission_error, rtol=1e-6)
 
 

@@ -191,11 +191,11 @@ def test_bearings_hold_the_mesh_forces(bodies: PairCompliance) -> None:
 @pytest.mark.slow
 def test_the_other_hand_on_shafts_in_the_mirror(bodies: PairCompliance) -> None:
     left = replace(SMALL, helix_angle=-SMALL.helix_angle)
-    turned = tuple(
+    first, second = (
         replace(shaft, gear_position=0.06 - shaft.gear_position, torque_position=0.06) for shaft in BOTH
     )
     right = mesh_cycle(SMALL, TORQUE, 6, bodies, cells=16, shafts=BOTH)
-    other = mesh_cycle(left, TORQUE, 6, compliance(left, tolerance=0.02), cells=16, shafts=turned)
+    other = mesh_cycle(left, TORQUE, 6, compliance(left, tolerance=0.02), cells=16, shafts=(first, second))
     np.testing.assert_allclose(other.transmission_error, right.transmission_error, rtol=2e-3)
     np.testing.assert_allclose(other.stiffness, right.stiffness, rtol=4e-3)
     # the couple of the axial force counts: the same shafts under the other hand give way otherwise
