@@ -1,8 +1,7 @@
-"""What a scene cannot want, nor give, of a helical pair: one table, of which a row goes when its model takes a helix.
+"""What a scene cannot give of a helical pair: one table, of which a row goes when its model takes a helix.
 
-`WANTS_OF_SPUR` lists wants. `KEYS_OF_SPUR` lists keys, each with the wants beside which it is refused: any, those of
-loaded teeth, or those of motion. Everything else of a helical pair is answered: sizes, inspection, lines
-of contact, forces of the mesh, loaded contact, motion that turns alone, stiffness and stresses by ISO 6336.
+Helical pairs have every want. `KEYS_OF_SPUR` lists keys, each with the wants beside which it is refused: any, those of
+loaded teeth, or those of motion.
 """
 
 from __future__ import annotations
@@ -21,18 +20,10 @@ from flankfilm.scene.wants import MOTIONS, UNLOADED, WANTS
 if TYPE_CHECKING:
     from flankfilm.scene.schema import Scene
 
-__all__ = ["HELIX", "KEYS_OF_SPUR", "WANTS_OF_SPUR", "faults_of_helix", "refuse_helix", "wants_load"]
+__all__ = ["HELIX", "KEYS_OF_SPUR", "faults_of_helix", "refuse_helix", "wants_load"]
 
 HELIX = "pair.helix_angle_deg"
 """Key of the helix."""
-
-
-WANTS_OF_SPUR: Mapping[str, str] = {
-}
-"""Wants that only spur pairs have, each with what is missing for a helical one."""
-
-ANSWERED = tuple(want for want in WANTS if want not in WANTS_OF_SPUR)
-"""Wants that helical pairs have."""
 
 
 def _anything(value: Any) -> bool:
@@ -138,12 +129,6 @@ def faults_of_helix(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault]
     if not angle:
         return
     lacking = f"at {HELIX} = {angle:g}: helical pairs have no"
-    answered = ", ".join(f'"{want}"' for want in ANSWERED)
-    refused = [want for want in WANTS if want in listed and want in WANTS_OF_SPUR]
-    for missing in dict.fromkeys(WANTS_OF_SPUR[want] for want in refused):
-        value = ", ".join(f'"{want}"' for want in refused if WANTS_OF_SPUR[want] == missing)
-        allowed = f"must be any of {answered} {lacking} {missing}"
-        yield Fault("wants", value, allowed, f"Leave it out of wants, or give {HELIX} = 0")
     for path, value, row in _given(raw):
         if row.beside & listed and row.refuses(value):
             remedy = f"{row.remedy}, or give {HELIX} = 0"
@@ -192,5 +177,4 @@ def refuse_helix(scene: Scene, what: str) -> None:
     """
     if scene.pair is not None and scene.pair.helical:
         value = f"{scene.pair.helix_angle_deg:g}"
-        remedy = f"Give {HELIX} = 0; of a helical pair there are {', '.join(ANSWERED)}"
-        raise InputError.at(HELIX, value, f"must be 0 for {what}, made for spur pairs", remedy)
+        raise InputError.at(HELIX, value, f"must be 0 for {what}, made for spur pairs", f"Give {HELIX} = 0")

@@ -14,7 +14,6 @@ from flankfilm.exchange.bring_in import imported
 from flankfilm.exchange.rexs_sections import Sections
 from flankfilm.exchange.rexs_write import rexs_file, rexs_text
 from flankfilm.scene import parse_scene
-from flankfilm.scene.needs_of_helix import WANTS_OF_SPUR
 from gears import BasicRack, Gear, GearPair
 from tests.flankfilm.program import command
 from tests.flankfilm.test_exchange_rexs import OLD, brought, refused
@@ -221,6 +220,6 @@ def test_the_commands_bring_it_out_and_in(tmp_path):
     back = parse_scene((tmp_path / "back.toml").read_text(encoding="utf-8"))
     assert back.pair is not None
     assert back.pair.helix_angle_deg == pytest.approx(-20.0, rel=1e-14)
-    want, missing = next(iter(WANTS_OF_SPUR.items()))
-    with pytest.raises(InputError, match=missing):
-        parse_scene((tmp_path / "back.toml").read_text(encoding="utf-8").replace('"geometry"', f'"{want}"'))
+    pressed = (tmp_path / "back.toml").read_text(encoding="utf-8").replace('"geometry"', '"stiffness"')
+    with pytest.raises(InputError, match="twisted teeth that bear on both sides"):
+        parse_scene(pressed.replace("helix_angle_deg", "tight = true\nhelix_angle_deg"))

@@ -13,11 +13,12 @@ from flankfilm import figures
 from flankfilm.runs.check import check_scene
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
-from flankfilm.scene.needs_of_helix import WANTS_OF_SPUR
 from tests.flankfilm.test_helical_scene import SCENE
 
 TEXT = SCENE.replace("WANTS", '"geometry", "closed-forms"')
-REFUSED = next(iter(WANTS_OF_SPUR))
+PRESSED = TEXT.replace('"geometry"', '"stiffness"').replace(
+    "helix_angle_deg", "tight = true\nhelix_angle_deg"
+)
 
 
 def answered(angle: float, width: float = 40.0, torque: float = 600.0):
@@ -46,11 +47,10 @@ def test_beyond_the_range_the_range_is_named(angle):
     assert "at least -45 and at most 45 deg" in fault.allowed
 
 
-def test_beyond_the_range_with_wants_of_spur_pairs_both_are_named():
-    text = TEXT.replace("deg = 20", "deg = 50").replace('"geometry"', f'"{REFUSED}"')
+def test_beyond_the_range_with_keys_of_spur_pairs_both_are_named():
     with pytest.raises(InputError) as caught:
-        parse_scene(text)
-    assert {fault.where for fault in caught.value.faults} >= {"pair.helix_angle_deg", "wants"}
+        parse_scene(PRESSED.replace("deg = 20", "deg = 50"))
+    assert {fault.where for fault in caught.value.faults} >= {"pair.helix_angle_deg", "pair.tight"}
 
 
 def test_a_helix_of_a_nanodegree_is_the_spur_pair_but_for_its_name():
@@ -60,8 +60,8 @@ def test_a_helix_of_a_nanodegree_is_the_spur_pair_but_for_its_name():
     assert slight["iso6336_2_stresses"].values == pytest.approx(spur["iso6336_2_stresses"].values, rel=1e-9)
     length = slight["contact_lines_length"].values
     assert {round(1e3 * value, 6) for value in length[[50, 180]]} == {80.0, 40.0}  # two pairs, then one
-    with pytest.raises(InputError, match="wants"):
-        check_scene(parse_scene(TEXT.replace("deg = 20", "deg = 1e-9").replace('"geometry"', f'"{REFUSED}"')))
+    with pytest.raises(InputError, match="tight"):
+        check_scene(parse_scene(PRESSED.replace("deg = 20", "deg = 1e-9")))
 
 
 @pytest.mark.parametrize("overlap", [0.01, 1.0, 3.0, 40.0])
