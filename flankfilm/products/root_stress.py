@@ -187,8 +187,9 @@ def headlines(stage: coupling.RootStresses) -> list[Headline]:
     if stage.iso is not None:
         note = f"ISO 6336-3 nominal {of_both(stage.iso.stresses)}"
     name = "maximum root stress, pinion and wheel"
-    model = max(uncertainty(stage.stress, f"{gear}_tension_Pa").model or 0.0 for gear in ("pinion", "wheel"))
-    return [Headline(name, values, note, largest[0].unit, Uncertainty(stage.error, model))]
+    model = [uncertainty(stage.stress, f"{gear}_tension_Pa").model for gear in ("pinion", "wheel")]
+    known = max((error for error in model if error is not None), default=None)
+    return [Headline(name, values, note, largest[0].unit, Uncertainty(stage.error, known))]
 
 
 def _of_fillets(value: fem.Fillets | fem.LineFillets, computed: Computed) -> Work:

@@ -62,12 +62,15 @@ def of_all_lines(path: LossesAlongPath, lines: LineLosses, cycle: MeshCycle) -> 
     """
     pair, cells, positions = lines.pair, cells_of(cycle), lines.position.size
     count = parts_of_path(pair, positions)
-    there = part_of_path(pair, cells.rho1[cells.bear], count)
+    edges = np.linspace(pair.points.A, pair.points.E, count + 1)
     shown = part_of_path(pair, path.rho1, count)
+    # a cell covers a stretch of the path, and its power is even over that
+    half = 0.5 * pair.helix.base_sine * cells.length[cells.bear]
+    place = cells.rho1[cells.bear]
+    passed = np.clip((edges[:, None] - (place - half)) / np.maximum(2.0 * half, 1e-12 * edges[-1]), 0.0, 1.0)
 
     def along(loss: Array) -> Array:
-        power = (loss * cells.length)[cells.bear]
-        summed = np.bincount(there, power, count) / positions
+        summed = np.diff(passed @ (loss * cells.length)[cells.bear]) / positions
         return np.asarray((summed * count / pair.contact_ratio)[shown])
 
     return replace(path, sliding_loss=along(lines.sliding_loss), rolling_loss=along(lines.rolling_loss))
