@@ -114,7 +114,7 @@ class LineContact(CellContact):
             cells.rho.reshape(2, *flat),
             cells.used.reshape(flat),
             length.reshape(flat),
-            gaps.reshape(-1, *flat),
+            gaps.reshape(-1, len(cells.z), cells.z[0].size),
         )
 
     def films(self, face: FaceSetting) -> JointLaw | None:

@@ -64,7 +64,7 @@ def test_what_figures_declare_is_there(place):
     for name, figure in figures(cls).items():
         for unit in {figure.unit, figure.shown} - {""}:
             atoms = re.split(r"[ /()]+", re.sub(r"(?<=[a-z])\d", "", unit))
-            assert {*atoms} <= {*FACTORS, "J", ""}, (name, unit)
+            assert {*atoms} <= {*FACTORS, "J", "s^0.5", ""}, (name, unit)
         assert len(figure.meaning) > 2 or figure.meaning.isalnum(), name
         assert all(axis.isidentifier() or axis == "..." for axis in figure.dims), (name, figure.dims)
         if figure.error:

@@ -116,6 +116,11 @@ def spatial_mesh(cycle: fem.MeshCycle) -> SpatialMesh:
     ------
     InputError
         Of a cycle without lines of contact.
+
+    Examples
+    --------
+    >>> from flankfilm.coupling import spatial_mesh
+    >>> mesh = spatial_mesh(fem.mesh_cycle(pair, 600.0, 16))  # doctest: +SKIP
     """
     lines = cycle.lines
     with Faults() as faults:

@@ -51,7 +51,7 @@ def bearing_stiffness(bearings: Sequence[tuple[float, float, float]]) -> Array:
     --------
     >>> held = bearing_stiffness([(-0.1, 2e8, 1e8), (0.1, 2e8, 0.0)])
     >>> held[0, 0], held[2, 2], round(held[3, 3]), held[5, 5]
-    (np.float64(400000000.0), np.float64(100000000.0), 4000000, np.float64(0.0))
+    (400000000.0, 100000000.0, 4000000, 0.0)
     """
     total = np.zeros((6, 6))
     with Faults() as faults:
@@ -231,6 +231,13 @@ def spatial_pair(
     ------
     InputError
         With every fault of the arguments.
+
+    Examples
+    --------
+    >>> from flankfilm.coupling import bearing_stiffness, spatial_mesh, spatial_pair
+    >>> held = bearing_stiffness([(-0.05, 2e8, 1e8), (0.05, 2e8, 0.0)])
+    >>> pair = spatial_pair(spatial_mesh(cycle), (held, held))  # doctest: +SKIP
+    >>> pair.natural_frequencies()  # doctest: +SKIP
     """
     pair = mesh.pair
     with Faults() as faults:

@@ -187,7 +187,8 @@ class TestFilms:
 @pytest.mark.long
 class TestLosses:
     @pytest.fixture(scope="class")
-    def lost(self, bodies) -> coupling.MeshLosses:
+    @classmethod
+    def lost(cls, bodies) -> coupling.MeshLosses:
         return coupling.mesh_losses(
             PAIR, TORQUE, SPEED, OIL, tolerance=0.05, positions=8, compliance=bodies, flanks=HELD
         )
