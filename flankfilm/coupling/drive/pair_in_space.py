@@ -237,7 +237,7 @@ def spatial_pair(
     >>> from flankfilm.coupling import bearing_stiffness, spatial_mesh, spatial_pair
     >>> held = bearing_stiffness([(-0.05, 2e8, 1e8), (0.05, 2e8, 0.0)])
     >>> pair = spatial_pair(spatial_mesh(cycle), (held, held))  # doctest: +SKIP
-    >>> pair.natural_frequencies()  # doctest: +SKIP
+    >>> pair.natural_frequencies  # doctest: +SKIP
     """
     pair = mesh.pair
     with Faults() as faults:
