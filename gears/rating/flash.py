@@ -58,7 +58,7 @@ def flash_temperature(
     In units of the standard (N, mm, m/s, K):
 
         theta_fl = mu X_M X_G (X_Gamma w)^0.75 v^0.5/a^0.25
-        X_G = 0.51 X_alphabeta sqrt(u + 1) |sqrt(rho_1) - sqrt(rho_2/u)|/(rho_1 rho_2)^0.25
+        X_G = 0.51 X_alphabeta sqrt(u + 1) abs(sqrt(rho_1) - sqrt(rho_2/u))/(rho_1 rho_2)^0.25
 
     At E with X_Gamma = 1 it is the flash temperature theta_flaE of the integral method, whose constants a listing
     confirms.

@@ -52,7 +52,7 @@ def misalignment(
 
     With F_m/b in N/mm, b and d_1 in mm and f_sh in um,
 
-        f_sh = F_m/b 0.023 (|1 + shaft - 0.3| + 0.3) (b/d_1)^2,   f_ma = sqrt(f_Hbeta1^2 + f_Hbeta2^2)
+        f_sh = F_m/b 0.023 (abs(1 + shaft - 0.3) + 0.3) (b/d_1)^2,   f_ma = sqrt(f_Hbeta1^2 + f_Hbeta2^2)
         F_bx = 1.33 B_1 f_sh + B_2 f_ma,   F_by = F_bx - (y_beta1 + y_beta2)/2
 
     Parameters
