@@ -149,7 +149,7 @@ def mesh_cycle(
     >>> round(cycle.mean_stiffness / 40e-3 / 1e9, 1)  # N/(mm um)
     24.3
     """
-    tip_edges = pair.helix_angle == 0.0 if beyond_path is None else beyond_path
+    tip_edges = bool(pair.helix_angle == 0.0) if beyond_path is None else beyond_path
     setup = MeshSetup(
         pair,
         positions,

@@ -69,3 +69,11 @@ def test_the_shape_is_that_of_either_hand():
     )
     assert first == second
     assert first[0].profile.base_radius == pytest.approx(HELICAL.base_radii[0] / 2e-3, rel=1e-11)
+
+
+@pytest.mark.parametrize("degrees", [0.0, 20.0])
+def test_angles_of_numpy_are_angles(degrees):
+    pair = GearPair(*GEARS, 2e-3, 20e-3, helix_angle=np.radians(degrees))
+    with pytest.raises(InputError) as refusal:
+        fem.mesh_cycle(pair, torque=100.0, positions=0)
+    assert [fault.where for fault in refusal.value.faults] == ["positions"]
