@@ -136,8 +136,8 @@ def faults_of_helix(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault]
 
 
 def _shown(value: Any) -> str:
-    """Value as a file has it; nothing of a section."""
-    if isinstance(value, Mapping):
+    """Value as a file has it; nothing of a section, nor of several in a list."""
+    if isinstance(value, Mapping | list | tuple):
         return ""
     return str(value).lower() if isinstance(value, bool) else shorten(value)
 

@@ -7,7 +7,7 @@ import warnings
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
@@ -115,6 +115,7 @@ def judged(raw: dict[str, Any]) -> bool:
 
 @settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
 @given(scenes())
+@example({"wants": ["sweep"], **put(put(WHOLE, "pair.helix_angle_deg", 15.0), "shafts", {"pinion": STEPS})})
 def test_check_and_run_refuse_the_same_scenes_with_the_same_faults(raw: dict[str, Any]):
     judged(raw)
 
