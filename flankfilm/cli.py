@@ -152,10 +152,10 @@ def verify(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
 def warm_up() -> int:
     """Compile now, on all cores, what would be compiled when it is first used."""
     _prepare()
-    from flankfilm.studies.executors import default_workers
+    from flankfilm.processes.worker_processes import cores
     from flankfilm.warm_up import warm_up as compile_all
 
-    compile_all(default_workers(), lambda part: print(printable(str(part)), flush=True))
+    compile_all(cores(), lambda part: print(printable(str(part)), flush=True))
     return 0
 
 

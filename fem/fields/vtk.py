@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
-from base import replacing
+from base import record, replacing
 from fem.cycle.result import MeshCycle
 from fem.fields.contact_forces import contact_forces
 from fem.fields.drawing import GearDrawing
@@ -28,13 +28,29 @@ if TYPE_CHECKING:
 
     from gears import GearPair
 
-__all__ = ["field_blocks", "write_vtk_series"]
+__all__ = ["Frames", "field_blocks", "write_frames", "write_series", "write_vtk_series"]
 
 PICTURE_REFINEMENTS = 1
 """Refinements of the mesh that is drawn: fields need no more, and files stay small."""
 
 Frame = tuple[dict[str, "pyvista.UnstructuredGrid"], tuple[float, ...]]
 """Blocks of a position, and stresses of fillets or pressures [Pa] that the colours of a series follow."""
+
+
+@record
+class Frames:
+    """Files of some positions of a series.
+
+    Attributes
+    ----------
+    steps : tuple
+        Of each position its place in base pitches from A, and its files by the names of their blocks.
+    colours : tuple of float
+        Stresses of fillets or pressures that the colours of the series follow [Pa].
+    """
+
+    steps: tuple[tuple[float, dict[str, Path]], ...]
+    colours: tuple[float, ...]
 
 
 def field_blocks(
@@ -115,11 +131,26 @@ def write_vtk_series(
     """
     folder = Path(folder)
     rows = range(len(cycle.position)) if positions is None else positions
+    return write_series(
+        folder, pair, cycle, rows, [write_frames(folder, pair, cycle, bodies, rows, progress)]
+    )
+
+
+def write_frames(
+    folder: Path,
+    pair: GearPair,
+    cycle: MeshCycle,
+    bodies: PairCompliance,
+    rows: Sequence[int],
+    progress: Callable[[int, int], None] | None = None,
+) -> Frames:
+    """Write the files of some positions of a series; arguments as of `write_vtk_series`.
+
+    Positions do not depend on each other, so that several processes can share a series.
+    """
     frame: Callable[..., Frame]
-    state: Callable[[Path, GearPair, MeshCycle, Sequence[int], Sequence[float]], Path] = write_paraview_state
     if cycle.lines is not None:
         frame = partial(_helix_frame, solids=twisted_gears(bodies, cycle.lines.slope))
-        state = write_lines_state
     elif cycle.face is None:
         drawings = draw_gears(pair, bodies, min(bodies.refinements, PICTURE_REFINEMENTS))
         frame = partial(_plane_frame, drawings=drawings)
@@ -137,9 +168,18 @@ def write_vtk_series(
         steps.append((float(cycle.position[row]), files))
         if progress is not None:
             progress(done + 1, len(rows))
+    return Frames(tuple(steps), tuple(colours))
+
+
+def write_series(
+    folder: Path, pair: GearPair, cycle: MeshCycle, rows: Sequence[int], parts: Sequence[Frames]
+) -> Path:
+    """Write ``mesh_cycle.pvd`` over the files of all `rows`, and the state of ParaView; return the ``.pvd``."""
+    colours = [value for part in parts for value in part.colours]
     if colours:
+        state = write_lines_state if cycle.lines is not None else write_paraview_state
         state(folder, pair, cycle, rows, colours)
-    return _write_series(folder / "mesh_cycle.pvd", steps)
+    return _write_series(folder / "mesh_cycle.pvd", [step for part in parts for step in part.steps])
 
 
 def _plane_frame(

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from flankfilm.files.cache import LIBRARIES
-from flankfilm.studies.executors import THREADS, default_workers
+from flankfilm.processes.worker_processes import cores
+from flankfilm.studies.executors import THREADS
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ def this_machine() -> Machine:
     """Describe the machine that this process runs on."""
     return Machine(
         _processor(),
-        default_workers(),
+        cores(),
         _memory(),
         f"{platform.system()}, {platform.machine()}",
         f"{platform.python_implementation()} {platform.python_version()}",

@@ -59,6 +59,11 @@ class Ended(BaseException):
         self.signal = number
 
 
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def python(*arguments: str) -> list[str]:
     """Command that starts this interpreter without the current folder among the places that it imports from."""
     return [sys.executable, "-P", *arguments]

@@ -6,6 +6,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -44,9 +45,9 @@ class Drawing:
     function: str = ""
     redraw: Callable[[], str] | None = None
 
-    @property
+    @cached_property
     def narrow(self) -> str:
-        """The figure for a phone; empty where it has no other one."""
+        """The figure for a phone, drawn once; empty where it has no other one."""
         return "" if self.redraw is None else self.redraw()
 
 
@@ -138,6 +139,12 @@ class Part:
     code: str = ""
     seen: int = 1
     unfolded: bool = False
+
+    def drawn(self) -> Part:
+        """Draw what is seen at once for a phone too; of the rest there is the wide picture alone."""
+        for figure in self.figures[: self.seen]:
+            figure.narrow  # noqa: B018 - kept by the figure
+        return self
 
     @property
     def folded(self) -> str:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flankfilm.products.catalogue import PRODUCTS
 from flankfilm.report import pair_parts, run_parts
-from flankfilm.report.page import Fact, Head, Headline, write_page
+from flankfilm.report.page import Fact, Head, Headline, Part, write_page
 from flankfilm.report.text import counted, percent, seconds
 
 if TYPE_CHECKING:
@@ -68,12 +69,26 @@ def _line(headline: Headline) -> str:
     return f"{headline.name}: {headline.with_unit}{note}"
 
 
-def write_report(results: Results, folder: Path) -> Path:
-    """Write ``report.html`` into a folder and return its path."""
+def sections(results: Results) -> tuple[Part, ...]:
+    """Parts of the report that show results, their pictures drawn: the longest work of a report."""
+    each = (product.sections(results.computed, results.dataset) for product in PRODUCTS)
+    return tuple(part.drawn() for parts in each for part in parts)
+
+
+def write_report(results: Results, folder: Path, shown: Sequence[Part] | None = None) -> Path:
+    """Write ``report.html`` into a folder and return its path.
+
+    Parameters
+    ----------
+    results : Results
+    folder : Path
+    shown : sequence of Part, optional
+        Of `sections`, where they are at hand.
+    """
     scene, warned = results.scene, run_parts.warnings(results, misses(results))
     parts = [
         *run_parts.failures(results),
-        *(part for product in PRODUCTS for part in product.sections(results.computed, results.dataset)),
+        *(sections(results) if shown is None else shown),
         run_parts.costs(results, [_work(name, results) for name in results.runs]),
         *run_parts.decisions(results, warned),
         run_parts.inputs(_asked(scene), results.dataset.attrs["versions_json"]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,6 +14,7 @@ from flankfilm.files.cache import results_cache
 from flankfilm.files.folder import occupied
 from flankfilm.outcome.outcome import Outcome, concluded
 from flankfilm.outcome.results import Results
+from flankfilm.processes.assistant import Assistant, assistant
 from flankfilm.processes.exit_status import PART_FAILED
 from flankfilm.processes.progress import Progress, silent
 from flankfilm.runs.begin import begin
@@ -22,10 +24,18 @@ from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.failures import lines as failure_lines
 from flankfilm.stages.mesh import FIELDS
-from flankfilm.stages.vtk import write_fields
+from flankfilm.stages.vtk import FieldFiles, begin_fields
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from flankfilm.report.page import Part
+
+LOADED = ("fem.fields.vtk", "pyvista", "flankfilm.runs.dataset")
+"""What an assistant loads while the scene is computed. Fields for ParaView alone are worth a process."""
+
+FILES = "vtk files", "fields for ParaView"
+"""Name and title of their part of the costs."""
 
 PREPARATIONS = {"plan", "heat"}
 """Stages that no want is for: what they give is no result of a run whose other parts failed."""
@@ -40,6 +50,8 @@ class RunOutcome(Outcome[Results]):
     engine : Engine
         That has the results.
     progress : callable
+    helper : Assistant
+        With which files are written beside each other.
     """
 
     data = "results.nc"
@@ -48,6 +60,7 @@ class RunOutcome(Outcome[Results]):
 
     engine: Engine = field(kw_only=True)
     progress: Progress = field(kw_only=True)
+    helper: Assistant = field(kw_only=True)
 
     @property
     def dataset(self) -> xr.Dataset:
@@ -75,19 +88,25 @@ class RunOutcome(Outcome[Results]):
         """Write the data, and a table for each curve."""
         return write_data(folder, self.dataset)
 
-    def page(self, folder: Path) -> Path:
-        """Write the report."""
+    def page(self, folder: Path, shown: Sequence[Part] | None = None) -> Path:
+        """Write the report, of sections that are drawn already where they are given."""
         from flankfilm.runs.report import write_report
 
-        return write_report(self.result, folder)
+        return write_report(self.result, folder, shown)
 
     def written(self, folder: Path) -> RunOutcome:
-        """Write all that the scene wants; fields that cannot be written are a part that failed, which the data say."""
-        results, engine, began = self.result, self.engine, time.perf_counter()
+        """Write all that the scene wants; fields that cannot be written are a part that failed, which the data say.
+
+        The assistant begins with the fields and goes on with the data, while the report's pictures are drawn here.
+        """
+        results, engine, began, wants = self.result, self.engine, time.perf_counter(), self.result.scene.wants
+        fields = self._begun(folder) if "vtk" in wants else None
+        data = self.helper.submit(write_data, folder, self.dataset)
+        shown = self._drawn() if "report" in wants else ()
         self.progress("netCDF and CSV files", 1, 1)
-        files = engine.timed("data files", "netCDF and CSV files", lambda: self.tables(folder))
-        if "vtk" in results.scene.wants:
-            files += _fields(folder, engine, self.progress)
+        files = engine.timed("data files", "netCDF and CSV files", lambda: self.helper.result(data))
+        if fields is not None:
+            files += self._fields(fields)
         if len(engine.failures) > len(results.failures):
             results = replace(results, failures=tuple(engine.failures.values()))
             results = replace(results, dataset=results.dataset.assign_attrs(not_computed(results.failures)))
@@ -96,10 +115,30 @@ class RunOutcome(Outcome[Results]):
         outcome = replace(
             self, result=replace(results, folder=folder, files=tuple(files), seconds=seconds), folder=folder
         )
-        if "report" in results.scene.wants:
-            self.progress("writing the report", 1, 1)
-            files.append(outcome.page(folder))
+        if "report" in wants:
+            files.append(outcome.page(folder, shown))
         return replace(outcome, files=tuple(files))
+
+    def _drawn(self) -> tuple[Part, ...]:
+        """Sections of the report with their pictures."""
+        from flankfilm.runs.report import sections
+
+        self.progress("writing the report", 1, 1)
+        return sections(self.result)
+
+    def _begun(self, folder: Path) -> FieldFiles | None:
+        """Begin with the files for ParaView; None where fields failed, which the engine notes."""
+        if FIELDS.name in self.engine.failures:
+            return None
+        with suppress(InputError, SolverError):
+            return self.engine.timed(*FILES, lambda: begin_fields(folder, self.engine, self.helper))
+        return None
+
+    def _fields(self, begun: FieldFiles) -> list[Path]:
+        """Files for ParaView; none where they cannot be written, which the engine notes."""
+        with suppress(InputError, SolverError):
+            return self.engine.timed(*FILES, lambda: begun.written(self.helper, self.progress))
+        return []
 
 
 def run_outcome(
@@ -107,8 +146,9 @@ def run_outcome(
 ) -> RunOutcome:
     """Compute what a scene wants and write it where there is a folder; arguments and faults as of `run_scene`."""
     start = time.perf_counter()
-    with occupied(folder, RunOutcome.data, RunOutcome.folders):
-        outcome = concluded(_computed(scene, use_cache, progress), folder)
+    shared = LOADED if folder is not None and "vtk" in scene.wants else ()
+    with occupied(folder, RunOutcome.data, RunOutcome.folders), assistant(shared) as helper:
+        outcome = concluded(_computed(scene, use_cache, progress, helper), folder)
     results = replace(
         outcome.result, files=outcome.files, others=outcome.others, seconds=time.perf_counter() - start
     )
@@ -146,19 +186,7 @@ def run_scene(
     return run_outcome(scene, folder, use_cache=use_cache, progress=progress).result
 
 
-def _fields(folder: Path, engine: Engine, progress: Progress) -> list[Path]:
-    """Files for ParaView; none where the fields failed, which the engine notes."""
-    if FIELDS.name in engine.failures:
-        return []
-    try:
-        return engine.timed(
-            "vtk files", "fields for ParaView", lambda: write_fields(folder, engine, progress)
-        )
-    except (InputError, SolverError):
-        return []
-
-
-def _computed(scene: Scene, use_cache: bool, progress: Progress) -> RunOutcome:
+def _computed(scene: Scene, use_cache: bool, progress: Progress, helper: Assistant) -> RunOutcome:
     """Results without files."""
     start = time.perf_counter()
     engine, wanted = begin(scene, results_cache(use_cache), progress)
@@ -175,4 +203,4 @@ def _computed(scene: Scene, use_cache: bool, progress: Progress) -> RunOutcome:
     dataset = results_dataset(Computed(scene, values, failures))
     seconds = time.perf_counter() - start
     results = Results(scene, None, values, engine.runs, (), seconds, dataset, failures=failures)
-    return RunOutcome(results, engine=engine, progress=progress)
+    return RunOutcome(results, engine=engine, progress=progress, helper=helper)

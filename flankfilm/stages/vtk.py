@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from flankfilm.processes.assistant import Assistant, Task
 from flankfilm.processes.progress import Progress, silent
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import COMPLIANCE, PAIR, loaded_contact
 
+if TYPE_CHECKING:
+    from fem.cycle.result import MeshCycle
+    from fem.fields.vtk import Frames
+    from gears import GearPair
+
 STEPS = 20
 """Positions of the time series: enough for a smooth film of one base pitch."""
+
+PART = 4
+"""Positions that are written in one go: few enough to share the work evenly."""
 
 
 def even_rows(positions: int, steps: int = STEPS) -> range:
@@ -37,22 +49,57 @@ def even_rows(positions: int, steps: int = STEPS) -> range:
     return range(stride // 2, positions, stride)
 
 
-def write_fields(folder: Path, run: Engine, progress: Progress = silent) -> list[Path]:
-    """Write the mesh cycle for ParaView; return the ``.pvd`` that names all its files, and the state that opens it.
+@dataclass(frozen=True, eq=False)
+class FieldFiles:
+    """Files for ParaView that are being written.
 
-    Fields over the face of a spur pair have no state.
+    Attributes
+    ----------
+    folder, pair, cycle, rows
+        As of `fem.fields.vtk.write_series`.
+    parts : tuple of Task
+        Each writes some of the rows.
     """
-    from fem.fields.paraview_state import STATE
-    from fem.fields.vtk import write_vtk_series
 
-    cycle = loaded_contact(run)
+    folder: Path
+    pair: GearPair
+    cycle: MeshCycle
+    rows: Sequence[int]
+    parts: tuple[Task[Frames], ...]
+
+    def written(self, helper: Assistant, progress: Progress = silent) -> list[Path]:
+        """Wait for them; return the ``.pvd`` that names them all, and the state of ParaView that opens it.
+
+        Fields over the face of a spur pair have no state.
+        """
+        from fem.fields.paraview_state import STATE
+        from fem.fields.vtk import write_series
+
+        frames = []
+        for done, part in enumerate(self.parts, start=1):
+            frames.append(helper.result(part))
+            progress("fields for ParaView", done, len(self.parts))
+        series = write_series(self.folder, self.pair, self.cycle, self.rows, frames)
+        return [series, series.with_name(STATE)] if self.cycle.face is None else [series]
+
+
+def begin_fields(folder: Path, run: Engine, helper: Assistant) -> FieldFiles:
+    """Give the mesh cycle to be written for ParaView, in parts that two processes can share.
+
+    Solids of gears over the face are factorised for all rows, so that one process writes them.
+    """
+    from fem.fields.vtk import write_frames
+
+    pair, cycle, bodies = run[PAIR], loaded_contact(run), run[COMPLIANCE]
     rows = even_rows(len(cycle.position))
-    series = write_vtk_series(
-        folder,
-        run[PAIR],
-        cycle,
-        run[COMPLIANCE],
-        rows,
-        lambda done, total: progress("fields for ParaView", done, total),
-    )
-    return [series, series.with_name(STATE)] if cycle.face is None else [series]
+    plane = cycle.face is None and cycle.lines is None
+    size = PART if plane else len(rows)
+    parts = [rows[start : start + size] for start in range(0, len(rows), size)]
+    tasks = tuple(helper.submit(write_frames, folder, pair, cycle, bodies, part) for part in parts)
+    return FieldFiles(folder, pair, cycle, rows, tasks)
+
+
+def write_fields(folder: Path, run: Engine, progress: Progress = silent) -> list[Path]:
+    """Write the mesh cycle for ParaView; return its ``.pvd`` and state, as `FieldFiles.written` does."""
+    helper = Assistant()
+    return begin_fields(folder, run, helper).written(helper, progress)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, get_args
 
 from base import InputError, Limit
-from flankfilm.studies.executors import Kind, default_workers
+from flankfilm.processes.worker_processes import cores
+from flankfilm.studies.executors import Kind
 
 if TYPE_CHECKING:
     from flankfilm.studies.workers import Workers
@@ -54,4 +55,4 @@ class Execution:
         """Workers to compute rows with, to be used as a context."""
         from flankfilm.studies.workers import Workers
 
-        return Workers(self.executor, self.workers or default_workers())
+        return Workers(self.executor, self.workers or cores())

@@ -43,11 +43,6 @@ class Pool:
     size: Callable[[], int]
 
 
-def default_workers() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 @contextmanager
 def executor(kind: Kind | Executor, workers: int) -> Iterator[Pool]:
     """Give an executor: the caller's own as it is, or one that is started here, whose workers use one thread each.

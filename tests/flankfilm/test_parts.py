@@ -115,12 +115,12 @@ def test_fields_that_cannot_be_written_leave_the_rest(tmp_path, monkeypatch):
     from flankfilm.runs import begin
     from flankfilm.runs import run_scene as running
 
-    def write_fields(*_):
+    def begin_fields(*_):
         raise SolverError("no field; refine")
 
     text = ISHIKAWA.replace("[WANTS]", '["geometry", "vtk"]')
     scene = parse_scene(text.replace('"ishikawa"', '"fem"').replace('"independent"', '"coupled"'))
-    monkeypatch.setattr(running, "write_fields", write_fields)
+    monkeypatch.setattr(running, "begin_fields", begin_fields)
     monkeypatch.setattr(begin, "goals", lambda _: (PAIR,))
     found = run_scene(scene, tmp_path, use_cache=False)
     assert [one.title for one in found.failures] == ["fields for ParaView"]

@@ -15,8 +15,8 @@ import pytest
 from base import InputError
 from flankfilm.files.folder import locked
 from flankfilm.optimisation.task import read_task
+from flankfilm.processes.worker_processes import cores
 from flankfilm.studies.execution import Execution
-from flankfilm.studies.executors import default_workers
 from flankfilm.studies.kept import Work, kept_rows
 from flankfilm.studies.plan import read_plan
 from flankfilm.studies.row import RowResult
@@ -251,4 +251,4 @@ class TestFolders:
         with pytest.raises(InputError, match="Leave it out for one worker on each core"):
             Execution(workers=0)
         with Execution().staff() as staff:
-            assert staff.count == default_workers()
+            assert staff.count == cores()
