@@ -81,13 +81,14 @@ def _series(axes: Axes, at: Sequence[float], rows: Sequence[Row], place: int, la
     axes.plot(at, _drawn(rows, "error"), "-", **look, label=label or None)
     guess = [max(r.estimate, LEAST) if r.estimate > 0 else math.nan for r in rows]
     if np.isfinite(guess).any():
-        axes.plot(at, guess, "--", **look, markerfacecolor="white")
+        axes.plot(at, guess, "--", **{**look, "markerfacecolor": "white"})
 
 
 def _look(place: int) -> dict[str, Any]:
-    """Mark and colour of one of several curves."""
+    """Mark and colour of one of several curves; marks are open where colours begin again."""
     mark, colour = MARKS[place % len(MARKS)], COLOURS[place % len(COLOURS)]
-    return {"marker": mark, "color": colour, "markersize": 5}
+    again = {"markerfacecolor": "none"} if place >= min(len(MARKS), len(COLOURS)) else {}
+    return {"marker": mark, "color": colour, "markersize": 5, **again}
 
 
 def _drawn(rows: Sequence[Row | PeerRow], name: str) -> list[float]:
@@ -182,9 +183,11 @@ def overview(cases: Sequence[CaseResult]) -> Figure:
     """Draw true error over processor time of one work of each solver: its first case, series and quantity."""
     with sheet(width=7.4, height=5.2, legend=2) as (drawn, (axes,)):
         for place, (solver, own) in enumerate(_by_solver(cases)):
-            rows = [r for r in own[0].rows if not r.failure]
+            rows = [r for r in own[0].rows if not r.failure and np.isfinite(r.error)]
+            if not rows:  # what only costs time has no true error
+                continue
             rows = [r for r in rows if (r.series, r.quantity) == (rows[0].series, rows[0].quantity)]
-            label = f"{solver}: {rows[0].quantity}" if rows else None
+            label = f"{solver}: {rows[0].quantity}"
             axes.plot([r.cpu for r in rows], _drawn(rows, "error"), "-", **_look(place), label=label)
         axes.set(xscale="log", yscale="log", xlabel="processor time [s]", ylabel="true relative error [-]")
     return drawn
