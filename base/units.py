@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 _SI = (
-    "1|m|s|1/s|K|kg|kg m2|kg/m3|N|N m|N/m|N m/rad|N s/m|Pa|1/Pa|1/K|Pa s|m2/s|m/s|Hz|rad|rad/s|W|W/m|W/K|Pa m/s|"
+    "1|m|s|1/s|K|kg|kg/m|kg m2|kg/m3|N|N m|N/m|N m/rad|N s/m|Pa|1/Pa|1/K|Pa s|m2/s|m/s|Hz|rad|rad/s|W|W/m|W/K|Pa m/s|"
     "W/(m K)|J/(kg K)"
 )
 
@@ -30,6 +30,7 @@ FACTORS = dict.fromkeys(_SI.split("|"), 1.0) | {
     "1/mm2": 1e6,
     "deg": math.pi / 180.0,
     "rpm": math.pi / 30.0,
+    "h": 3600.0,
 }
 """SI value of one of each unit; ``N/(mm um)`` is of a stiffness per face width."""
 

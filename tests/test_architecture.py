@@ -70,7 +70,7 @@ WINGS: dict[str, list[list[str]]] = {
         ["exchange"],
         ["bench"],
     ],
-    "flankfilm/coupling": [["mesh"], ["films"], ["losses"], ["vibration"], ["drive"], ["speeds"]],
+    "flankfilm/coupling": [["mesh"], ["films"], ["losses"], ["vibration"], ["drive"], ["speeds"], ["rating"]],
 }
 """Folders of each package from the lowest up; those on one floor know nothing of each other.
 

@@ -16,6 +16,12 @@ from .misalignment import misalignment as misalignment
 from .pitting import PittingSafety as PittingSafety
 from .pitting import load_cycles as load_cycles
 from .pitting import pitting_safety as pitting_safety
+from .rating import Rating as Rating
+from .rating import rate as rate
+from .rating_data import FaceData as FaceData
+from .rating_data import RatingData as RatingData
+from .rating_data import Required as Required
+from .rating_data import ScuffingData as ScuffingData
 from .reduced_mass import reduced_mass as reduced_mass
 from .running_in import RunIn as RunIn
 from .running_in import run_in as run_in
@@ -27,5 +33,6 @@ from .spectrum import SpectrumDamage as SpectrumDamage
 from .spectrum import check_spectrum as check_spectrum
 from .spectrum import miner as miner
 from .spectrum import spectrum_safety as spectrum_safety
+from .spectrum_rating import SpectrumRating as SpectrumRating
 from .steels import KINDS as KINDS
 from .steels import RatedSteel as RatedSteel

@@ -26,9 +26,8 @@ _LIMITS = {
     "speed": Limit.above(0.0, 1e5, "rad/s", "give the pinion's speed"),
     "life": Limit.above(0.0, 1e11, "s", "give the life in seconds"),
 }
-_ROUGHNESS = Limit(
-    1e-8, 40e-6, "m", "give Rz of the root's fillet in metres; the standard has it up to 40 um"
-)
+ROUGHNESS = Limit(1e-8, 40e-6, "m", "give Rz of the root's fillet in metres; the standard has it up to 40 um")
+"""Rz of a fillet."""
 
 
 @record
@@ -132,11 +131,7 @@ def bending_safety(
     """
     with Faults(GeometryError) as faults:
         faults.numbers(_LIMITS, (torque, speed, life))
-        for name, steel, rough in zip(("pinion", "wheel"), steels, root_roughness, strict=True):
-            faults.number(f"{name}.root_roughness", rough, _ROUGHNESS)
-            if steel.kind in UNHARDENED and steel.proof_stress is None:
-                allowed = "is required by the notch sensitivity of steels St and V"
-                faults.add(f"{name}.steel.proof_stress", "", allowed, "give yield strength or proof stress")
+        check_roots(faults, steels, root_roughness)
         check_steels(faults, pair, steels)
     nominal = iso6336_3(pair, pair.normal_force(torque))
     cycles = load_cycles(pair, speed, life)
@@ -153,6 +148,15 @@ def bending_safety(
         rows.append((loaded, limit, limit / loaded, notch, surface, size, cycle))
     stresses, limits, safeties, notches, surfaces, sizes, lives = zip(*rows, strict=True)
     return BendingSafety(stresses, limits, safeties, notches, surfaces, sizes, lives, nominal)
+
+
+def check_roots(faults: Faults, steels: Steels, root_roughness: tuple[float, float]) -> None:
+    """Note what is wrong with the fillets, and steels whose notch sensitivity needs a proof stress."""
+    for name, steel, rough in zip(("pinion", "wheel"), steels, root_roughness, strict=True):
+        faults.number(f"{name}.root_roughness", rough, ROUGHNESS)
+        if steel.kind in UNHARDENED and steel.proof_stress is None:
+            allowed = "is required by the notch sensitivity of steels St and V"
+            faults.add(f"{name}.steel.proof_stress", "", allowed, "give yield strength or proof stress")
 
 
 def slip_layer(steel: RatedSteel) -> float:

@@ -95,7 +95,7 @@ def load_factors(
     Parameters
     ----------
     pair : GearPair
-        Helix angle up to 30 degrees.
+        Helix angle up to 30 degrees; a steeper one is rated with a warning.
     torque : float
         Nominal torque of the pinion [N m].
     speed : float
@@ -120,12 +120,13 @@ def load_factors(
     Raises
     ------
     GeometryError
-        With every fault of the numbers, of a helix above 30 degrees, and of K_Hbeta given twice or not at all.
+        With every fault of the numbers, and of K_Hbeta given twice or not at all.
 
     Warns
     -----
     RangeWarning
-        In the main resonance range, N between 0.85 and 1.15, which the standard advises to avoid.
+        In the main resonance range, N between 0.85 and 1.15, which the standard advises to avoid; of a helix above 30
+        degrees, up to which the standard is made.
 
     References
     ----------
@@ -149,11 +150,11 @@ def load_factors(
         ):
             if value is not None:
                 faults.number(name, value, limit)
-        check_helix(faults, pair)
         if (face_load_factor is None) == (misalignment is None):
             which = "neither" if misalignment is None else "both"
             allowed = "must be given as K_Hbeta or as a misalignment F_by, one of these"
             faults.add("face_load_factor", which, allowed, "`misalignment` computes F_by by method C")
+    warn_of_helix(pair)
     m_red = reduced_mass(pair) if mass is None else mass
     loaded = application_factor * torque
     dynamic = iso6336_dynamic(
@@ -190,12 +191,12 @@ def load_factors(
     )
 
 
-def check_helix(faults: Faults, pair: GearPair) -> None:
-    """Note a helix that is steeper than ISO 6336 has."""
+def warn_of_helix(pair: GearPair) -> None:
+    """Warn of a helix that is steeper than ISO 6336 has."""
     angle = abs(math.degrees(pair.helix.angle))
     if angle > STEEPEST:
-        allowed = f"must be at most {STEEPEST:g} deg, up to which ISO 6336 is made"
-        faults.add("helix_angle", f"{angle:.4g} deg", allowed, "take stresses of finite elements")
+        said = f"ISO 6336 is made for helix angles up to {STEEPEST:g} deg: at {angle:.4g} deg its factors are beyond it"
+        warnings.warn(said, RangeWarning, stacklevel=3)
 
 
 def _regime(N: float, N_S: float) -> str:

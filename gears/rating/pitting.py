@@ -14,15 +14,20 @@ from gears.rating.load_factors import LoadFactors
 from gears.rating.steels import Steels, check_steels
 from gears.tooth.errors import GeometryError
 
-_FACTOR = Limit.above(0.0, 2.0, remedy="1 unless a source says otherwise")
-_LIMITS = {
+FACTOR = Limit.above(0.0, 2.0, remedy="1 unless a source says otherwise")
+"""Work hardening and size factors that may be given."""
+
+_LOAD = {
     "torque": Limit.above(0.0, 1e9, "N m", "give the pinion's torque, without factors"),
     "speed": Limit.above(0.0, 1e5, "rad/s", "give the pinion's speed"),
+}
+LIMITS = {
     "viscosity_40": Limit(1e-6, 1e-2, "m2/s", "give nu_40 in m2/s: ISO VG 220 has 220e-6"),
     "roughness": Limit(1e-8, 1e-4, "m", "give the mean Rz of both flanks in metres, about 6 Ra"),
     "life": Limit.above(0.0, 1e11, "s", "give the life in seconds"),
-    "Z_X": _FACTOR,
+    "Z_X": FACTOR,
 }
+"""What else a rating of the flanks takes."""
 
 
 @record
@@ -143,9 +148,8 @@ def pitting_safety(
     0.86...
     """
     with Faults(GeometryError) as faults:
-        faults.numbers(_LIMITS, (torque, speed, viscosity_40, roughness, life, Z_X))
-        for name, value in zip(("pinion", "wheel"), Z_W, strict=True):
-            faults.number(f"{name}.Z_W", value, _FACTOR)
+        faults.numbers(_LOAD, (torque, speed))
+        check_flanks(faults, viscosity_40, roughness, life, Z_W, Z_X)
         check_steels(faults, pair, steels)
     nominal = iso6336_2(pair, pair.normal_force(torque))
     weaker = 1e-6 * min(steel.contact_strength for steel in steels)
@@ -177,6 +181,15 @@ def pitting_safety(
         cycles,
         nominal,
     )
+
+
+def check_flanks(
+    faults: Faults, viscosity_40: float, roughness: float, life: float, Z_W: tuple[float, float], Z_X: float
+) -> None:
+    """Note what is wrong with oil, roughness, life and given factors; arguments as of `pitting_safety`."""
+    faults.numbers(LIMITS, (viscosity_40, roughness, life, Z_X))
+    for name, value in zip(("pinion", "wheel"), Z_W, strict=True):
+        faults.number(f"{name}.Z_W", value, FACTOR)
 
 
 def load_cycles(pair: GearPair, speed: float, life: float) -> tuple[float, float]:
