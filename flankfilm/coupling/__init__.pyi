@@ -58,6 +58,12 @@ from .mesh.torque_curves import torque_curves as torque_curves
 from .mesh.verification import Verification as Verification
 from .mesh.verification import compare_closed_forms as compare_closed_forms
 from .mesh.verification import verification_of as verification_of
+from .rating.loaded_factors import LoadedFactors as LoadedFactors
+from .rating.loaded_factors import loaded_factors as loaded_factors
+from .rating.motion_factor import MotionFactor as MotionFactor
+from .rating.motion_factor import motion_factor as motion_factor
+from .rating.own_rating import OwnRating as OwnRating
+from .rating.own_rating import own_rating as own_rating
 from .speeds.drive_sweep import DriveSweep as DriveSweep
 from .speeds.drive_sweep import drive_sweep as drive_sweep
 from .speeds.dynamic_map import DynamicMap as DynamicMap
