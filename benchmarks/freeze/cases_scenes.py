@@ -22,6 +22,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     "drive": {"dynamics.sweep.points": 8},
     "face_width": {},
     "helical": {},
+    "rating": {"dynamics.sweep.points": 9, "alignment.face_model": "walls"},
     "starved": {},
     "losses": {},
     "real_flanks": {},

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
-import gears
+import gears.rating
 from base import Fault, Faults, InputError
 from flankfilm.building.face import faults_of_face, varies_by
 from flankfilm.building.film import lubricant, roughness
 from flankfilm.building.flanks import deviations
 from flankfilm.building.followed_speeds import faults_of_ranges
-from flankfilm.building.pair import pinion_torque, supports, tip_roundings, warm_pair
+from flankfilm.building.pair import pinion_speed, pinion_torque, supports, tip_roundings, warm_pair
+from flankfilm.building.rating import rating_data, under_rating
 from flankfilm.scene import Scene
 from flankfilm.scene.needs import faults_between_sections
 from flankfilm.scene.needs_of_helix import wants_load
@@ -22,7 +24,7 @@ from flankfilm.scene.sections.dynamics import DynamicsSection
 from flankfilm.scene.sections.gears import GEARS
 from flankfilm.scene.sections.ground import in_keys, under_keys
 from flankfilm.scene.sections.section import required
-from flankfilm.scene.wants import MOTIONS
+from flankfilm.scene.wants import MOTIONS, RATED
 from gears.pair.hertz import half_width
 
 LEAST_SHARE = 0.5
@@ -49,7 +51,7 @@ def refuse(scene: Scene) -> None:
             if not faults.found:
                 pair = warm_pair(scene).pair
                 faults.extend(_faults(lambda: deviations(scene, pair, every_tooth=True)))
-                for check in (_held, _pressed, _menisci, faults_of_face):
+                for check in (_held, _pressed, _menisci, faults_of_face, _rated):
                     faults.extend(check(scene, pair))
         if scene.lubricant is not None:
             faults.extend(_faults(lambda: lubricant(scene)))
@@ -68,6 +70,21 @@ def _faults(build: Callable[[], object]) -> tuple[Fault, ...]:
     except InputError as error:
         return error.faults
     return ()
+
+
+def _rated(scene: Scene, pair: gears.GearPair) -> tuple[Fault, ...]:
+    """Faults of a wanted rating, which is quicker than any estimate of it."""
+    if RATED.isdisjoint(scene.wants):
+        return ()
+
+    def build() -> None:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the run says them
+            data = rating_data(scene, pair)
+            with under_rating(scene):
+                gears.rating.rate(pair, pinion_torque(scene), pinion_speed(scene), data)
+
+    return _faults(build)
 
 
 def _pressed(scene: Scene, pair: gears.GearPair) -> Iterator[Fault]:

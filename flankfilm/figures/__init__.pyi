@@ -44,6 +44,8 @@ from .plane_of_action import film_line_map as film_line_map
 from .plane_of_action import line_load_map as line_load_map
 from .plane_of_action import lines_of_contact as lines_of_contact
 from .plane_of_action import load_centre as load_centre
+from .rating import safeties as safeties
+from .rating import spectrum_damage as spectrum_damage
 from .rendering.animation import Frame as Frame
 from .rendering.animation import animate_cycle as animate_cycle
 from .rendering.animation import teeth_scene as teeth_scene

@@ -79,6 +79,8 @@ PICTURES: Mapping[str, Picture] = {
     "gears.pair.gear_pair:GearPair": Picture("gear.gears_in_mesh", "pair", "pair"),
     "gears.pair.path:PathOfContact": Picture("gear.kinematics", "path"),
     "gears.closed_form.record:ClosedForm": Picture("closed_forms.closed_form", "closed_form", "closed_form"),
+    "gears.rating.rating:Rating": Picture("rating.safeties", "rating"),
+    "gears.rating.spectrum_rating:SpectrumRating": Picture("rating.spectrum_damage", "rating_spectrum"),
     "fem.cycle.result:MeshCycle": Picture("stiffness.mesh_cycle", "dry", "loaded"),
     "fem.cycle.face_loads:FaceLoads": Picture("face.flank_map", "dry_face", "with_points"),
     "fem.cycle.line_loads:LineLoads": Picture("plane_of_action.load_centre", "dry_lines", "with_points"),

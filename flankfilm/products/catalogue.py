@@ -6,6 +6,7 @@ from typing import Any
 
 from flankfilm.products import (
     closed_forms,
+    cycles,
     diagram,
     drive,
     dynamic_map,
@@ -17,13 +18,12 @@ from flankfilm.products import (
     lines,
     losses,
     oscillator,
-    revolution,
+    rating,
     root_stress,
     run_up,
     spectrum,
     stiffness,
     sweep,
-    torques,
 )
 from flankfilm.products.product import Product
 from flankfilm.scene import Scene
@@ -31,29 +31,27 @@ from flankfilm.stages.engine import Stage
 
 __all__ = ["PRODUCTS", "goals"]
 
-PRODUCTS: tuple[Product, ...] = tuple(
-    module.PRODUCT
-    for module in (
-        geometry,
-        closed_forms,
-        stiffness,
-        face,
-        lines,
-        film,
-        losses,
-        torques,
-        revolution,
-        root_stress,
-        fields,
-        fourier,
-        oscillator,
-        sweep,
-        drive,
-        diagram,
-        spectrum,
-        run_up,
-        dynamic_map,
-    )
+PRODUCTS: tuple[Product, ...] = (
+    geometry.PRODUCT,
+    closed_forms.PRODUCT,
+    rating.PRODUCT,
+    stiffness.PRODUCT,
+    face.PRODUCT,
+    lines.PRODUCT,
+    film.PRODUCT,
+    losses.PRODUCT,
+    cycles.OF_TORQUES,
+    cycles.OF_TEETH,
+    root_stress.PRODUCT,
+    fields.PRODUCT,
+    fourier.PRODUCT,
+    oscillator.PRODUCT,
+    sweep.PRODUCT,
+    drive.PRODUCT,
+    diagram.PRODUCT,
+    spectrum.PRODUCT,
+    run_up.PRODUCT,
+    dynamic_map.PRODUCT,
 )
 """In the order of the report."""
 

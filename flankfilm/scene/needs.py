@@ -12,7 +12,7 @@ from flankfilm.scene.needs_of_shafts import faults_of_shafts
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.sections.gears import GEARS, faults_of_leads
 from flankfilm.scene.traits import given_keys, named
-from flankfilm.scene.wants import BY_FINITE_ELEMENTS, FILMS, GEARED, MESHED, MOTIONS, UNLOADED, WANTS
+from flankfilm.scene.wants import BY_FINITE_ELEMENTS, FILMS, GEARED, MESHED, MOTIONS, RATED, UNLOADED, WANTS
 
 __all__ = ["MOTIONS", "faults_between_sections", "needs_of_finite_elements"]
 
@@ -71,6 +71,8 @@ def _needed_sections(raw: Raw, listed: set[str]) -> Iterator[tuple[str, str]]:
         yield from ((name, "a [dynamics] in physical units") for name in ("pair", "material", "operating"))
     if (geared or meshed) and not listed <= UNLOADED:
         yield from ((name, f"wants = [{_quoted(listed)}]") for name in ("material", "operating"))
+    if rated := listed & RATED:
+        yield "rating", f"wants = [{_quoted(rated)}]"
     model = film.get("model", "auto")
     if moving and _table(raw, "dynamics").get("damping_ratio") == "film":
         yield "lubricant", "the damping of films"

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from base import Fault, InputError, shorten
 from flankfilm.scene.sections.dynamics import BY_FILM
 from flankfilm.scene.traits import given_keys, named
-from flankfilm.scene.wants import MOTIONS, UNLOADED, WANTS
+from flankfilm.scene.wants import MOTIONS, RATED, UNLOADED, WANTS
 
 if TYPE_CHECKING:
     from flankfilm.scene.schema import Scene
@@ -38,7 +38,7 @@ def _other_than(*words: Any) -> Callable[[Any], bool]:
 ANY = frozenset(WANTS)
 """All wants."""
 
-LOADED = ANY - UNLOADED - {"closed-forms"}
+LOADED = ANY - UNLOADED - {"closed-forms", *RATED}
 """Wants of loaded teeth, beyond sizes and standards' formulas."""
 
 

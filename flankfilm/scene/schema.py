@@ -20,6 +20,7 @@ from flankfilm.scene.sections.key import Traits, key
 from flankfilm.scene.sections.lubricant import LubricantSection
 from flankfilm.scene.sections.materials import MaterialSection
 from flankfilm.scene.sections.operating import OperatingSection, StiffnessSection
+from flankfilm.scene.sections.rating import RatingSection
 from flankfilm.scene.sections.roughness import RoughnessSection
 from flankfilm.scene.sections.section import Section
 from flankfilm.scene.sections.shafts import ShaftsSection
@@ -104,6 +105,9 @@ class Scene(Section):
     stiffness: StiffnessSection = key("Where the mesh stiffness comes from", StiffnessSection(), shown=True)
     film: FilmSection = key("The oil film", FilmSection(model="none"), shown=True)
     dynamics: DynamicsSection | None = key("Torsional vibration of the pair", None, shown=True)
+    rating: RatingSection | None = key(
+        "Rating by ISO 6336 and by scuffing: grade, steels, life; none if left out", None
+    )
     shafts: ShaftsSection | None = key(
         "Shafts, bearings, motor and load, with which the wanted sweep is of the drive train; rigid if left out",
         None,

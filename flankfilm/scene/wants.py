@@ -14,6 +14,7 @@ __all__ = [
     "GEARED",
     "MESHED",
     "MOTIONS",
+    "RATED",
     "UNLOADED",
     "WANTS",
     "NeededKey",
@@ -58,6 +59,8 @@ class WantTraits:
         Key of [dynamics] with the range that it is computed over; empty for none.
     keys : tuple of NeededKey
         Further keys that it needs.
+    rated : bool
+        Whether it needs [rating].
     file : bool
         Whether it is of files alone, and no figure.
     """
@@ -73,6 +76,7 @@ class WantTraits:
     series: bool = False
     range_key: str = ""
     keys: tuple[NeededKey, ...] = ()
+    rated: bool = False
     file: bool = False
 
 
@@ -90,11 +94,18 @@ def _elements(meaning: str, *keys: NeededKey, file: bool = False) -> WantTraits:
 
 
 _TORQUES = NeededKey("operating.torques_Nm", "Give a list, such as torques_Nm = [100, 300, 600]")
+_SPEED = NeededKey("operating.pinion_speed_rpm", "Give the pinion's speed")
 _SPEEDS = NeededKey("dynamics.sweep.speed_rpm", "Add sweep = { speed_rpm = [500, 30000], points = 60 }")
 
 WANTS: Mapping[str, WantTraits] = {
     "geometry": WantTraits("sizes of the pair, also for inspection", gears=True, unloaded=True),
     "closed-forms": WantTraits("tooth stiffness by the closed forms", gears=True),
+    "rating": WantTraits(
+        "safeties by ISO 6336 and against scuffing; beside them safeties by load factors that are computed",
+        gears=True,
+        rated=True,
+        keys=(_SPEED,),
+    ),
     "stiffness": WantTraits("mesh stiffness, transmission error and load share over a mesh cycle", mesh=True),
     "torques": _elements("the mesh cycle at several torques", _TORQUES),
     "revolution": _elements("the mesh cycle tooth by tooth, with the deviations of each tooth"),
@@ -123,6 +134,9 @@ MESHED = frozenset(name for name, want in WANTS.items() if want.mesh)
 
 UNLOADED = frozenset(name for name, want in WANTS.items() if want.unloaded)
 """Wants that are known without material and load."""
+
+RATED = frozenset(name for name, want in WANTS.items() if want.rated)
+"""Wants that need [rating]."""
 
 FILMS = tuple(name for name, want in WANTS.items() if want.films)
 """Wants that need films."""

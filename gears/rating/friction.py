@@ -9,12 +9,13 @@ from base import Faults, Limit
 from gears.pair.gear_pair import GearPair
 from gears.tooth.errors import GeometryError
 
-_LIMITS = {
+LIMITS = {
     "viscosity_40": Limit(1e-6, 1e-2, "m2/s", "give nu_40 in m2/s: ISO VG 220 has 220e-6"),
     "viscosity_100": Limit(1e-6, 1e-3, "m2/s", "give nu_100 in m2/s: ISO VG 220 has about 19e-6"),
     "density_15": Limit(600.0, 1500.0, "kg/m3", "give the density at 15 degC: mineral oils have 850 to 900"),
     "temperature": Limit(253.15, 473.15, "K", "give the temperature of the oil in kelvins"),
 }
+"""What an oil of a data sheet may be."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class GearOil:
 
     def check(self, faults: Faults) -> None:
         """Note what is wrong with the numbers: a viscosity that does not fall is wrong too."""
-        faults.fields(self, _LIMITS, "oil.")
+        faults.fields(self, LIMITS, "oil.")
         if not self.viscosity_100 < self.viscosity_40:
             allowed = "must be less than that at 40 degC"
             faults.add("oil.viscosity_100", f"{self.viscosity_100:g}", allowed, "see the oil's data sheet")

@@ -33,6 +33,8 @@ _OPTIONAL = {
     "misalignment": Limit(0.0, 5e-3, "m", "give F_by over the face in metres"),
     "mass": Limit.above(0.0, 1e6, "kg/m", "give m_red per length of face"),
 }
+LIMITS = {**_LIMITS, **_OPTIONAL}
+"""What load factors take."""
 
 
 @record

@@ -14,13 +14,14 @@ from gears.rating.steels import Steels
 from gears.tooth.errors import GeometryError
 
 _SHARE = Limit(0.0, 1.0, remedy="1 of teeth that are not modified along the face")
-_LIMITS = {
+LIMITS = {
     "torque": Limit.above(0.0, 1e9, "N m", "give the pinion's torque, K_A and K_v in it"),
     "speed": Limit(0.0, 1e5, "rad/s", "give the pinion's speed"),
     "shaft": Limit(-1e3, 1e3, remedy="K' l s/d_1^2 (d_1/d_sh)^4, 0 of a pinion midway between its bearings"),
     "B_1": _SHARE,
     "B_2": _SHARE,
 }
+"""What method C takes."""
 
 
 @record
@@ -101,7 +102,7 @@ def misalignment(
     13.6
     """
     with Faults(GeometryError) as faults:
-        faults.numbers(_LIMITS, (torque, speed, shaft, B_1, B_2))
+        faults.numbers(LIMITS, (torque, speed, shaft, B_1, B_2))
     diameter = 2.0 * pair.reference_radii[0]
     line_load = 1e-3 * pair.tangential_force(torque) / pair.face_width
     f_sh = 1e-6 * line_load * 0.023 * (abs(1.0 + shaft - 0.3) + 0.3) * (pair.face_width / diameter) ** 2

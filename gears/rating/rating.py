@@ -78,6 +78,21 @@ class Rating:
             safe.append(max(*self.spectrum.damage_H, *(self.spectrum.damage_F or ())) <= 1.0)
         return all(safe)
 
+    @described("1", no_error=EXACT)
+    def required_S_H(self) -> float:
+        """Safety against pitting that is required."""
+        return self.required.S_H
+
+    @described("1", no_error=EXACT)
+    def required_S_F(self) -> float:
+        """Safety against breakage that is required."""
+        return self.required.S_F
+
+    @described("1", no_error=EXACT)
+    def required_S_S(self) -> float:
+        """Safety against scuffing that is required."""
+        return self.required.S_S
+
     @property
     def error(self) -> None:
         """Model error, which a standard cannot know: None is unknown, never zero."""

@@ -19,7 +19,7 @@ ZERO = 273.15
 BULK, INTEGRAL = 0.7, 1.5
 """Shares C_1 of the bulk and C_2 of the integral temperature that the mean flash temperature has."""
 
-_LIMITS = {
+LIMITS = {
     "speed": Limit.above(0.0, 1e5, "rad/s", "give the pinion's speed"),
     "roughness": Limit(1e-8, 1e-4, "m", "give the mean Ra of both flanks in metres"),
     "relief": Limit(0.0, 1e-3, "m", "give C_a in metres"),
@@ -29,6 +29,7 @@ _LIMITS = {
     "structure": Limit.above(0.0, 2.0, remedy="X_WrelT, 1 of case-hardened steel as in the test"),
     "supply": Limit.above(0.0, 2.0, remedy="X_S, 1 of gears that dip into the oil"),
 }
+"""What a rating of scuffing takes."""
 
 
 @record
@@ -147,7 +148,7 @@ def scuffing_safety(
     """
     check_oil(oil)
     with Faults(GeometryError) as faults:
-        faults.numbers(_LIMITS, (speed, roughness, relief, test_torque, structure, supply))
+        faults.numbers(LIMITS, (speed, roughness, relief, test_torque, structure, supply))
         e1, e2 = contact_parts(pair, faults)
     w_Bt, K_Bgamma = factors.line_load * factors.contact, helical_factor(pair.total_contact_ratio)
     mu = scuffing_friction(pair, w_Bt * K_Bgamma, speed, oil.dynamic_viscosity, roughness)

@@ -14,13 +14,14 @@ from gears.closed_form.record import STANDARD
 from gears.rating.life import LifeCurve
 from gears.tooth.errors import GeometryError
 
-_LIMITS = {
+LIMITS = {
     "torque": Limit(
         0.0, 1e9, "N m", "give torques on the rated flank; rate reversed ones as a second spectrum"
     ),
     "speed": Limit.above(0.0, 1e5, "rad/s", "give the pinion's speed"),
     "cycles": Limit.above(0.0, 1e15, remedy="give load cycles of the pinion, in the life of the spectrum"),
 }
+"""What steps of a spectrum may be."""
 _SAFETY = Limit.above(0.0, 100.0, remedy="1 is failure of 1 gear in 100")
 
 
@@ -41,6 +42,11 @@ class LoadBin:
     torque: float  # N m
     speed: float  # rad/s
     cycles: float
+
+    @property
+    def time(self) -> float:
+        """Time of the step [s]."""
+        return 2.0 * math.pi * self.cycles / self.speed
 
 
 @record
@@ -84,7 +90,7 @@ def check_spectrum(spectrum: Sequence[LoadBin]) -> None:
     """
     with Faults(GeometryError) as faults:
         for place, step in enumerate(spectrum):
-            faults.fields(step, _LIMITS, f"spectrum[{place}].")
+            faults.fields(step, LIMITS, f"spectrum[{place}].")
         if not any(step.torque > 0.0 for step in spectrum):
             allowed = "must have a step with torque"
             faults.add(
@@ -140,7 +146,7 @@ def miner(
                 "required", f"{needed.size}", f"must be {counts.size}, one for each step", "give each step"
             )
         for place, n in enumerate(counts):
-            faults.number(f"cycles[{place}]", float(n), _LIMITS["cycles"])
+            faults.number(f"cycles[{place}]", float(n), LIMITS["cycles"])
         for place, factor in enumerate(needed):
             faults.number(
                 f"required[{place}]", float(factor), Limit(0.0, 1e6, remedy="give stress over limit")

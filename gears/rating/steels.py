@@ -29,11 +29,12 @@ NITRIDED = ("NT", "NV nitr", "NV nitrocar")
 """Steels that nitrogen hardens."""
 
 _STRENGTH = Limit(100e6, 3e9, "Pa", "give the strength in pascals, 1500e6 of case-hardened flanks")
-_LIMITS = {
+LIMITS = {
     "contact_strength": _STRENGTH,
     "bending_strength": Limit(50e6, 2e9, "Pa", "give the strength in pascals, 430e6 of case-hardened roots"),
     "proof_stress": Limit(200e6, 1200e6, "Pa", "give the yield strength or 0.2 % proof stress in pascals"),
 }
+"""What strengths may be."""
 _STIFF = (190e9, 220e9)
 
 
@@ -87,7 +88,7 @@ def check_steels(faults: Faults, pair: GearPair, steels: Steels) -> None:
     """
     for name, steel, material in zip(("pinion", "wheel"), steels, pair.materials, strict=True):
         path = f"{name}.steel"
-        faults.fields(steel, _LIMITS, f"{path}.")
+        faults.fields(steel, LIMITS, f"{path}.")
         faults.choice(f"{path}.kind", steel.kind, tuple(KINDS), "symbols of ISO 6336-5; irons are left out")
         low, high = _STIFF
         if not low <= material.youngs_modulus <= high:

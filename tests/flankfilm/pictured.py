@@ -23,6 +23,7 @@ from flankfilm.outcome.results import Results
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from gears import Alignment, Gear, GearPair, Lead, closed_form
+from gears.rating import GearOil, LoadBin, RatedSteel, RatingData, ScuffingData, rate
 from tests.flankfilm.scenes import ISHIKAWA
 
 PAIR = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=0.04).with_backlash(
@@ -202,6 +203,15 @@ def motion() -> Results:
     return run(scene.replace("pinion_torque_Nm = 600", speeds) + oil + film + MOTION)
 
 
+def rating() -> Any:
+    """Rating of a pair with a load spectrum."""
+    steels = (RatedSteel("Eh", 1500e6, 430e6),) * 2
+    steps = (LoadBin(400.0, 150.0, 1e6), LoadBin(300.0, 209.44, 3e7), LoadBin(0.0, 50.0, 1e6))
+    test = ScuffingData(GearOil(220e-6, 19e-6, 890.0, 353.15), 0.6e-6, 450.1)
+    data = RatingData(6, steels, 3.6e7, 220e-6, 4.8e-6, (20e-6, 20e-6), 1.25, scuffing=test, spectrum=steps)
+    return rate(PAIR, 300.0, 209.44, data)
+
+
 def of_run(made: Callable[[], Results], stage: str) -> Callable[[], Any]:
     """Record of a stage of a run."""
     return lambda: made().values[stage]
@@ -256,6 +266,8 @@ RECORDS: Mapping[str, Callable[[], Any]] = {
     "gears.pair.gear_pair:GearPair": lambda: PAIR,
     "gears.pair.path:PathOfContact": lambda: PAIR.path_of_contact(9),
     "gears.closed_form.record:ClosedForm": lambda: closed_form.ishikawa(PAIR, PAIR.path_of_contact(9)),
+    "gears.rating.rating:Rating": rating,
+    "gears.rating.spectrum_rating:SpectrumRating": lambda: rating().spectrum,
     "fem.cycle.result:MeshCycle": lambda: face().values["dry cycle"].contact,
     "fem.cycle.face_loads:FaceLoads": lambda: face().values["dry cycle"].contact.face,
     "fem.cycle.line_loads:LineLoads": lambda: helical().values["dry cycle"].contact.lines,

@@ -82,6 +82,7 @@ def drawing(place: str) -> Callable[[xr.Dataset], Figure]:
 WENT_FURTHEST = {
     "outline_pinion": "gears_in_mesh",
     "single_pair_rho1": "single_pairs",
+    "rating_S_H": "safeties",
     "dry_secant_stiffness": "mesh_stiffness",
     "film_central_thickness": "film_along_path",
     "losses_path_friction_coefficient": "losses_along_path",

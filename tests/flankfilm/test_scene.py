@@ -36,11 +36,15 @@ def test_the_template_is_a_valid_scene_with_every_section():
     """Left out are those with which loads, film, gears and motion are others."""
     scene = parse_scene(template())
     left_out = {name for name in Scene.model_fields if getattr(scene, name) is None}
-    assert left_out == {"alignment", "heat", "roughness", "shafts"}
+    assert left_out == {"alignment", "heat", "rating", "roughness", "shafts"}
     commented = "\n".join(
         re.findall(r"^# (\[roughness\]|(?:sigma|density_per|tip|law|mean_plane).* = .*)", template(), re.M)
     )
     assert parse_scene(f"{template()}\n{commented}").roughness is not None
+    rating = re.search(r"^# (\[rating\]\n(?:#.*\n)+)", template(), re.M)
+    assert rating is not None
+    lines = re.sub(r"^# (?=\w+ = )", "", rating[1], flags=re.M)
+    assert parse_scene(f"{template()}\n{lines}").rating is not None
 
 
 def keys(model: type[BaseModel]) -> set[str]:

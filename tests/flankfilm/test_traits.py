@@ -24,7 +24,11 @@ WHOLE = {
     "operating": {"pinion_torque_Nm": 600.0, "pinion_speed_rpm": 2000.0, "torques_Nm": [100.0, 600.0]},
     "lubricant": {"viscosity_Pa_s": 0.075, "pressure_viscosity_per_GPa": 19.6, "temperature_C": 60.0},
     "dynamics": {"sweep": RANGE, "diagram": RANGE, "run_up": RANGE},
-}
+    "rating": {
+        "accuracy_grade": 6, "K_A": 1.25, "life_h": 20000.0,
+        "pinion": {"steel": "Eh", "sigma_Hlim_MPa": 1500.0, "sigma_Flim_MPa": 430.0, "root_Rz_um": 20.0},
+    },
+}  # fmt: skip
 """All that any want needs."""
 
 VALUES: dict[str, Any] = {
@@ -95,6 +99,7 @@ def test_a_want_is_accepted_with_all_that_it_needs_and_asks_for_each_part_of_it(
         "operating": needs_pair and not traits.unloaded,
         "lubricant": traits.films,
         "dynamics": traits.motion,
+        "rating": traits.rated,
     }
     for section, needed in sections.items():
         lacking = {fault.where for fault in faults(put(raw, section, None))}

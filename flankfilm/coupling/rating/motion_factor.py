@@ -38,7 +38,7 @@ class MotionFactor:
     speed: float = quantity("rad/s", "pinion speed", shown="rpm", no_error=EXACT)
     deviation: float = quantity("m", "base pitch deviation of the excitation", shown="um", no_error=EXACT)
     K_v: float = quantity("1", "maximum force of the mesh over the mean one, at the speed")
-    even: float = quantity("1", "the same without the deviation")
+    even: float = quantity("1", "the same without the deviation", error="error")
     swept: Array | None = quantity(
         "rad/s", "pinion speeds that are swept; None without a sweep", "sweep", shown="rpm", no_error=EXACT
     )

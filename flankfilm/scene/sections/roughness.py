@@ -126,6 +126,12 @@ class RoughnessSection(Section):
         mean, peaks = (self._of_flanks(name) for name in ("Ra_um", "Rz_um"))
         return ehl.Roughness.from_drawing(mean, peaks, **asperities)
 
+    @property
+    def means(self) -> tuple[float | None, float | None]:
+        """Rz and Ra as drawings have them, the mean of both flanks [m]; None of one that was not given."""
+        peaks, mean = (self._of_flanks(name) for name in ("Rz_um", "Ra_um"))
+        return (None if peaks is None else 0.5 * sum(peaks)), (None if mean is None else 0.5 * sum(mean))
+
     def _of_flanks(self, name: str) -> tuple[float, float] | None:
         """Roughness of pinion and wheel by the name of its key [m]; None where it was not given."""
         pinion, wheel = self.value(name), self.value(f"wheel_{name}")

@@ -17,9 +17,9 @@ from fem.pair.references import turns
 from flankfilm.coupling import MeshCycle, mesh_series, stiffness_references
 from flankfilm.coupling.mesh.references import MEANINGS
 from flankfilm.files.cache import Cache
+from flankfilm.products.cycles import TORQUES
 from flankfilm.products.oscillator import scaling
 from flankfilm.products.stiffness import REFERENCES
-from flankfilm.products.torques import TORQUES
 from flankfilm.report.stiffness_parts import references as report_part
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FILM

@@ -1,0 +1,91 @@
+"""The stages of a rating: by standards, and by our own factors where the run has what they need."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+import gears.rating
+from flankfilm import coupling
+from flankfilm.building.pair import pinion_speed, pinion_torque
+from flankfilm.building.rating import rating_data, under_rating
+from flankfilm.scene import Scene
+from flankfilm.scene.wants import BY_FINITE_ELEMENTS, FILMS, MESHED, MOTIONS
+from flankfilm.stages.drives import DRIVE, moving
+from flankfilm.stages.engine import Engine, stage
+from flankfilm.stages.mesh import DRY_CYCLE, PAIR, PLAN
+from flankfilm.stages.motion import SCALING
+
+LOADED = MESHED | BY_FINITE_ELEMENTS | {*FILMS}
+"""Wants whose runs have the loaded contact."""
+
+
+@stage("rating", "rating by ISO 6336", "operating rating lubricant roughness", PAIR)
+def RATING(run: Engine) -> gears.rating.Rating:
+    """Safeties by standards, with every factor."""
+    scene, pair = run.scene, run[PAIR]
+    data = rating_data(scene, pair)
+    with under_rating(scene):
+        return gears.rating.rate(pair, pinion_torque(scene), pinion_speed(scene), data)
+
+
+@stage(
+    "motion factor",
+    "dynamic factor of the motion",
+    "operating dynamics wants",
+    RATING,
+    SCALING,
+    DRIVE,
+    kept="dynamics flankfilm gears",
+)
+def MOTION_FACTOR(run: Engine) -> coupling.MotionFactor:
+    """Dynamic factor of the motion with the base pitch deviation of the rating; also over a wanted sweep."""
+    section, motion = run.scene.dynamics, moving(run)
+    deviation = run[RATING].factors.effective.f_pb_eff
+    speeds = None
+    if section is not None and section.sweep is not None and "sweep" in run.scene.wants:
+        asked = section.sweep
+        values = np.linspace(*asked.ends, asked.points)
+        assert motion.scales is not None
+        by_frequency = asked.frequency is not None
+        unit = motion.scales.speed(1.0) if by_frequency else math.pi / 30.0
+        speeds = unit * values
+    return coupling.motion_factor(motion, pinion_speed(run.scene), deviation, speeds)
+
+
+@stage("loaded factors", "load factors of the loaded contact", "", DRY_CYCLE)
+def LOADED_FACTORS(run: Engine) -> coupling.LoadedFactors:
+    """Face-load and transverse load factors of the mesh cycle without film."""
+    return coupling.loaded_factors(run[DRY_CYCLE])
+
+
+def has_motion(scene: Scene) -> bool:
+    """Whether a run of a scene has a motion in physical units, of a driving pinion."""
+    moves = (
+        bool({*MOTIONS} & {*scene.wants}) and scene.dynamics is not None and not scene.dynamics.dimensionless
+    )
+    return moves and scene.operating is not None and scene.operating.pinion_torque_Nm > 0.0
+
+
+def has_contact(run: Engine) -> bool:
+    """Whether a run has the loaded contact of coupled finite elements."""
+    scene = run.scene
+    if (
+        LOADED.isdisjoint(scene.wants)
+        or scene.stiffness.model == "given"
+        or scene.stiffness.pairs != "coupled"
+    ):
+        return False
+    return run[PLAN].stiffness.choice == "fem"
+
+
+def own_factors(run: Engine) -> dict[str, Any]:
+    """Factors that the run has, as arguments of `coupling.own_rating`; none where it has none."""
+    factors: dict[str, Any] = {}
+    if has_motion(run.scene):
+        factors["motion"] = run[MOTION_FACTOR]
+    if has_contact(run):
+        factors["loaded"] = run[LOADED_FACTORS]
+    return factors
