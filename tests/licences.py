@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[1]
 CLASSES = "License :: OSI Approved :: "
 """Beginning of the classifiers that name a licence."""
 
-OF_USERS = ("optimise", "dask", "mpi")
+OF_USERS = ("app", "optimise", "dask", "mpi")
 """Extras of users; the others serve development."""
 
 FOUND_BY_HAND = {"graphemeu": "MIT"}

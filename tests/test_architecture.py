@@ -69,6 +69,7 @@ WINGS: dict[str, list[list[str]]] = {
         ["verification"],
         ["exchange"],
         ["bench"],
+        ["app"],
     ],
     "flankfilm/coupling": [["mesh"], ["films"], ["losses"], ["vibration"], ["drive"], ["speeds"], ["rating"]],
 }

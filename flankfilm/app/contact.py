@@ -1,0 +1,157 @@
+"""Answers of the loaded contact: curves over the mesh cycle at once, then means and extremes with their errors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from base.results import figures
+from flankfilm import coupling
+from flankfilm.app.answers import Answer, answers_of
+from flankfilm.coupling.mesh.loaded_teeth import POSITIONS
+from flankfilm.report import stiffness_parts
+from flankfilm.report.text import percent
+from flankfilm.scene import Scene
+from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import COMPLIANCE, FACE_GEARS, PLAN, along_the_face, loaded_teeth
+
+__all__ = ["Curve", "answerable", "curves", "figures_of", "solve_gears", "solved"]
+
+UNKNOWN = "error unknown"
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve over the mesh cycle.
+
+    Attributes
+    ----------
+    name, label, unit : str
+    lines : tuple of tuple of float or None
+        One for the mesh, or one for each pair; None where a pair does not touch.
+    error : str
+        How far values may be off.
+    """
+
+    name: str
+    label: str
+    unit: str
+    lines: tuple[tuple[float | None, ...], ...]
+    error: str
+
+
+def answerable(scene: Scene) -> str:
+    """Why a scene has no loaded contact; empty where it has one.
+
+    Examples
+    --------
+    >>> from flankfilm.scene import parse_scene, template
+    >>> answerable(parse_scene(template()))
+    ''
+    """
+    if scene.pair is None:
+        return "The scene has no pair."
+    if scene.operating is None:
+        return "The scene has no load: give [operating]."
+    if scene.stiffness.model == "given":
+        return "The stiffness is given: there is no contact to solve."
+    if not scene.operating.pinion_torque_Nm:
+        return "The torque is 0."
+    return ""
+
+
+def solve_gears(engine: Engine) -> None:
+    """Have the gears solved, in the process and the cache, as contacts need them.
+
+    Parameters
+    ----------
+    engine : Engine
+        Of a scene that has a loaded contact.
+    """
+    if engine[PLAN].stiffness.choice == "fem":
+        _ = engine[COMPLIANCE]
+        if along_the_face(engine.scene):
+            _ = engine[FACE_GEARS]
+
+
+def solved(engine: Engine) -> coupling.MeshCycle:
+    """Dry mesh cycle at the positions of a run, without the events between them, which take four times as long.
+
+    Parameters
+    ----------
+    engine : Engine
+        Of a scene that has a loaded contact.
+
+    Raises
+    ------
+    SolverError
+        Where the contact has no solution.
+    """
+    asked = engine[PLAN].resolution
+    return loaded_teeth(engine).cycle(POSITIONS, tolerance=min(asked.sampling, asked.transmission_error))
+
+
+def curves(cycle: coupling.MeshCycle, face_width: float) -> tuple[Curve, ...]:
+    """Transmission error, stiffness, load share and pressure over one base pitch: numbers of a run's curves.
+
+    Parameters
+    ----------
+    cycle : coupling.MeshCycle
+    face_width : float
+        [m].
+    """
+    return tuple(_curves(cycle, face_width))
+
+
+def figures_of(cycle: coupling.MeshCycle, face_width: float, tolerance: float) -> tuple[Answer, ...]:
+    """Means and extremes of a mesh cycle, each with its error; events between the positions are located for them.
+
+    Parameters
+    ----------
+    cycle : coupling.MeshCycle
+    face_width : float
+        [m].
+    tolerance : float
+        Relative, by which figures are marked that miss it.
+
+    Raises
+    ------
+    SolverError
+        Where the contact has no solution between the positions.
+    """
+    shown = stiffness_parts.headlines(cycle, face_width)
+    if cycle.contact is not None:
+        shown += stiffness_parts.pressure_headlines(cycle.contact, None)
+    against = [headline.against(tolerance) for headline in shown]
+    return tuple(answers_of("Loaded contact, without film", against))
+
+
+def _curves(cycle: coupling.MeshCycle, face_width: float) -> Iterator[Curve]:
+    """Curves of a dry mesh cycle in the units that people read."""
+    error = UNKNOWN if cycle.error is None else f"± {percent(cycle.error)}"
+    lag = figures(type(cycle))["transmission_error"]
+    lines = _lines(lag.in_shown(cycle.transmission_error))
+    yield Curve("transmission_error", "transmission error", lag.read_in, lines, error)
+    per_face = 1e-9 / face_width
+    for name, kind in (("stiffness", "tangent"), ("secant_stiffness", "secant")):
+        values = per_face * getattr(cycle, name)
+        yield Curve(name, f"mesh stiffness ({kind})", "N/(mm um)", _lines(values), error)
+    share = np.where(cycle.forces > 0.0, cycle.load_share, math.nan)
+    yield Curve("load_share", "load share of each pair", "", _lines(share), error)
+    if cycle.contact is not None:
+        pressure = np.where(cycle.contact.hertz_pressure > 0.0, cycle.contact.hertz_pressure, math.nan)
+        yield Curve("hertz_pressure", "Hertz pressure of each pair", "MPa", _lines(1e-6 * pressure), UNKNOWN)
+        factors = getattr(cycle.contact, "face_load_factor", None)
+        if factors is not None:
+            yield Curve("face_load_factor", "face load factor", "", _lines(np.asarray(factors)), UNKNOWN)
+
+
+def _lines(values: Any) -> tuple[tuple[float | None, ...], ...]:
+    """Lines of an array over positions, and pairs where it has them; those without any value are left out."""
+    columns = np.atleast_2d(np.asarray(values, dtype=float).T)
+    lines = (tuple(float(v) if math.isfinite(v) else None for v in column) for column in columns)
+    return tuple(line for line in lines if any(v is not None for v in line))

@@ -1,0 +1,165 @@
+"""A run of the page's scene: a process with its stage, log, end, and cancelling."""
+
+from __future__ import annotations
+
+import subprocess
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from flankfilm.app.checking import Place
+from flankfilm.app.document import Document
+from flankfilm.app.messages import heard
+from flankfilm.files.folder import PAGE
+from flankfilm.processes.worker_processes import module, python
+
+__all__ = ["Run", "RunState"]
+
+LONGEST = 400
+"""Lines of a log that are kept."""
+
+END = 3.0
+"""Seconds in which a process that is asked to end does so; it is killed then."""
+
+
+@dataclass(frozen=True)
+class RunState:
+    """How a run stands.
+
+    Attributes
+    ----------
+    what : str
+        Stage that is at work.
+    done, total : int
+        Stages.
+    seconds : float
+        Since the start.
+    log : tuple of str
+    status : int or None
+        Exit status; None as long as it runs.
+    cancelled : bool
+    folder : str
+        Of the results.
+    report : bool
+        Whether they have a report.
+    """
+
+    what: str = "starting"
+    done: int = 0
+    total: int = 1
+    seconds: float = 0.0
+    log: tuple[str, ...] = ()
+    status: int | None = None
+    cancelled: bool = False
+    folder: str = ""
+    report: bool = False
+
+
+class Run:
+    """One run in a process, which ends with this one.
+
+    Parameters
+    ----------
+    document : Document
+    place : Place
+        Where the files are that it names.
+    folder : Path
+        Of the results.
+    tell : callable
+        Takes each state, in another thread.
+    """
+
+    def __init__(
+        self, document: Document, place: Place, folder: Path, tell: Callable[[RunState], None]
+    ) -> None:
+        self._tell, self._folder, self._began = tell, folder, time.perf_counter()
+        self._lines: list[str] = []
+        self._what, self._done, self._total = "starting", 0, 1
+        self._cancelled = False
+        self._process = subprocess.Popen(
+            python(*module("flankfilm.app.run_child", str(place.root), str(place.folder), str(folder))),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            encoding="utf-8",
+            errors="replace",
+        )
+        self._thread = threading.Thread(target=self._follow, args=(document.text,), daemon=True)
+        self._thread.start()
+
+    @property
+    def state(self) -> RunState:
+        """How it stands now."""
+        status = self._process.poll() if not self._thread.is_alive() else None
+        return self._state(status)
+
+    @property
+    def running(self) -> bool:
+        """Whether its process is there."""
+        return self._process.poll() is None
+
+    def cancel(self) -> None:
+        """End it; what it has written is whole."""
+        self._cancelled = True
+        if self._process.poll() is None:
+            self._process.terminate()
+            killing = threading.Timer(END, self._kill)
+            killing.daemon = True
+            killing.start()
+
+    def close(self) -> None:
+        """End it, and wait until it has ended."""
+        self.cancel()
+        try:
+            self._process.wait(END)
+        except subprocess.TimeoutExpired:
+            self._kill()
+            self._process.wait()
+
+    def wait(self, seconds: float) -> RunState:
+        """State once it has ended, or after a time."""
+        self._thread.join(seconds)
+        return self.state
+
+    def _kill(self) -> None:
+        if self._process.poll() is None:
+            self._process.kill()
+
+    def _state(self, status: int | None) -> RunState:
+        return RunState(
+            self._what,
+            self._done,
+            self._total,
+            time.perf_counter() - self._began,
+            tuple(self._lines),
+            status,
+            self._cancelled,
+            str(self._folder),
+            status is not None and (self._folder / PAGE).is_file(),
+        )
+
+    def _follow(self, text: str) -> None:
+        """Give the process its scene, and hand on what it says until it ends."""
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        with suppress(OSError):
+            self._process.stdin.write(text)
+        with suppress(OSError):
+            self._process.stdin.close()
+        with suppress(ValueError, OSError):
+            for message in heard(self._process.stdout):
+                if isinstance(message, str):
+                    self._lines = [*self._lines[-LONGEST:], message]
+                elif message.keys() >= {"what", "done", "total"}:
+                    self._what = str(message["what"])
+                    self._done, self._total = int(message["done"]), max(int(message["total"]), 1)
+                self._tell(self._state(None))
+        self._process.stdout.close()
+        status = self._process.wait()
+        if status == 0:
+            self._what, self._done = "done", self._total
+        self._tell(self._state(status))

@@ -1,0 +1,163 @@
+"""Live answers are the digits of a run, of the newest scene alone; nothing is left running."""
+
+from __future__ import annotations
+
+import math
+import queue
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from flankfilm.app import live
+from flankfilm.app.checking import Place, checked
+from flankfilm.app.contact import answerable
+from flankfilm.app.document import Document
+from flankfilm.app.live import LOST, Live
+from flankfilm.app.live_child import Newest, answer
+from flankfilm.files.cache import Cache
+from flankfilm.report import stiffness_parts
+from flankfilm.scene import parse_scene
+from flankfilm.stages.engine import Engine
+from flankfilm.stages.mesh import DRY_CYCLE
+
+ROOT = Path(__file__).parents[3]
+HERE = Place(ROOT, ROOT)
+SCENE = """
+wants = ["stiffness"]
+tolerance = 0.05
+[pair]
+module_mm = 2.0
+face_width_mm = 40.0
+pinion = { teeth = 23, bore_mm = 20, tip_relief = { amount_um = 8, length_mm = 2 } }
+wheel = { teeth = 25, bore_mm = 20 }
+backlash_um = 50
+[material]
+youngs_modulus_GPa = 206
+poisson_ratio = 0.3
+[operating]
+pinion_torque_Nm = 200
+"""
+ECHO = """import sys, json
+for line in sys.stdin:
+    number = json.loads(line)["number"]
+    for kind in ("begun", "curves"):
+        print(json.dumps({"number": number, "kind": kind, "seconds": 0.0}), flush=True)
+"""
+STUCK = """import sys, json, time
+for line in sys.stdin:
+    number = json.loads(line)["number"]
+    print(json.dumps({"number": number, "kind": "begun", "seconds": 0.0}), flush=True)
+    if number % 2 == 0:
+        print(json.dumps({"number": number, "kind": "curves", "seconds": 0.0}), flush=True)
+    else:
+        time.sleep(60)
+"""
+
+
+def asked(text: str, newer=lambda: False) -> list[dict]:
+    messages: list[dict] = []
+    answer({"number": 1, "text": text, "root": str(ROOT), "folder": str(ROOT)}, messages.append, newer)
+    return messages
+
+
+def test_curves_and_figures_are_those_of_a_run_digit_by_digit():
+    drawn, told = asked(SCENE)
+    engine = Engine(parse_scene(SCENE), Cache(None))
+    run = engine[DRY_CYCLE]
+    assert drawn["position"] == run.position.tolist()
+    lines = {curve["name"]: curve["lines"] for curve in drawn["curves"]}
+    lag = (run.transmission_error / 1e-6).tolist()
+    assert lines["transmission_error"] == (tuple(lag),)
+    share = np.array([[math.nan if v is None else v for v in line] for line in lines["load_share"]])
+    np.testing.assert_allclose(np.nansum(share, axis=0), 1.0, rtol=1e-9)
+    of_run = [tuple(v if v > 0 else None for v in column) for column in run.load_share.T.tolist()]
+    assert lines["load_share"] == tuple(line for line in of_run if any(line))
+    figures = [(figure["text"], figure["unit"]) for figure in told["figures"]]
+    assert figures[:3] == [
+        (one.text, one.unit) for one in stiffness_parts.headlines(run, engine.scene.pair.face_width_mm / 1e3)
+    ]
+    assert all("±" in figure["error"] for figure in told["figures"][:3])
+    assert all(curve["error"] for curve in drawn["curves"])
+
+
+def test_a_newer_scene_ends_the_older_one_between_two_steps():
+    assert asked(SCENE, lambda: True) == []
+    seen = iter([False, True])
+    assert [message["kind"] for message in asked(SCENE, lambda: next(seen))] == ["curves"]
+
+
+def test_a_scene_with_faults_or_without_a_contact_has_no_curves():
+    (told,) = asked(SCENE.replace("[material]", "# "))
+    assert (told["kind"], told["text"]) == ("fault", "")  # the fault stands beside its key
+    (told,) = asked(SCENE.replace('"stiffness"', '"geometry"').partition("[operating]")[0])
+    assert "[operating]" in told["text"]
+
+
+def test_why_there_is_no_contact():
+    assert answerable(parse_scene(SCENE)) == ""
+    given = '[stiffness]\nmodel = "given"\nmean_N_per_m = 1e9\namplitudes = [0.1]\nphases_deg = [0]\n'
+    assert "given" in answerable(checked(Document(SCENE + given), HERE).scene)
+
+
+def test_requests_that_wait_are_lost_to_the_newest():
+    newest = Newest()
+    for number in range(5):
+        newest.put({"number": number})
+    assert newest.waits
+    assert newest.take() == {"number": 4}
+    assert not newest.waits
+    newest.put(None)
+    assert newest.take() is None
+
+
+@pytest.fixture
+def child(monkeypatch):
+    """Live answers of a stub."""
+    opened = []
+
+    def made(code: str, patience: float) -> tuple[Live, queue.Queue]:
+        monkeypatch.setattr(live, "python", lambda *_: [__import__("sys").executable, "-c", code])
+        messages: queue.Queue = queue.Queue()
+        opened.append(Live(messages.put, patience))
+        return opened[-1], messages
+
+    yield made
+    for one in opened:
+        one.close()
+        assert one.process is None
+
+
+def test_answers_have_the_number_of_the_newest_scene(child):
+    asking, messages = child(ECHO, 30.0)
+    for _ in range(20):
+        last = asking.ask(Document(SCENE), HERE)
+    until = time.monotonic() + 20.0
+    while time.monotonic() < until:
+        message = messages.get(timeout=20.0)
+        if message["number"] == last:
+            break
+    assert message == {"number": 20, "kind": "curves", "seconds": 0.0}
+    asking.forget()
+    with pytest.raises(queue.Empty):
+        messages.get(timeout=0.2)
+
+
+def test_a_process_that_is_stuck_at_an_older_scene_is_started_anew(child):
+    asking, messages = child(STUCK, 0.3)
+    asking.ask(Document(SCENE), HERE)
+    while not asking._begun:
+        time.sleep(0.01)
+    stuck = asking.process
+    asking.ask(Document(SCENE), HERE)
+    assert messages.get(timeout=20.0)["number"] == 2
+    assert asking.process != stuck
+
+
+def test_a_process_that_has_died_is_told_and_started_anew(child):
+    asking, messages = child("import sys; sys.stdin.readline(); sys.exit(9)", 30.0)
+    asking.ask(Document(SCENE), HERE)
+    assert messages.get(timeout=20.0)["text"] == LOST
+    asking.ask(Document(SCENE), HERE)
+    assert messages.get(timeout=20.0)["number"] == 2
