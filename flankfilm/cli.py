@@ -346,6 +346,7 @@ for _name, _where, _help in (
     ),
     ("view", "figures.rendering.commands:view", "Show the fields in RESULTS on the deformed teeth."),
     ("animate", "figures.rendering.commands:animate", "Draw the mesh cycle in RESULTS, deformed."),
+    ("app", "app.command:app", "Show a page that edits SCENE, answers while you drag, and runs it."),
 ):
     # the module is loaded when the command is called
     app.command(f"flankfilm.{_where}", name=_name, help=_help)

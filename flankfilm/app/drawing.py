@@ -19,6 +19,9 @@ POINTS = 10
 SEEN = 2.6
 """Half-width of what is drawn, in transverse pitches."""
 
+REACH = 2.0
+"""Where outlines end, over that half-width: a base pitch of motion brings no end into view."""
+
 MICROMETRES = 4
 """Decimals of a coordinate in mm: a tenth of a micrometre."""
 
@@ -75,8 +78,11 @@ def drawing(pair: gears.GearPair) -> Drawing:
     wide = SEEN * math.pi * pair.transverse_module
     tall = 0.62 * wide
     outlines = [
-        _near(place(outline(profile, points_per_part=POINTS)), middle, 1.6 * wide)
-        for place, profile in ((at_start.pinion, first), (at_start.wheel, second))
+        _near(place(outline(profile, points_per_part=POINTS)), middle, REACH * wide, centre)
+        for place, profile, centre in (
+            (at_start.pinion, first, np.zeros(2)),
+            (at_start.wheel, second, at_start.wheel_centre),
+        )
     ]
     left, bottom, width, height = (
         round(1e3 * float(v), MICROMETRES)
@@ -94,14 +100,14 @@ def drawing(pair: gears.GearPair) -> Drawing:
     )
 
 
-def _near(points: Array, middle: Array, reach: float) -> Array:
-    """The longest run of a closed outline's points that are near a place."""
+def _near(points: Array, middle: Array, reach: float, centre: Array) -> Array:
+    """The run of a closed outline's points that are near a place, and the axis, which closes it; all where all are."""
     close = np.linalg.norm(points - middle, axis=1) < reach
     if close.all() or not close.any():
         return points
     begin = int(np.flatnonzero(close & ~np.roll(close, 1))[0])
     rolled, kept = np.roll(points[:-1], -begin, axis=0), np.roll(close[:-1], -begin)
-    return rolled[: int(np.argmin(kept)) if not kept.all() else len(kept)]
+    return np.vstack([rolled[: int(np.argmin(kept))], centre])
 
 
 def _in_mm(points: Array) -> tuple[tuple[float, float], ...]:

@@ -14,10 +14,12 @@ from base import InputError
 from flankfilm.app.answers import instant
 from flankfilm.app.checking import Checked, checked
 from flankfilm.app.contact import answerable
+from flankfilm.app.document import Document
 from flankfilm.app.drawing import drawing
 from flankfilm.app.live import Live
 from flankfilm.app.running import Run, RunState
 from flankfilm.app.scene_files import Opened, SceneFiles, python_of
+from flankfilm.app.sliders import Slider, beside, sliders
 from flankfilm.building.pair import gear_pair
 
 __all__ = ["Model"]
@@ -59,7 +61,9 @@ class Model:
         self._run: Run | None = None
         self._number = 0
         self._judged = Checked(None)
+        self._sliders: tuple[Slider, ...] = ()
         self._judge()
+        self._sliders = self._ranges()
 
     @property
     def judged(self) -> Checked:
@@ -83,6 +87,7 @@ class Model:
             "number": self._number,
             "answers": [],
             "drawing": None,
+            "sliders": [vars(slider) for slider in self._sliders],
             "why_no_curves": "Correct the faults first."
             if judged.scene is None
             else answerable(judged.scene),
@@ -107,11 +112,27 @@ class Model:
         InputError
             Where the file cannot hold it.
         """
-        document = self._opened.document.with_value(path, typed)
+        self._change(self._opened.document.with_value(path, typed))
+
+    def _change(self, document: Document) -> None:
         if document is not self._opened.document:
             self._before = [*self._before[-MOST_UNDONE:], self._opened]
             self._opened = dataclasses.replace(self._opened, document=document)
             self._judge()
+
+    def drag(self, path: str, typed: str) -> None:
+        """Edit a key of a slider, with what must be there beside it.
+
+        Parameters
+        ----------
+        path : str
+            A key that has a slider.
+        typed : str
+        """
+        document = self._opened.document
+        for other, text in beside(document, path).items():
+            document = document.with_value(other, text)
+        self._change(document.with_value(path, typed))
 
     def undo(self) -> None:
         """Take the last edit back."""
@@ -188,6 +209,13 @@ class Model:
     def _take(self, opened: Opened) -> None:
         self._opened, self._before = opened, []
         self._judge()
+        self._sliders = self._ranges()
+
+    def _ranges(self) -> tuple[Slider, ...]:
+        """Sliders of the scene as it was opened."""
+        scene = self._judged.scene
+        distance = None if scene is None or scene.pair is None else gear_pair(scene).working_centre_distance
+        return sliders(self._opened.document, None if distance is None else round(1e3 * distance, 4))
 
     def _judge(self) -> None:
         """Judge the scene, and ask for its answers."""

@@ -67,16 +67,16 @@ class Browser:
         return self._call(method, parameters, self._session)
 
     def open(
-        self, page: Path, width: int, height: int = 900, dark: bool = False, media: str = "screen"
+        self, page: Path | str, width: int, height: int = 900, dark: bool = False, media: str = "screen"
     ) -> None:
-        """Load a file as a screen of a given size and scheme shows it."""
+        """Load a file, or what is at an address, as a screen of a given size and scheme shows it."""
         self.logged.clear()
         phone = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600}
         self.call("Emulation.setDeviceMetricsOverride", **phone)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.call("Emulation.setEmulatedMedia", media=media, features=[scheme])
         self._events.clear()
-        self.call("Page.navigate", url=page.absolute().as_uri())
+        self.call("Page.navigate", url=page if isinstance(page, str) else page.absolute().as_uri())
         self._until("Page.loadEventFired")
 
     def run(self, script: str) -> Any:
@@ -146,15 +146,21 @@ class Browser:
 
 
 @pytest.fixture(scope="session")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    """Chromium; where it is missing the test is skipped, or fails where FLANKFILM_REQUIRE_CHROMIUM is set."""
+def chromium() -> str:
+    """Path of Chromium; where it is missing the test is skipped, or fails where FLANKFILM_REQUIRE_CHROMIUM is set."""
     executable = next((found for name in NAMES if (found := shutil.which(name))), None)
     if executable is None:
         reply = "no Chromium (apt-get install chromium)"
         if os.environ.get("FLANKFILM_REQUIRE_CHROMIUM"):
             pytest.fail(reply)
         pytest.skip(reply)
-    opened = Browser(executable, tmp_path_factory.mktemp("chromium"))
+    return executable
+
+
+@pytest.fixture(scope="session")
+def browser(chromium: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """Chromium with one page."""
+    opened = Browser(chromium, tmp_path_factory.mktemp("chromium"))
     yield opened
     opened.close()
 
