@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+import fem
 from base.results import figures
+from fem.influence.memo import Memo
 from flankfilm import coupling
 from flankfilm.app.answers import Answer, answers_of
 from flankfilm.coupling.mesh.loaded_teeth import POSITIONS
@@ -19,7 +22,10 @@ from flankfilm.scene import Scene
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import COMPLIANCE, FACE_GEARS, PLAN, along_the_face, loaded_teeth
 
-__all__ = ["Curve", "answerable", "curves", "figures_of", "solve_gears", "solved"]
+__all__ = ["Curve", "KnownGears", "answerable", "curves", "figures_of", "solve_gears", "solved"]
+
+PAIRS = 4
+"""Pairs whose compliance is kept."""
 
 UNKNOWN = "error unknown"
 
@@ -78,13 +84,30 @@ def solve_gears(engine: Engine) -> None:
             _ = engine[FACE_GEARS]
 
 
-def solved(engine: Engine) -> coupling.MeshCycle:
+class KnownGears:
+    """Compliances of the last pairs, each as the very record with which laws of tip corners are kept."""
+
+    def __init__(self) -> None:
+        self._kept: Memo[fem.PairCompliance] = Memo(PAIRS)
+
+    def teeth(self, engine: Engine) -> coupling.LoadedTeeth:
+        """Pair under the scene's torque; its compliance is that of an earlier scene with the same gears."""
+        teeth = loaded_teeth(engine)
+        if (compliance := teeth.compliance) is None:
+            return teeth
+        key = json.dumps(engine.inputs(COMPLIANCE), sort_keys=True)
+        return replace(teeth, compliance=self._kept.obtain(key, lambda: compliance))
+
+
+def solved(engine: Engine, known: KnownGears) -> coupling.MeshCycle:
     """Dry mesh cycle at the positions of a run, without the events between them, which take four times as long.
 
     Parameters
     ----------
     engine : Engine
         Of a scene that has a loaded contact.
+    known : KnownGears
+        Gears that were solved before; changed.
 
     Raises
     ------
@@ -92,7 +115,7 @@ def solved(engine: Engine) -> coupling.MeshCycle:
         Where the contact has no solution.
     """
     asked = engine[PLAN].resolution
-    return loaded_teeth(engine).cycle(POSITIONS, tolerance=min(asked.sampling, asked.transmission_error))
+    return known.teeth(engine).cycle(POSITIONS, tolerance=min(asked.sampling, asked.transmission_error))
 
 
 def curves(cycle: coupling.MeshCycle, face_width: float) -> tuple[Curve, ...]:

@@ -102,16 +102,21 @@ def drawing(pair: gears.GearPair) -> Drawing:
 
 def _near(points: Array, middle: Array, reach: float, centre: Array) -> Array:
     """The run of a closed outline's points that are near a place, and the axis, which closes it; all where all are."""
-    close = np.linalg.norm(points - middle, axis=1) < reach
-    if close.all() or not close.any():
+    distance = np.linalg.norm(points[:-1] - middle, axis=1)
+    half = len(distance) // 2
+    around = np.roll(
+        np.arange(len(distance)), half - int(np.argmin(distance))
+    )  # the nearest one in the middle
+    away = np.flatnonzero(distance[around] > reach)
+    if not away.size:
         return points
-    begin = int(np.flatnonzero(close & ~np.roll(close, 1))[0])
-    rolled, kept = np.roll(points[:-1], -begin, axis=0), np.roll(close[:-1], -begin)
-    return np.vstack([rolled[: int(np.argmin(kept))], centre])
+    first = np.max(away[away < half], initial=-1) + 1
+    last = np.min(away[away > half], initial=len(around))
+    return np.vstack([points[around[first:last]], centre])
 
 
 def _in_mm(points: Array) -> tuple[tuple[float, float], ...]:
-    return tuple(_point(point) for point in points)
+    return tuple((x, y) for x, y in (np.round(1e3 * points, MICROMETRES) + 0.0).tolist())
 
 
 def _point(point: Array) -> tuple[float, float]:

@@ -12,10 +12,13 @@ import time
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flankfilm.app.messages import Message, heard, own_output, send
 from flankfilm.files.cache import Cache, keep_compiled_code, results_cache
+
+if TYPE_CHECKING:
+    from flankfilm.app.contact import KnownGears
 
 __all__ = ["Newest", "answer"]
 
@@ -49,7 +52,9 @@ class Newest:
             return self._request is not None
 
 
-def answer(request: Message, tell: Callable[[Message], None], newer: Callable[[], bool]) -> None:
+def answer(
+    request: Message, tell: Callable[[Message], None], newer: Callable[[], bool], known: KnownGears
+) -> None:
     """Answer for one scene, step by step; leave off where there is a newer one.
 
     Parameters
@@ -60,6 +65,8 @@ def answer(request: Message, tell: Callable[[Message], None], newer: Callable[[]
         Takes messages of a ``kind``: "curves", "figures" or "fault".
     newer : callable
         Whether there is a newer request.
+    known : KnownGears
+        Gears that were solved before; changed.
     """
     from base import InputError, SolverError
     from flankfilm.app.checking import Place, checked
@@ -87,7 +94,7 @@ def answer(request: Message, tell: Callable[[Message], None], newer: Callable[[]
             solve_gears(engine)
             if newer():
                 return None
-            cycle, face_width = solved(engine), engine[PAIR].face_width
+            cycle, face_width = solved(engine, known), engine[PAIR].face_width
             drawn = [vars(curve) for curve in curves(cycle, face_width)]
             say("curves", position=cycle.position.tolist(), curves=drawn)
             if newer():
@@ -116,9 +123,14 @@ def main() -> None:
         newest.put(None)
 
     threading.Thread(target=read, daemon=True).start()
+    known: KnownGears | None = None  # what it is of takes a second to load: a request is acknowledged before
     while (request := newest.take()) is not None:
         send(output, {"number": request["number"], "kind": "begun", "seconds": 0.0})
-        answer(request, lambda message: send(output, message), lambda: newest.waits)
+        if known is None:
+            from flankfilm.app.contact import KnownGears
+
+            known = KnownGears()
+        answer(request, lambda message: send(output, message), lambda: newest.waits, known)
 
 
 if __name__ == "__main__":

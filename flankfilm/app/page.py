@@ -50,7 +50,7 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
 class Windows(LinkProtocol):
-    """Calls of the page; each connection has a window of its own, which goes with it."""
+    """Calls of the page; each connection has a separate window, which ends with it."""
 
     def __init__(self, files: SceneFiles, name: str) -> None:
         super().__init__()

@@ -12,7 +12,7 @@ import pytest
 
 from flankfilm.app import live
 from flankfilm.app.checking import Place, checked
-from flankfilm.app.contact import answerable
+from flankfilm.app.contact import KnownGears, answerable
 from flankfilm.app.document import Document
 from flankfilm.app.live import LOST, Live
 from flankfilm.app.live_child import Newest, answer
@@ -58,7 +58,12 @@ for line in sys.stdin:
 
 def asked(text: str, newer=lambda: False) -> list[dict]:
     messages: list[dict] = []
-    answer({"number": 1, "text": text, "root": str(ROOT), "folder": str(ROOT)}, messages.append, newer)
+    answer(
+        {"number": 1, "text": text, "root": str(ROOT), "folder": str(ROOT)},
+        messages.append,
+        newer,
+        KnownGears(),
+    )
     return messages
 
 
@@ -80,6 +85,19 @@ def test_curves_and_figures_are_those_of_a_run_digit_by_digit():
     ]
     assert all("±" in figure["error"] for figure in told["figures"][:3])
     assert all(curve["error"] for curve in drawn["curves"])
+
+
+def test_gears_that_are_known_change_no_digit():
+    known, told = KnownGears(), []
+    for torque in (150, 200, 250, 200):
+        text = SCENE.replace("= 200", f"= {torque}")
+        request = {"number": torque, "text": text, "root": str(ROOT), "folder": str(ROOT)}
+        answer(request, told.append, lambda: False, known)
+    drawn, figures = asked(SCENE)
+    for message in (told[2], told[6]):
+        assert message["curves"] == drawn["curves"]
+    for message in (told[3], told[7]):
+        assert message["figures"] == figures["figures"]
 
 
 def test_a_newer_scene_ends_the_older_one_between_two_steps():
