@@ -59,6 +59,8 @@ class CellShare:
         By how much smallest gaps of cells fall short of their mean [m]; 0 where cells touch all over or nowhere.
     shafts : HeldShafts or None
         From whose first touch the share is measured; None where they are rigid.
+    slopes : (2, torques, pitches, positions, pairs cells) array or None
+        Of forces on cells by D and by a turn across the line of action (`CellContact.tilts`), without shafts [N/m, N].
     """
 
     share: LoadShare
@@ -67,6 +69,7 @@ class CellShare:
     strips: Array
     rise: Array
     shafts: HeldShafts | None = None
+    slopes: Array | None = None
 
     @property
     def forces(self) -> Array:
@@ -160,15 +163,23 @@ class CellContact:
         load_share, strips = self.by_width(face, near, share)
         bends = np.zeros_like(load_share.forces)
         slopes = np.zeros_like(bends), np.zeros_like(bends)
+        tilts = self.tilts(face) if held else None
+        responses = None if tilts is None else np.zeros((2, *bends.shape))
         for strip in np.unique(strips).tolist():
             torques = np.flatnonzero(strips == strip)
             forces = load_share.forces[torques]
             wanted, nothing = np.ones(forces.shape[:-1], dtype=bool), np.zeros_like(forces)
             alone, stiff = coupling(strip)
             bends[torques] = stiff.applied(forces, wanted, nothing)
-            if held and shafts is not None:
-                slope = law(strip, tuple(torques.tolist())).slope(forces)
-                slope = slope if film is None else slope - film.slope(forces)
+            if not held or (shafts is None and tilts is None):
+                continue
+            slope = law(strip, tuple(torques.tolist())).slope(forces)
+            slope = slope if film is None else slope - film.slope(forces)
+            if responses is not None and tilts is not None:
+                responses[:, torques] = alone.solved(
+                    slope, reach + nothing, reach * tilts + nothing, forces > 0.0, wanted
+                )
+            if shafts is not None:
                 by_tilt = nothing + shafts.levers(len(self.sides.sign), self.sides.count)
                 slopes[0][torques], slopes[1][torques] = alone.solved(
                     slope, reach + nothing, by_tilt, forces > 0.0, wanted
@@ -189,11 +200,17 @@ class CellContact:
             strips,
             np.zeros_like(remaining_gaps) if rise is None else rise,
             reached,
+            responses,
         )
 
     def shafts(self, face: FaceSetting) -> UnderShafts | None:
         """Shafts under the cells of a face; None where both are rigid."""
         return shafts_under_face(face, self.pair)
+
+    def tilts(self, face: FaceSetting) -> Array | None:
+        """What a turn across the line of action closes of D at each cell (positions, n) [m]; None if not looked at."""
+        del face
+        return None
 
     def laws(self, face: FaceSetting) -> JointLaw:
         """Laws of cells that touch all over."""

@@ -98,6 +98,18 @@ class LineContact(CellContact):
             )
         )
 
+    def tilts(self, face: FaceSetting) -> Array:
+        """Places z of cells, moved along their lines to the pitch point (positions, n) [m]."""
+        cells = self.lines.divided(face.cells)
+        places = cells.z + (cells.rho[0] - self.pair.points.C) * self.pair.helix.base_tangent
+        return np.where(cells.used, places, 0.0).reshape(len(cells.z), -1)
+
+    def approach_and_tilt(self, face: FaceSetting, slopes: Array) -> Array:
+        """Stiffness of the mesh between two bodies (..., 2, 2) of slopes of cells (2, ..., n), as of ``LineLoads``."""
+        moved = self.pair.helix.base_cosine * np.stack([slopes, self.tilts(face) * slopes])
+        matrix = np.moveaxis(moved.sum(axis=-1), (0, 1), (-2, -1))
+        return np.asarray(0.5 * (matrix + np.swapaxes(matrix, -1, -2)))
+
     def shafts(self, face: FaceSetting) -> ShaftsUnderLines | None:
         """Shafts under the cells of all lines; None where both are rigid."""
         if not face.on_shafts:

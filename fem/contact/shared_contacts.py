@@ -19,13 +19,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Booleans, record
-from fem.contact.cell_contact import CellContact
+from fem.contact.cell_contact import CellContact, CellShare
 from fem.contact.face_errors import CellErrors, cell_errors, half_as_many, no_errors
 from fem.contact.line_contact import LineContact
 from fem.laws.local_law import Film, film_yielding
 
 if TYPE_CHECKING:
     from fem.contact.contact_sides import ContactSides
+    from fem.pair.face_setting import FaceSetting
     from fem.pair.face_shafts import HeldShafts
     from fem.pair.pair_compliance import PairCompliance
     from gears import LoadShare
@@ -55,6 +56,10 @@ class SharedContacts:
         None where they are rigid.
     fewer : (torques, pitches, positions, pairs, cells) array or None
         Forces with half as many cells [N], of lines of contact.
+    slopes : (torques, pitches, positions, pairs, cells) array or None
+        Of forces on cells by D, of lines of contact, without shafts [N/m].
+    tilting : (2, torques, pitches, positions, 2, 2) array or None
+        Stiffness of their mesh against approach and tilt, and that with half as many cells; as of ``LineLoads``.
     """
 
     share: LoadShare
@@ -66,6 +71,8 @@ class SharedContacts:
     errors: CellErrors
     shafts: HeldShafts | None = None
     fewer: Array | None = None
+    slopes: Array | None = None
+    tilting: Array | None = None
 
     @classmethod
     def even(cls, share: LoadShare, open_: Array) -> SharedContacts:
@@ -187,8 +194,24 @@ def share_staying(bodies: PairCompliance, whole: Array, sides: ContactSides) -> 
         np.zeros((2, 2, *share.forces.shape)),
         cell_errors(over, face, fine, coarse),
         fine.shafts,
-        coarse.forces if sides.setups[0].helical else None,
+        **(_of_lines(lines, (face, few), (fine, coarse)) if sides.setups[0].helical else {}),
     )
+
+
+def _of_lines(
+    over: LineContact, faces: tuple[FaceSetting, FaceSetting], shares: tuple[CellShare, CellShare]
+) -> dict[str, Array]:
+    """What lines of contact have beside: forces on fewer cells, slopes by a turn and by tilt."""
+    (fine, coarse), tilting = shares, []
+    for face, share in zip(faces, shares, strict=True):
+        assert share.slopes is not None
+        tilting.append(over.approach_and_tilt(face, share.slopes))
+    assert fine.slopes is not None
+    return {
+        "fewer": coarse.forces,
+        "slopes": fine.slopes[0].reshape(fine.forces.shape),
+        "tilting": np.stack(tilting),
+    }
 
 
 def of_pairs(load_share: LoadShare, cells: int) -> LoadShare:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
@@ -30,7 +31,13 @@ BY_LEVER = "off by the force times centre_error: it passes through zero"
 
 @record
 class LineLoads(CellsOfLines):
-    """Lines of contact over the positions of a mesh cycle, each divided into equal cells."""
+    """Lines of contact over the positions of a mesh cycle, each divided into equal cells.
+
+    Two bodies that a mesh joins reach two motions of it: cells approach each other by a displacement D along the
+    transverse line of action, times cos(beta_b), and by a tilt t as D + t zeta does, with
+    zeta = z + (rho1 - rho1 at C) tan(beta_b). `tilting` is what (F, M), sums of cos(beta_b) F_c and of
+    cos(beta_b) F_c zeta, grow by (D, t): symmetric, with the couplings of all cells by the bodies.
+    """
 
     no_error = IN_SINGLE_CELLS
     headline: ClassVar[tuple[str, ...]] = ("greatest_line_load_factor", "greatest_line_load", "axial_force")
@@ -45,6 +52,11 @@ class LineLoads(CellsOfLines):
     most_loaded: Array = part("largest mean over half a module of each line (positions, pairs) [N/m]")
     setting: FaceSetting = part("cells, alignment and leads")
     fewer: Array = part("forces with half as many cells of each line (positions, pairs, cells) [N]")
+    slopes: Array = part("slopes of the forces on cells by D (positions, pairs, cells) [N/m], without shafts")
+    tilting: Array = part(
+        "stiffness of the mesh against approach and tilt, and with half as many cells (2, positions, 2, 2), "
+        "without shafts [N/m, N, N m]"
+    )
     slope: float = quantity(
         "1", "change of the pinion's curvature radius along the face: tan(beta_b)", no_error=EXACT
     )
@@ -197,6 +209,15 @@ class LineLoads(CellsOfLines):
         loads = np.full(len(self.position), force), self.tilting_moment[gear], self.axial_moment[gear]
         return bearing_forces(shaft, *loads, self.pair.face_offsets[gear])
 
+    def less(self, slope: Array) -> Self:
+        """Leave a turn per force out of D: `slope` is what D then grows by the D that was (positions,)."""
+        stiffness = self.tilting[0, :, 0, 0]
+        yielding = np.divide(1.0 - slope, stiffness, out=np.zeros_like(slope), where=stiffness > 0.0)
+        column = self.tilting[..., 0]
+        rest = 1.0 - yielding * column[..., 0]
+        added = (yielding / rest)[..., None, None] * column[..., :, None] * column[..., None, :]
+        return replace(self, slopes=self.slopes / slope[:, None, None], tilting=self.tilting + added)
+
     @described("1")
     def contact_pattern(self) -> float:
         """Part of the length of all lines, over the whole cycle, that is touched."""
@@ -230,6 +251,9 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         return known.reshape(-1, *known.shape[2:])
 
     largest = cells.largest_mean(forces, WINDOW * pair.module * pair.helix.base_cosine)
+    assert over.slopes is not None
+    assert over.tilting is not None
+    slopes, tilting = over.slopes[number], over.tilting[:, number]
     fewer = forces if over.fewer is None else over.fewer[number]
     return LineLoads(
         position=contact.candidates.position,
@@ -240,6 +264,8 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         gap=of_used(np.maximum(over.remaining_gaps[number], 0.0)),
         most_loaded=largest.reshape(-1, largest.shape[-1]) * pair.helix.base_cosine,
         fewer=fewer.reshape(-1, *fewer.shape[2:]),
+        slopes=slopes.reshape(-1, *slopes.shape[2:]),
+        tilting=tilting.reshape(2, -1, 2, 2),
         slope=lines.slope,
         centre_error=float(over.errors.centre[number]),
         **of_cells(setup, over, number, plane),

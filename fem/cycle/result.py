@@ -241,6 +241,7 @@ class MeshCycle(PairFigures, MeshFigures):
             error=self.error * max(1.0, float(np.max(1.0 / slope))),
             problem=None if self.problem is None else self.problem.less(less),
             face=None if self.face is None else self.face.less(slope),
+            lines=None if self.lines is None else self.lines.less(slope),
             origin=(self, less),
         )
 

@@ -86,7 +86,8 @@ def _of_films(scene: Scene, condition: str, drop: str) -> Iterator[Fault]:
     if scene.film.stiffness is not None:
         allowed = f"must be left out {condition}: films of cells have their own slope by the load"
         yield Fault("film.stiffness", f"{scene.film.stiffness!r}", allowed, f"Leave it out, {drop}")
-    if scene.dynamics is not None and scene.dynamics.damping_ratio == BY_FILM:
+    helical = scene.pair is not None and scene.pair.helical
+    if scene.dynamics is not None and scene.dynamics.damping_ratio == BY_FILM and not helical:
         allowed = f"must be a number {condition}: the damping of films is that of even loads"
         yield Fault("dynamics.damping_ratio", "'film'", allowed, f"Give a number, {drop}")
 

@@ -13,7 +13,6 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
 from base import Fault, InputError, shorten
-from flankfilm.scene.sections.dynamics import BY_FILM
 from flankfilm.scene.traits import given_keys, named
 from flankfilm.scene.wants import MOTIONS, RATED, UNLOADED, WANTS
 
@@ -101,13 +100,6 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
         "contact with tip edges outside the path",
         "must be false",
         "Give contact_beyond_path = false",
-    ),
-    SpurKey(
-        "dynamics.damping_ratio",
-        "damping by films along oblique lines",
-        "must be a number",
-        "Give a number, such as 0.05",
-        lambda value: value == BY_FILM,
     ),
     SpurKey("heat", "loaded teeth at other temperatures"),
     SpurKey(

@@ -196,7 +196,6 @@ class TestTable:
         ("heat", {"pinion_temperature_C": 60.0}, False),
         ("stiffness.plane", "stress", False),
         ("stiffness.contact_beyond_path", True, False),
-        ("dynamics.damping_ratio", "film", False),
         ("shafts.wheel.segments", [{"length_mm": 200.0, "diameter_mm": 40.0}], "motion"),
         ("pair.tight", True, False),
         ("pair.pinion.blank", {"rim_thickness_mm": 6.0, "web_thickness_mm": 12.0}, False),

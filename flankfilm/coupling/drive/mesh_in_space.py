@@ -34,7 +34,7 @@ class SpatialMesh:
     Attributes
     ----------
     stiffness : (positions, 12, 12) array
-        Sum of k_c g g^T: of pinion, then wheel [N/m, N, N m].
+        Of g g^T by the slopes of forces: of pinion, then wheel [N/m, N, N m].
     load : (positions, 12) array
         Sum of F_c g: what the static load presses the bodies apart with [N, N m].
     turn : (positions,) array
@@ -42,6 +42,8 @@ class SpatialMesh:
     pair : gears.GearPair
     torque : float
         Of the pinion [N m].
+    coarser : (positions, 12, 12) array or None
+        Stiffness with half as many cells.
     """
 
     stiffness: Array
@@ -49,6 +51,7 @@ class SpatialMesh:
     turn: Array
     pair: gears.GearPair
     torque: float
+    coarser: Array | None = None
 
     @property
     def torsion(self) -> Array:
@@ -103,9 +106,8 @@ def cell_wrenches(pair: gears.GearPair, rho1: Array, z: Array) -> Array:
 def spatial_mesh(cycle: fem.MeshCycle) -> SpatialMesh:
     """Mesh of a helical pair with six freedoms a body, by its loaded contact.
 
-    The slope of each line's force is that of the cycle, and lies evenly over the cells that bear: projected on the turn
-    of the pinion it is the cycle's tangent stiffness. How much bodies couple cells of a line is in that slope, and not
-    in how it is spread.
+    The stiffness is that of the linearised contact against the two motions that bodies reach, an approach and a tilt,
+    with the couplings of all cells by the bodies (`fem.LineLoads.tilting`).
 
     Parameters
     ----------
@@ -122,24 +124,16 @@ def spatial_mesh(cycle: fem.MeshCycle) -> SpatialMesh:
     >>> from flankfilm.coupling import spatial_mesh
     >>> mesh = spatial_mesh(fem.mesh_cycle(pair, 600.0, 16))  # doctest: +SKIP
     """
-    lines = cycle.lines
+    lines, pair = cycle.lines, cycle.pair
     with Faults() as faults:
         if lines is None:
             allowed = "must have lines of contact, as those of helical pairs do"
-            faults.add("cycle", cycle.pair, allowed, "give helix_angle, or take `pair_drive` for a spur pair")
+            faults.add("cycle", pair, allowed, "give helix_angle, or take `pair_drive` for a spur pair")
     assert lines is not None
-    bears = np.nan_to_num(lines.line_load) > 0.0
-    each = cycle.pair_stiffness / np.maximum(bears.sum(axis=-1), 1) / cycle.pair.helix.base_cosine
-    return _summed(cycle, lines, bears * each[..., None])
-
-
-def _summed(cycle: fem.MeshCycle, lines: fem.LineLoads, stiffness: Array) -> SpatialMesh:
-    """Sums over all cells of a position."""
-    wrench = cell_wrenches(cycle.pair, np.nan_to_num(lines.rho[0]), np.nan_to_num(lines.z))
-    return SpatialMesh(
-        np.einsum("plc,plci,plcj->pij", stiffness, wrench, wrench),
-        np.einsum("plc,plci->pi", lines.force, wrench),
-        cycle.transmission_error,
-        cycle.pair,
-        cycle.torque,
-    )
+    pitch_point, cosine = np.array(pair.points.C), pair.helix.base_cosine
+    there = cell_wrenches(pair, pitch_point, np.array(0.0))
+    moved = np.stack([there, cell_wrenches(pair, pitch_point, np.array(1.0)) - there]) / cosine
+    fine, coarse = np.einsum("ai,npab,bj->npij", moved, lines.tilting, moved)
+    wrench = cell_wrenches(pair, np.nan_to_num(lines.rho[0]), np.nan_to_num(lines.z))
+    load = np.einsum("plc,plci->pi", lines.force, wrench)
+    return SpatialMesh(fine, load, cycle.transmission_error, pair, cycle.torque, coarse)

@@ -237,6 +237,13 @@ def film_table(
         Where a film has no solution.
     """
     _check(model)
+    rho1, load = film_grid(pair, dry)
+    _check_place(model, pair, float(pair.path_at(rho1).radius.max()), float(load[-1]))
+    return table_on(pair, rho1, load, speed, lubricant, model, tolerance)
+
+
+def film_grid(pair: gears.GearPair, dry: MeshCycle) -> tuple[Array, Array]:
+    """Places of the path (places,) [m], and line loads (loads,) [N/m], both rising, around those of a dry contact."""
     greatest = line_loads(dry, pair.face_width).max()
     loaded = dry.rho1[np.isfinite(dry.rho1) & (dry.forces > 0.0)]
     if dry.lines is not None:  # whose cells each have their place
@@ -244,10 +251,7 @@ def film_table(
         loaded, greatest = cells.rho1[cells.bear], cells.greatest
     half = 0.5 * pair.base_pitch / dry.position.size
     ends = max(float(loaded.min()) - half, pair.points.A), min(float(loaded.max()) + half, pair.points.E)
-    rho1 = np.linspace(*ends, PLACES)
-    load = np.geomspace(HEAVIEST * greatest, LIGHTEST * greatest, LOADS)
-    _check_place(model, pair, float(pair.path_at(rho1).radius.max()), float(load[0]))
-    return table_on(pair, rho1, load[::-1], speed, lubricant, model, tolerance)
+    return np.linspace(*ends, PLACES), np.geomspace(HEAVIEST * greatest, LIGHTEST * greatest, LOADS)[::-1]
 
 
 def table_on(
@@ -260,13 +264,7 @@ def table_on(
     tolerance: float,
 ) -> FilmTable:
     """Solve films at places (places,) [m] under line loads (loads,) [N/m], both rising; else as of `film_table`."""
-    rows: list[tuple[Solved, ...]] = []
-    for place in rho1:
-        at = np.full(load.size, place)
-        contacts = line_contacts(pair, at, load[::-1], speed, lubricant)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RangeWarning)  # films that are borne warn where they are shown
-            rows.append(films_under(model, at, contacts, rows[-1] if rows else (), tolerance))
+    rows = films_on(pair, rho1, load, speed, lubricant, model, tolerance)
 
     def each(figure: str) -> Array:
         return np.array([[getattr(film, figure) for film in row[::-1]] for row in rows])
@@ -290,6 +288,26 @@ def table_on(
         np.array([[error.separation_shift for error in row] for row in errors]) if solved else None,
         np.array([[error.slope_shift for error in row] for row in errors]) if solved else None,
     )
+
+
+def films_on(
+    pair: gears.GearPair,
+    rho1: Array,
+    load: Array,
+    speed: float,
+    lubricant: ehl.Lubricant,
+    model: FilmModel,
+    tolerance: float,
+) -> list[tuple[Solved, ...]]:
+    """Films at every place, from the heaviest to the lightest; arguments as of `table_on`."""
+    rows: list[tuple[Solved, ...]] = []
+    for place in rho1:
+        at = np.full(load.size, place)
+        contacts = line_contacts(pair, at, load[::-1], speed, lubricant)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RangeWarning)  # films that are borne warn where they are shown
+            rows.append(films_under(model, at, contacts, rows[-1] if rows else (), tolerance))
+    return rows
 
 
 def _check(model: FilmModel) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 import ehl
+import fem
 import gears
 from base import (
     Array,
@@ -20,6 +21,7 @@ from base import (
     record,
 )
 from base.results import EXACT
+from flankfilm.coupling.films.film_responses import FilmResponses, film_responses
 from flankfilm.coupling.films.films import FilmModel, contacts_of, films_along, supply_of, touching
 from flankfilm.coupling.films.lubricated import SOLVED
 from flankfilm.coupling.films.lubricated_record import LubricatedCycle
@@ -98,6 +100,10 @@ def film_damping(
     film's complex compliance C, ``K = sum 1/(1/g + C(omega)/b)``, ``c = Im K/omega``. The damping ratio is that of the
     mean of c over a base pitch, ``c/(2 m_e omega_n)``.
 
+    Cells of lines of contact each have the slope of their force and their film, and the pair is their sum: what films
+    change the mesh by is exact in the first order, whatever the bodies couple. Their films are solved once over places
+    and line loads.
+
     Damping decides a motion where it oscillates near its natural frequency, whatever excites it; so that is the
     frequency unless another is given. A film damps less the faster it oscillates.
 
@@ -144,18 +150,64 @@ def film_damping(
     teeth = _Teeth.of(cycle, reference, extra_inertia)
     scales = pair_scales(pair, torque, teeth.mean, extra_inertia)
     omega = scales.omega_n if frequency is None else float(frequency)
+    asked = _Asked(cycle, pair, speed, lubricant, film, omega, tolerance)
+    with warned_once():
+        summed = _of_pairs(asked, teeth) if teeth.lines is None else _of_cells(asked, teeth.lines)
+    damping = float(np.mean(summed.damping))
+    critical = 2.0 * scales.equivalent_mass * scales.omega_n
+    return FilmDamping(
+        damping_ratio=damping / critical,
+        damping=damping,
+        stiffness_change=float(np.mean(summed.stiffer) / np.mean(summed.stiffness)),
+        frequency=omega,
+        natural_frequency=scales.omega_n,
+        equivalent_mass=scales.equivalent_mass,
+        position=summed.position,
+        damping_curve=summed.damping,
+        error=summed.error,
+        cost=Cost(watch.seconds, counts={"films": summed.films}),
+    )
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What films are asked for."""
+
+    cycle: MeshCycle
+    pair: gears.GearPair
+    speed: float
+    lubricant: ehl.Lubricant
+    film: FilmModel
+    omega: float
+    tolerance: float
+
+
+@dataclass(frozen=True)
+class _Summed:
+    """Over some positions: damping [N s/m], by how much films make the mesh stiffer, and its stiffness [N/m]."""
+
+    position: Array
+    damping: Array
+    stiffer: Array
+    stiffness: Array
+    error: float
+    films: int
+
+
+def _of_pairs(asked: _Asked, teeth: _Teeth) -> _Summed:
+    """Films of whole pairs, each with its slope."""
+    cycle, pair, omega = asked.cycle, asked.pair, asked.omega
     stride = max(1, round(cycle.position.size / POSITIONS))
     kept = np.arange(cycle.position.size) % stride == stride // 2
     loaded, number = touching(cycle)
-    with warned_once():
-        places, contacts = contacts_of(pair, cycle, speed, lubricant)
-        chosen = np.flatnonzero(kept[loaded])
-        few = tuple(contacts[i] for i in chosen)
-        supplies = tuple(supply_of(film.supply, contact) for contact in few)
-        films = films_along(film, places[chosen], few, supplies, (), tolerance)
-        answers = [
-            ehl.film_response(solved, omega) for solved in films if not isinstance(solved, ehl.FormulaFilm)
-        ]
+    places, contacts = contacts_of(pair, cycle, asked.speed, asked.lubricant)
+    chosen = np.flatnonzero(kept[loaded])
+    few = tuple(contacts[i] for i in chosen)
+    supplies = tuple(supply_of(asked.film.supply, contact) for contact in few)
+    films = films_along(asked.film, places[chosen], few, supplies, (), asked.tolerance)
+    answers = [
+        ehl.film_response(solved, omega) for solved in films if not isinstance(solved, ehl.FormulaFilm)
+    ]
     slope = teeth.slopes[loaded[chosen], number[chosen]]
     yielding = np.array([answer.compliance for answer in answers]) / pair.face_width
     errors = np.array([answer.error for answer in answers]) + np.array(
@@ -167,28 +219,59 @@ def film_damping(
     stiff = np.zeros(cycle.position.size)
     np.add.at(stiff, loaded[chosen], series.real - slope)
     off = float(np.sum(np.abs(series) ** 2 * np.abs(yielding) * errors) / np.abs(np.sum(series.imag)))
-    damping = float(np.mean(curve[kept]))
-    critical = 2.0 * scales.equivalent_mass * scales.omega_n
-    return FilmDamping(
-        damping_ratio=damping / critical,
-        damping=damping,
-        stiffness_change=float(np.mean(stiff[kept]) / np.mean(teeth.slopes.sum(axis=1)[kept])),
-        frequency=omega,
-        natural_frequency=scales.omega_n,
-        equivalent_mass=scales.equivalent_mass,
-        position=cycle.position[kept],
-        damping_curve=curve[kept],
-        error=off,
-        cost=Cost(watch.seconds, counts={"films": len(answers)}),
+    return _Summed(
+        cycle.position[kept], curve[kept], stiff[kept], teeth.slopes.sum(axis=1)[kept], off, len(answers)
+    )
+
+
+def _of_cells(asked: _Asked, lines: fem.LineLoads) -> _Summed:
+    """Films of all cells of lines of contact, each with the slope of its force."""
+    dry = asked.cycle.dry if isinstance(asked.cycle, LubricatedCycle) else asked.cycle
+    responses = film_responses(
+        asked.pair, dry, asked.speed, asked.lubricant, asked.film, asked.omega, asked.tolerance
+    )
+    cosine, load = asked.pair.helix.base_cosine, np.nan_to_num(lines.line_load)
+    at = np.nonzero((load > 0.0) & (lines.slopes > 0.0))
+    rho1, pressed, slope = lines.rho[0][at], load[at], lines.slopes[at] / cosine
+    length = np.broadcast_to(lines.length[..., None], load.shape)[at]
+
+    def series(by: FilmResponses) -> tuple[Array, Array]:
+        """Stiffness of cells with their films along the transverse line of action, and what films yield."""
+        yielding = by.compliance(rho1, pressed) / length
+        return cosine**2 / (1.0 / slope + yielding), yielding
+
+    def over_cycle(values: Array) -> Array:
+        total = np.zeros(len(load))
+        np.add.at(total, at[0], values)
+        return total
+
+    whole, yielding = series(responses)
+    total = float(np.sum(whole.imag))
+    by_films = np.abs(whole / cosine) ** 2 * np.abs(yielding) * responses.relative_error(rho1, pressed)
+    by_grid = sum(
+        part * abs(float(np.sum(series(other)[0].imag)) - total) for other, part in responses.varied()
+    )
+    alone = over_cycle(cosine**2 * slope)
+    return _Summed(
+        lines.position,
+        over_cycle(whole.imag / asked.omega),
+        over_cycle(whole.real) - alone,
+        alone,
+        (float(np.sum(by_films)) + by_grid) / abs(total),
+        responses.in_phase.size,
     )
 
 
 @dataclass(frozen=True)
 class _Teeth:
-    """Slopes of the pairs' forces without film (positions, pairs), and the mean secant with it [N/m]."""
+    """Slopes of the pairs' forces without film (positions, pairs), and the mean secant with it [N/m].
+
+    Of lines of contact also these, whose cells have their slopes.
+    """
 
     slopes: Array
     mean: float
+    lines: fem.LineLoads | None = None
 
     @classmethod
     def of(cls, cycle: MeshCycle, reference: str, extra_inertia: tuple[float, float]) -> _Teeth:
@@ -196,9 +279,11 @@ class _Teeth:
         dry = cycle.dry if isinstance(cycle, LubricatedCycle) else cycle
         if dry.contact is None:
             return cls(dry.stiffness[:, None] * np.nan_to_num(dry.load_share), cycle.mean_secant_stiffness)
-        slopes = np.nan_to_num(dry.contact.pair_stiffness)
-        scale = dry.against(reference, extra_inertia).stiffness / slopes.sum(axis=1)
-        return cls(slopes * scale[:, None], cycle.against(reference, extra_inertia).mean_secant_stiffness)
+        against, slopes = dry.against(reference, extra_inertia), np.nan_to_num(dry.contact.pair_stiffness)
+        scale = against.stiffness / slopes.sum(axis=1)
+        mean = cycle.against(reference, extra_inertia).mean_secant_stiffness
+        assert against.contact is not None
+        return cls(slopes * scale[:, None], mean, against.contact.lines)
 
 
 def _check(film: FilmModel, speed: Any, frequency: Any, tolerance: Any) -> None:
