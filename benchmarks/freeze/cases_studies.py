@@ -11,6 +11,7 @@ from .cases_scenes import command, shortened
 
 STUDIES: dict[str, dict[str, Any]] = {
     "wear": {"vary": {"pair.wheel.wear.factor": [0.0, 1.0]}},
+    "helix_angle": {"vary": {"pair.helix_angle_deg": [0.0, 20.0]}},
     "whole_overlap": {"vary": {"pair.face_width_mm": [13.7781, 18.3708]}},
     "bore": {"vary": {"pair.pinion.bore_mm": [15.0, 40.0], "pair.wheel.bore_mm": [17.0, 45.0]}},
     "film_alpha": {"vary": {"lubricant.pressure_viscosity_per_GPa": [19.6, 32.6]}},

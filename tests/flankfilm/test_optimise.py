@@ -317,3 +317,27 @@ def test_the_scene_as_it_stands_has_no_value_of_a_key_that_only_the_ranges_bring
     assert values["pair.pinion.profile_shift"] == 0.0
     assert task.scene["pair"]["pinion"]["tip_relief"] == {"length_mm": 2.5}
     assert "tip_relief" not in task.start.scene["pair"]["pinion"]
+
+
+def test_even_lines_of_contact_have_a_whole_overlap(tmp_path):
+    """The first harmonic of their length has the factor sinc(overlap ratio), whatever helix angle and face width."""
+    scene = (EXAMPLES / "helical.toml").as_posix()
+    ranges = """
+[vary]
+"pair.helix_angle_deg" = { from = 10.0, to = 25.0 }
+"pair.face_width_mm" = { from = 15.0, to = 35.0 }
+[follow]
+"operating.pinion_torque_Nm" = { of = "pair.face_width_mm", times = 15.0 }
+[limits]
+"axial_force_N" = { at_most = 3000.0 }
+"overlap_ratio" = { at_least = 0.5 }
+"""
+    wanted = 'minimise = ["contact_length_harmonic_1"]\nevaluations = 160'
+    path = task_file(tmp_path, wanted, ranges)
+    text = path.read_text(encoding="utf-8").replace((EXAMPLES / "article.toml").as_posix(), scene)
+    path.write_text(text, encoding="utf-8")
+    found = optimise(read_task(path), tmp_path / "out", Execution(workers=1))
+    best = found.evaluations[found.best[0]]
+    overlap = best.result.values[found.task.outputs.index("overlap_ratio")]
+    assert overlap == pytest.approx(1.0, abs=5e-3)
+    assert best.result.values[0] < 2e-4
