@@ -5,8 +5,9 @@ from .drive.pair_drive import PairDrive as PairDrive
 from .drive.pair_drive import pair_drive as pair_drive
 from .drive.pair_in_space import BearingForces as BearingForces
 from .drive.pair_in_space import SpatialPair as SpatialPair
-from .drive.pair_in_space import bearing_stiffness as bearing_stiffness
 from .drive.pair_in_space import spatial_pair as spatial_pair
+from .drive.spatial_bearings import SpatialBearing as SpatialBearing
+from .drive.spatial_bearings import bearing_stiffness as bearing_stiffness
 from .drive.tilting_mesh import tilting_mesh as tilting_mesh
 from .films.along_path import FilmAlongPath as FilmAlongPath
 from .films.face_films import FaceFilms as FaceFilms
@@ -64,6 +65,8 @@ from .rating.motion_factor import MotionFactor as MotionFactor
 from .rating.motion_factor import motion_factor as motion_factor
 from .rating.own_rating import OwnRating as OwnRating
 from .rating.own_rating import own_rating as own_rating
+from .speeds.bearing_sweep import BearingSweep as BearingSweep
+from .speeds.bearing_sweep import bearing_sweep as bearing_sweep
 from .speeds.drive_sweep import DriveSweep as DriveSweep
 from .speeds.drive_sweep import drive_sweep as drive_sweep
 from .speeds.dynamic_map import DynamicMap as DynamicMap

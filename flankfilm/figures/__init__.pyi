@@ -3,6 +3,7 @@ from .closed_forms import single_pairs as single_pairs
 from .closed_forms import verification as verification
 from .curves import curves as curves
 from .curves import film_response as film_response
+from .drives import bearing_sweep as bearing_sweep
 from .drives import drive_map as drive_map
 from .drives import drive_modes as drive_modes
 from .drives import drive_run_up as drive_run_up

@@ -108,6 +108,41 @@ def drive_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     return drawn
 
 
+def bearing_sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw what bearings of gears in space carry at most, how these forces swing, axial motion and tilt of the gears.
+
+    Grey lines stand where the mesh frequency is a natural one.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run that wants ``bearing-forces``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    need(results, 'run a scene that wants "bearing-forces"', "in_space_bearing_force", "in_space_speed")
+    speed, marks = read(results, "in_space_speed"), read(results, "in_space_resonance_speeds").values
+    bearings = [str(name) for name in results["in_space_bearings"].values]
+    shown = (
+        ("bearing_force", "maximum force", bearings),
+        ("bearing_swing", "force about mean,\nroot mean square", bearings),
+        ("axial_motion", "axial motion,\npeak to peak", ["pinion", "wheel"]),
+        ("tilt", "maximum tilt\nabout mean [µrad]", ["pinion", "wheel"]),
+    )
+    with sheet(style, len(shown), height=1.2 + 1.9 * len(shown), legend=0) as (drawn, panels):
+        for axes, (figure, label, names) in zip(panels, shown, strict=True):
+            reading = read(results, f"in_space_{figure}")
+            for column, (name, colour) in enumerate(zip(names, 3 * colours(7), strict=False)):
+                scaled = (1e6 if figure == "tilt" else 1.0) * reading.values[:, column]
+                axes.plot(speed.values, scaled, color=colour, label=name)
+            _mark(axes, marks, speed.values)
+            axes.set_ylabel(label if figure == "tilt" else reading.named(label))
+            legend_over(axes, min(len(names), 4))
+        from_zero(*panels)
+        panels[-1].set_xlabel(speed.label)
+    return drawn
+
+
 def _rows(results: xr.Dataset, prefix: str) -> list[Row]:
     """Panels of the mesh force, of all bearings, and of all shafts and couplings, as far as there are any."""
     ways = {way: results[f"{prefix}_force_factor_{way}"].values[:, None] for way in WAYS}

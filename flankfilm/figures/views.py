@@ -68,6 +68,7 @@ _COUPLING = {
     "speeds.run_ups:SpeedRunUp": Picture(OF_PRODUCT, "run_up", "carrying"),
     "speeds.dynamic_map:DynamicMap": Picture(OF_PRODUCT, "dynamic_map", "carrying"),
     "drive.pair_drive:PairDrive": Picture(OF_PRODUCT, "drive"),
+    "speeds.bearing_sweep:BearingSweep": Picture(OF_PRODUCT, "in_space"),
     "speeds.drive_sweep:DriveSweep": Picture(OF_PRODUCT, "drive_sweep", "carrying"),
     "mesh.root_stress:RootStresses": Picture(OF_PRODUCT, "root", "root_stresses"),
     "vibration.oscillator:PairOscillator": Picture("stiffness.fourier", "fourier", "series_of"),

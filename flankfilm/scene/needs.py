@@ -18,6 +18,9 @@ __all__ = ["MOTIONS", "faults_between_sections", "needs_of_finite_elements"]
 
 Raw = Mapping[str, Any]
 
+IN_SPACE = "bearing-forces"
+"""Want of gears that move and tilt in space."""
+
 
 def faults_between_sections(raw: Raw) -> list[Fault]:
     """Faults for what the wants of `raw` need and is not there, or exclude and is there.
@@ -39,6 +42,7 @@ def faults_between_sections(raw: Raw) -> list[Fault]:
         *_missing_keys(raw, listed),
         *_models_that_do_not_fit(raw, listed),
         *faults_of_shafts(raw, listed),
+        *_in_space(raw, listed),
         *faults_of_helix(raw, listed),
         *faults_of_leads(raw),
     ]
@@ -61,6 +65,8 @@ def _needed_sections(raw: Raw, listed: set[str]) -> Iterator[tuple[str, str]]:
     physical = bool(moving) and "mean_force" not in _table(raw, "dynamics")
     geared = listed & GEARED
     meshed = listed & MESHED and stiffness.get("model") != "given"
+    if IN_SPACE in listed:
+        yield "bearings", f'wants = ["{IN_SPACE}"]'
     if geared:
         yield "pair", f"wants = [{_quoted(geared)}]"
     if meshed:
@@ -144,6 +150,31 @@ def _models_that_do_not_fit(raw: Raw, listed: set[str]) -> Iterator[Fault]:
         elif pairs != "coupled":
             remedy = "Independent pairs have no common field, nor one contact; or drop it"
             yield Fault("stiffness.pairs", shorten(pairs), f'must be "coupled" for {asked}', remedy)
+
+
+def _in_space(raw: Raw, listed: set[str]) -> Iterator[Fault]:
+    """What gears that move and tilt in space cannot be: of a spur pair, or on shafts of a drive train."""
+    if IN_SPACE not in listed:
+        return
+    pair = _table(raw, "pair")
+    if pair and not pair.get("helix_angle_deg"):
+        allowed = f"must be other than 0 for the wanted {IN_SPACE}, of lines of contact that cross the face"
+        remedy = (
+            'Give the angle, or take [shafts] and wants = ["sweep"], which give bearing forces of spur pairs'
+        )
+        yield Fault("pair.helix_angle_deg", "0", allowed, remedy)
+    for name in ("pinion_torque_Nm", "power_kW"):
+        value = _table(raw, "operating").get(name)
+        if isinstance(value, int | float) and value < 0:
+            allowed = f"must be above 0 for the wanted {IN_SPACE}: of a pinion that drives"
+            remedy = "Take the other hand, helix_angle_deg of the other sign, and a value above 0"
+            yield Fault(f"operating.{name}", f"{value:g}", allowed, remedy)
+    if "shafts" in raw:
+        allowed = f"must be left out for the wanted {IN_SPACE}: shafts are rigid there, on [bearings]"
+        yield Fault("[shafts]", "", allowed, f"Leave it out, or drop {IN_SPACE}")
+    if "mean_force" in _table(raw, "dynamics"):
+        allowed = f"must be left out for the wanted {IN_SPACE}, which has no dimensionless form"
+        yield Fault("dynamics.mean_force", "", allowed, "Give [dynamics] in physical units")
 
 
 def _without_damping(raw: Raw) -> Iterator[Fault]:

@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Field
 
 from base import InputError, Limit
 from flankfilm.scene.sections.alignment import AlignmentSection
+from flankfilm.scene.sections.bearings import BearingsSection
 from flankfilm.scene.sections.dynamics import DynamicsSection
 from flankfilm.scene.sections.film import FilmSection
 from flankfilm.scene.sections.gears import PairSection
@@ -111,6 +112,10 @@ class Scene(Section):
     shafts: ShaftsSection | None = key(
         "Shafts, bearings, motor and load, with which the wanted sweep is of the drive train; rigid if left out",
         None,
+    )
+
+    bearings: BearingsSection | None = key(
+        "Bearings of both gears on rigid shafts, for the wanted bearing forces of a helical pair", None
     )
 
     @property

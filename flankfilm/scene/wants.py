@@ -80,12 +80,26 @@ class WantTraits:
     file: bool = False
 
 
-def _motion(meaning: str, *keys: NeededKey, series: bool = False, range_key: str = "") -> WantTraits:
+def _motion(
+    meaning: str,
+    *keys: NeededKey,
+    series: bool = False,
+    range_key: str = "",
+    finite_elements: bool = False,
+) -> WantTraits:
     """A motion, over a range where it has a key for one."""
     if range_key:
         remedy = f"Add {range_key} = {{ speed_rpm = [500, 30000] }}"
         keys = (NeededKey(f"dynamics.{range_key}", remedy), *keys)
-    return WantTraits(meaning, mesh=True, motion=True, series=series, range_key=range_key, keys=keys)
+    return WantTraits(
+        meaning,
+        finite_elements=finite_elements,
+        mesh=True,
+        motion=True,
+        series=series,
+        range_key=range_key,
+        keys=keys,
+    )
 
 
 def _elements(meaning: str, *keys: NeededKey, file: bool = False) -> WantTraits:
@@ -117,6 +131,11 @@ WANTS: Mapping[str, WantTraits] = {
     "diagram": _motion("every branch of periodic motions, stable or not", series=True, range_key="diagram"),
     "spectrum": _motion("orders of the motion at the speed"),
     "run-up": _motion("run-up and coast-down", range_key="run_up"),
+    "bearing-forces": _motion(
+        "bearing forces, axial motion and tilt of a helical pair over the speed",
+        range_key="bearing_forces",
+        finite_elements=True,
+    ),
     "dynamic-map": _motion("dynamic factor K_v over speed and torque", _TORQUES, _SPEEDS),
     "vtk": _elements("fields for ParaView", file=True),
     "report": WantTraits("report of all that is wanted, one page", unloaded=True, file=True),

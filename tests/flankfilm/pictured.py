@@ -112,7 +112,7 @@ model = "dowson"
 """Friction, losses and temperatures."""
 
 HELICAL = """
-wants = ["geometry", "stiffness", "film"]
+wants = ["geometry", "stiffness", "film", "bearing-forces"]
 tolerance = 0.02
 [pair]
 module_mm = 1.0
@@ -132,8 +132,14 @@ viscosity_Pa_s = 0.05
 pressure_viscosity_per_GPa = 19
 [film]
 model = "dowson"
+[dynamics]
+bearing_forces = { speed_rpm = [2000, 20000], points = 40 }
+[bearings]
+pinion = [{ position_mm = -9, radial_N_per_m = 1e8, axial_N_per_m = 5e7 }, { position_mm = 12, radial_N_per_m = 1e8 }]
+wheel = [{ position_mm = 0, radial_N_per_m = 2e8, axial_N_per_m = 5e7, tilting_Nm_per_rad = 1e4 }]
+damping_s = 5e-6
 """
-"""Lines of contact, with films by formula."""
+"""Lines of contact, with films by formula, and gears that move and tilt in space."""
 
 
 @cache
@@ -330,6 +336,7 @@ RECORDS: Mapping[str, Callable[[], Any]] = {
     "flankfilm.coupling.speeds.run_ups:SpeedRunUp": of_run(train, "run-up"),
     "flankfilm.coupling.speeds.dynamic_map:DynamicMap": of_run(train, "dynamic-map"),
     "flankfilm.coupling.drive.pair_drive:PairDrive": of_run(train, "drive"),
+    "flankfilm.coupling.speeds.bearing_sweep:BearingSweep": of_run(helical, "bearing forces"),
     "flankfilm.coupling.speeds.drive_sweep:DriveSweep": of_run(train, "drive sweep"),
     "flankfilm.coupling.mesh.root_stress:RootStresses": of_run(face, "root stress"),
     "flankfilm.coupling.vibration.oscillator:PairOscillator": of_run(motion, "scaling"),

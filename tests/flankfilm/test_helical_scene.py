@@ -53,6 +53,12 @@ MOTION = """
 sweep = { speed_rpm = [4000, 14000], points = 12 }
 diagram = { speed_rpm = [4000, 14000] }
 run_up = { speed_rpm = [4000, 14000], seconds = 0.2 }
+bearing_forces = { speed_rpm = [500, 6000], points = 12 }
+"""
+BEARINGS = """
+[bearings]
+pinion = [{ position_mm = 0, radial_N_per_m = 3e8, axial_N_per_m = 1e8, tilting_Nm_per_rad = 1e6 }]
+wheel = [{ position_mm = 0, radial_N_per_m = 3e8, axial_N_per_m = 1e8, tilting_Nm_per_rad = 1e6 }]
 """
 ANSWERED = '"geometry", "closed-forms"'
 OIL = """
@@ -184,6 +190,8 @@ class TestTable:
             text = text.replace("pinion_speed", "torques_Nm = [300, 600]\npinion_speed")
         if want in ("film", "losses"):
             text += OIL
+        if want == "bearing-forces":
+            text += BEARINGS
         assert check_scene(parse_scene(text))
 
     GIVEN = (

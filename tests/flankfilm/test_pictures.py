@@ -42,6 +42,7 @@ OF_RUNS: dict[str, tuple[Any, ...]] = {
     "error_curve": (figures.excitation,),
     "helical": (
         figures.lines_of_contact, figures.line_load_map, figures.load_centre, figures.film_line_map,
+        figures.bearing_sweep,
     ),
 }  # fmt: skip
 """Run, or record, to the functions that are drawn from it."""

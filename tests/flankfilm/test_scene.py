@@ -36,7 +36,7 @@ def test_the_template_is_a_valid_scene_with_every_section():
     """Left out are those with which loads, film, gears and motion are others."""
     scene = parse_scene(template())
     left_out = {name for name in Scene.model_fields if getattr(scene, name) is None}
-    assert left_out == {"alignment", "heat", "rating", "roughness", "shafts"}
+    assert left_out == {"alignment", "bearings", "heat", "rating", "roughness", "shafts"}
     commented = "\n".join(
         re.findall(r"^# (\[roughness\]|(?:sigma|density_per|tip|law|mean_plane).* = .*)", template(), re.M)
     )

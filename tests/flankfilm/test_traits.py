@@ -23,13 +23,21 @@ WHOLE = {
     "material": {"youngs_modulus_GPa": 206.0, "poisson_ratio": 0.3},
     "operating": {"pinion_torque_Nm": 600.0, "pinion_speed_rpm": 2000.0, "torques_Nm": [100.0, 600.0]},
     "lubricant": {"viscosity_Pa_s": 0.075, "pressure_viscosity_per_GPa": 19.6, "temperature_C": 60.0},
-    "dynamics": {"sweep": RANGE, "diagram": RANGE, "run_up": RANGE},
+    "dynamics": {"sweep": RANGE, "diagram": RANGE, "run_up": RANGE, "bearing_forces": RANGE},
     "rating": {
         "accuracy_grade": 6, "K_A": 1.25, "life_h": 20000.0,
         "pinion": {"steel": "Eh", "sigma_Hlim_MPa": 1500.0, "sigma_Flim_MPa": 430.0, "root_Rz_um": 20.0},
     },
 }  # fmt: skip
-"""All that any want needs."""
+"""All that any want needs, but for those of gears in space."""
+
+HELD = [{"position_mm": 0.0, "radial_N_per_m": 1e8, "axial_N_per_m": 1e8, "tilting_Nm_per_rad": 1e5}]
+
+IN_SPACE: dict[str, Any] = WHOLE | {
+    "pair": WHOLE["pair"] | {"helix_angle_deg": 15.0},
+    "bearings": {"pinion": HELD, "wheel": HELD},
+}
+"""All that gears in space need."""
 
 VALUES: dict[str, Any] = {
     "tight": True,
@@ -90,7 +98,8 @@ def with_trait(name: str) -> list[tuple[str, Any]]:
 
 @pytest.mark.parametrize("want", WANTS)
 def test_a_want_is_accepted_with_all_that_it_needs_and_asks_for_each_part_of_it(want: str):
-    raw, traits = {"wants": [want], **WHOLE}, WANTS[want]
+    in_space = want == "bearing-forces"
+    raw, traits = {"wants": [want], **(IN_SPACE if in_space else WHOLE)}, WANTS[want]
     assert faults(raw) == ()
     needs_pair = traits.gears or traits.mesh
     sections = {
@@ -100,6 +109,7 @@ def test_a_want_is_accepted_with_all_that_it_needs_and_asks_for_each_part_of_it(
         "lubricant": traits.films,
         "dynamics": traits.motion,
         "rating": traits.rated,
+        **({"bearings": True} if in_space else {}),
     }
     for section, needed in sections.items():
         lacking = {fault.where for fault in faults(put(raw, section, None))}
@@ -113,7 +123,7 @@ def test_a_want_is_accepted_with_all_that_it_needs_and_asks_for_each_part_of_it(
 def test_the_names_of_wants_are_those_that_a_scene_takes():
     assert get_args(Want) == tuple(WANTS)
     assert faults({"wants": ["swep"], **WHOLE})[0].where == "wants.0"
-    assert ranges(WANTS) == ["sweep", "diagram", "run_up"]
+    assert ranges(WANTS) == ["sweep", "diagram", "run_up", "bearing_forces"]
     assert set(MOTIONS) == {name for name, want in WANTS.items() if want.motion}
 
 

@@ -117,7 +117,7 @@ def spatial_mesh(cycle: fem.MeshCycle) -> SpatialMesh:
     Raises
     ------
     InputError
-        Of a cycle without lines of contact.
+        Of a cycle without lines of contact, or of back flanks.
 
     Examples
     --------
@@ -129,6 +129,11 @@ def spatial_mesh(cycle: fem.MeshCycle) -> SpatialMesh:
         if lines is None:
             allowed = "must have lines of contact, as those of helical pairs do"
             faults.add("cycle", pair, allowed, "give helix_angle, or take `pair_drive` for a spur pair")
+        elif cycle.flank == "back":
+            allowed = "must be of a pinion that drives"
+            faults.add(
+                "cycle.torque", f"{cycle.torque:g}", allowed, "take the other hand and a torque above 0"
+            )
     assert lines is not None
     pitch_point, cosine = np.array(pair.points.C), pair.helix.base_cosine
     there = cell_wrenches(pair, pitch_point, np.array(0.0))

@@ -15,54 +15,17 @@ is refused.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import eigh
 
 from base import Array, Cost, Faults, Limit, SolverError, Stopwatch, record
 from flankfilm.coupling.drive.drive_reduced import gear_masses
 from flankfilm.coupling.drive.mesh_in_space import SpatialMesh
 
-__all__ = ["BearingForces", "SpatialPair", "bearing_stiffness", "spatial_pair"]
+__all__ = ["BearingForces", "SpatialPair", "spatial_pair"]
 
 RATIO = Limit(0.0, 1.0, "", "0.05 for a mesh")
 SPEED = Limit.above(0.0, 1e6, "rad/s", "give the pinion's speed")
-SPRING = Limit(0.0, 1e15, "N/m", "1e8 to 1e9 for rolling bearings")
-PLACE = Limit(-100.0, 100.0, "m", "from mid-face along the axis")
-
-
-def bearing_stiffness(bearings: Sequence[tuple[float, float, float]]) -> Array:
-    """Stiffness of bearings on a rigid shaft against displacements and turns of its gear at mid-face (6, 6).
-
-    Nothing holds the turn about the axis.
-
-    Parameters
-    ----------
-    bearings : sequence of (float, float, float)
-        Place from mid-face along the axis [m], radial and axial stiffness [N/m] of each.
-
-    Raises
-    ------
-    InputError
-        With every fault.
-
-    Examples
-    --------
-    >>> held = bearing_stiffness([(-0.1, 2e8, 1e8), (0.1, 2e8, 0.0)])
-    >>> held[0, 0], held[2, 2], round(held[3, 3]), held[5, 5]
-    (400000000.0, 100000000.0, 4000000, 0.0)
-    """
-    total = np.zeros((6, 6))
-    with Faults() as faults:
-        for i, (place, radial, axial) in enumerate(bearings):
-            faults.number(f"bearings[{i}].place", place, PLACE)
-            faults.number(f"bearings[{i}].radial", radial, SPRING)
-            faults.number(f"bearings[{i}].axial", axial, SPRING)
-            moves = np.eye(3, 6)
-            moves[0, 4], moves[1, 3] = place, -place
-            total += moves.T @ np.diag([radial, radial, axial]) @ moves
-    return total
 
 
 @record
@@ -125,10 +88,12 @@ class SpatialPair:
     @property
     def natural_frequencies(self) -> Array:
         """Natural frequencies in contact with the mean mesh (12,) [Hz], rising; 0 of what nothing holds."""
+        from scipy.linalg import eigh  # loads half of scipy
+
         squares = eigh(self.in_contact, self.mass, eigvals_only=True)
         return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * math.pi))
 
-    def bearing_forces(self, speed: float, harmonics: int = 5) -> BearingForces:
+    def bearing_forces(self, speed: float, harmonics: int = 5, error: Array | None = None) -> BearingForces:
         """Periodic motion at a speed of the pinion [rad/s], and what it brings to the bearings.
 
         Parameters
@@ -136,6 +101,8 @@ class SpatialPair:
         speed : float
         harmonics : int
             Highest harmonic of the mesh; below a quarter of the positions.
+        error : (positions,) array, optional
+            Unloaded transmission error that the loaded contact has not, alike over the face [m].
 
         Raises
         ------
@@ -149,10 +116,11 @@ class SpatialPair:
         with Faults() as faults:
             faults.number("speed", speed, SPEED)
             order = faults.whole("harmonics", harmonics, 2, (positions - 1) // 4, "give more positions")
-        motion = self._motion(speed, order)
-        fewer = self._motion(speed, order // 2)
+        turn = self.mesh.turn if error is None else self.mesh.turn + error
+        motion = self._motion(speed, order, turn)
+        fewer = self._motion(speed, order // 2, turn)
         wrench, before = (self._carried(speed, each) for each in (motion, fewer))
-        force = self._mesh_force(motion)
+        force = self._mesh_force(motion, turn)
         if force.min() < 0.0:
             raise SolverError(
                 f"the mesh would pull with up to {-force.min():.4g} N at {speed:g} rad/s: contact is lost, "
@@ -165,11 +133,11 @@ class SpatialPair:
             speed, wrench, motion, force, off / most if most > 0.0 else 0.0, Cost(watch.seconds)
         )
 
-    def _motion(self, speed: float, order: int) -> Array:
+    def _motion(self, speed: float, order: int, turn: Array) -> Array:
         """Harmonics 0 to n of the displacements (n + 1, 12), of the real part."""
         mesh, numbers = self.mesh, np.arange(-order, order + 1)
         stiff = _harmonics(mesh.stiffness, 2 * order)
-        driven = mesh.torsion * mesh.turn[:, None]
+        driven = mesh.torsion * turn[:, None]
         driving = np.einsum("pij,pj->pi", mesh.stiffness, driven) - mesh.load
         driving[:, 5] += mesh.torque
         driving[:, 11] += mesh.torque * mesh.pair.base_radii[1] / mesh.pair.base_radii[0]
@@ -180,9 +148,9 @@ class SpatialPair:
             for j, m in enumerate(numbers):
                 whole[i, :, j] = stiff[n - m + 2 * order]
             whole[i, :, i] += self.bearings + 1j * n * omega * self.damping - (n * omega) ** 2 * self.mass
-        turn = self.mass @ mesh.free_turn
-        scale = np.trace(self.in_contact) / np.trace(self.mass) / (turn @ mesh.free_turn)
-        whole[order, :, order] += scale * np.outer(turn, turn)  # holds the rotation that nothing else does
+        rolls = self.mass @ mesh.free_turn
+        scale = np.trace(self.in_contact) / np.trace(self.mass) / (rolls @ mesh.free_turn)
+        whole[order, :, order] += scale * np.outer(rolls, rolls)  # holds the rotation that nothing else does
         moved = np.linalg.solve(whole.reshape(size, size), sides.reshape(size)).reshape(-1, 12)[order:]
         moved[1:] *= 2.0  # of the real part
         return np.asarray(moved)
@@ -193,12 +161,12 @@ class SpatialPair:
         carried = motion @ self.bearings.T + (rate[:, None] * motion) @ self.bearing_damping.T
         return np.asarray(carried.reshape(-1, 2, 6))
 
-    def _mesh_force(self, motion: Array) -> Array:
+    def _mesh_force(self, motion: Array, turn: Array) -> Array:
         """Elastic force along the transverse line of action over the cycle (positions,) [N]."""
         mesh, positions = self.mesh, len(self.mesh.turn)
         angle = 2j * math.pi * (np.arange(positions) + 0.5) / positions
         waves = np.exp(np.outer(angle, np.arange(len(motion))))
-        moved = np.real(waves @ motion) - mesh.torsion * mesh.turn[:, None]
+        moved = np.real(waves @ motion) - mesh.torsion * turn[:, None]
         return np.asarray(
             mesh.load @ mesh.torsion + np.einsum("i,pij,pj->p", mesh.torsion, mesh.stiffness, moved)
         )

@@ -122,6 +122,13 @@ class RunUpSection(SpeedRange):
         return self
 
 
+class BearingForcesSection(SpeedRange):
+    """Bearing forces of a helical pair over the speed, by gears that move and tilt in space."""
+
+    points: int = key("speeds or frequencies looked at", 100, limit=Limit(2, 100_000, whole=True))
+    harmonics: int = key("highest harmonic of the mesh", 5, limit=Limit(2, 20, whole=True))
+
+
 class DynamicsSection(Section):
     """Torsional vibration of the pair; physical keys, or the dimensionless ones of the oscillator."""
 
@@ -205,6 +212,11 @@ class DynamicsSection(Section):
     )
     run_up: RunUpSection | None = key(
         "range of the wanted run-up and coast-down", None, such_as={"speed_rpm": (500, 30000), "seconds": 5}
+    )
+    bearing_forces: BearingForcesSection | None = key(
+        "range of the wanted bearing forces of a helical pair",
+        None,
+        such_as={"speed_rpm": (500, 6000), "points": 100, "harmonics": 5},
     )
     portraits_rpm: Several = key(
         "speeds of phase portraits; chosen from the sweep if left out",

@@ -12,7 +12,8 @@ from scipy.integrate import solve_ivp
 from base import Array, InputError, SolverError
 from fem import compliance, mesh_cycle
 from flankfilm.coupling.drive.mesh_in_space import SpatialMesh, cell_wrenches, spatial_mesh
-from flankfilm.coupling.drive.pair_in_space import SpatialPair, bearing_stiffness, spatial_pair
+from flankfilm.coupling.drive.pair_in_space import SpatialPair, spatial_pair
+from flankfilm.coupling.drive.spatial_bearings import bearing_stiffness
 from gears import Gear, GearPair, contact_lines
 
 SPUR = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3)
@@ -282,5 +283,7 @@ def test_of_a_loaded_contact_the_turn_meets_its_tangent_and_its_moments() -> Non
     assert mesh.load[:, 5] == pytest.approx(8.0, rel=1e-9)
     found = spatial_pair(mesh, (SOFT, SOFT)).bearing_forces(200.0, harmonics=3)
     assert found.amplitude[0, :, 2].min() > 0.0  # axial forces swing
+    with pytest.raises(InputError, match="must be of a pinion that drives"):
+        spatial_mesh(replace(cycle, flank="back"))
     with pytest.raises(InputError, match="must have lines of contact"):
         spatial_mesh(replace(cycle, lines=None))

@@ -17,7 +17,7 @@ from fem.pair.references import turns
 from flankfilm.coupling import MeshCycle, mesh_series, stiffness_references
 from flankfilm.coupling.mesh.references import MEANINGS
 from flankfilm.files.cache import Cache
-from flankfilm.products.cycles import TORQUES
+from flankfilm.products.further_cycles import TORQUES
 from flankfilm.products.oscillator import scaling
 from flankfilm.products.stiffness import REFERENCES
 from flankfilm.report.stiffness_parts import references as report_part

@@ -1,4 +1,4 @@
-"""Mesh cycles beside that of the operating torque: at several torques, and tooth by tooth over a revolution."""
+"""Further mesh cycles of a scene: at several torques, and tooth by tooth over the teeth that it follows."""
 
 from __future__ import annotations
 
@@ -23,9 +23,7 @@ if TYPE_CHECKING:
 
     from flankfilm.coupling import TorqueCurves
 
-OVER_TORQUE: Pictures = {"over_torque": "torque_transmission_error"}
-
-OVER_TEETH: Pictures = {"revolution": "revolution_transmission_error"}
+OF_TORQUES: Pictures = {"over_torque": "torque_transmission_error"}
 
 
 @stage("torques", "mesh cycles over torque", TEETH, COMPLIANCE, FACE_GEARS, DRY_CYCLE)
@@ -35,7 +33,7 @@ def TORQUES(run: Engine) -> coupling.TorqueCurves:
     return coupling.torque_curves(loaded_teeth(run, by_elements=True), torques, run[DRY_CYCLE].position.size)
 
 
-def torque_section(stage: TorqueCurves, results: xr.Dataset) -> Part:
+def over_torque(stage: TorqueCurves, results: xr.Dataset) -> Part:
     """Stiffness and transmission error over torque."""
     names = ("secant_stiffness", "tangent_stiffness", "transmission_error", "harmonic_1")
     curves = [read(results, f"torque_{name}", per_face=name.endswith("stiffness")) for name in names]
@@ -44,7 +42,7 @@ def torque_section(stage: TorqueCurves, results: xr.Dataset) -> Part:
     errors = {"stiffness": stage.error, "peak to peak": stage.range_error}
     caption = "Largest numerical errors: " + ", ".join(f"{n} {percent(e)}" for n, e in errors.items()) + "."
     table = Table(tuple(reading.label for reading in shown), tuple(cells), caption)
-    drawn = pictures(results, OVER_TORQUE)
+    drawn = pictures(results, OF_TORQUES)
     notes = (f"Left out: {stage.message}",) if stage.message else ()
     orders = stage.transmission_error_harmonic
     waves = [read(results, f"torque_transmission_error_harmonic_{order}") for order in orders]
@@ -59,6 +57,20 @@ def torque_section(stage: TorqueCurves, results: xr.Dataset) -> Part:
     return Part("torques", "Torque", figures=drawn, tables=tables, notes=notes)
 
 
+OVER_TORQUE = Product(
+    name="torques",
+    goals=wanting("torques", TORQUES),
+    variables=record_of("torque", TORQUES),
+    solved={"torque": TORQUES},
+    tables={"torques": CurveTable("torque", "torque", axis="torque")},
+    pictures=OF_TORQUES,
+    sections=section_of(TORQUES, over_torque),
+)
+
+
+OF_REVOLUTION: Pictures = {"revolution": "revolution_transmission_error"}
+
+
 @stage("revolution", "mesh cycle tooth by tooth", TEETH, COMPLIANCE, FACE_GEARS)
 def REVOLUTION(run: Engine) -> fem.MeshCycle:
     """Mesh cycle tooth by tooth, with the deviations of each."""
@@ -68,7 +80,7 @@ def REVOLUTION(run: Engine) -> fem.MeshCycle:
     return coupling.revolution(teeth, operating.pitches, operating.first_teeth)
 
 
-def revolution_variables(cycle: fem.MeshCycle) -> Iterator[xr.Dataset]:
+def over_revolution(cycle: fem.MeshCycle) -> Iterator[xr.Dataset]:
     """Curves alone: what follows from arcs is not looked for over a revolution."""
     from gears.sharing.mesh_figures import MeshFigures
 
@@ -76,9 +88,9 @@ def revolution_variables(cycle: fem.MeshCycle) -> Iterator[xr.Dataset]:
     yield of_record("revolution", cycle, known)
 
 
-def revolution_section(cycle: fem.MeshCycle, results: xr.Dataset) -> Part:
+def tooth_by_tooth(cycle: fem.MeshCycle, results: xr.Dataset) -> Part:
     """Transmission error tooth by tooth."""
-    drawn = pictures(results, OVER_TEETH)
+    drawn = pictures(results, OF_REVOLUTION)
     curves = {
         "under load": read(results, "revolution_transmission_error"),
         "without load": read(results, "revolution_unloaded_transmission_error"),
@@ -91,21 +103,10 @@ def revolution_section(cycle: fem.MeshCycle, results: xr.Dataset) -> Part:
     return Part("revolution", "Revolution", figures=drawn, tables=(table,), notes=(cycle.message,))
 
 
-OF_TORQUES = Product(
-    name="torques",
-    goals=wanting("torques", TORQUES),
-    variables=record_of("torque", TORQUES),
-    solved={"torque": TORQUES},
-    tables={"torques": CurveTable("torque", "torque", axis="torque")},
-    pictures=OVER_TORQUE,
-    sections=section_of(TORQUES, torque_section),
-)
-
-
-OF_TEETH = Product(
+TOOTH_BY_TOOTH = Product(
     name="revolution",
     goals=wanting("revolution", REVOLUTION),
-    variables=when(REVOLUTION, revolution_variables),
+    variables=when(REVOLUTION, over_revolution),
     solved={"revolution": REVOLUTION},
     tables={
         "revolution": CurveTable(
@@ -114,6 +115,6 @@ OF_TEETH = Product(
             ("position", "transmission_error", "unloaded_transmission_error", "secant_stiffness"),
         )
     },
-    pictures=OVER_TEETH,
-    sections=section_of(REVOLUTION, revolution_section),
+    pictures=OF_REVOLUTION,
+    sections=section_of(REVOLUTION, tooth_by_tooth),
 )
