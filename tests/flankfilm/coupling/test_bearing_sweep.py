@@ -38,8 +38,13 @@ def test_bearings_together_carry_what_their_gear_does() -> None:
     rate = 1j * 150.0 * 36 * np.arange(len(moved.motion))[:, None]
     for gear in (0, 1):
         motion = moved.motion[:, 6 * gear : 6 * gear + 6]
-        forces = sum((1.0 + rate * 1e-5) * one.springs * (motion @ one.moves.T) for one in held)
-        assert forces == pytest.approx(moved.harmonics[:, gear, :3], rel=1e-9, abs=1e-9)
+        each = [(1.0 + rate * 1e-5) * one.springs * (motion @ one.moves.T) for one in held]
+        assert sum(each) == pytest.approx(moved.harmonics[:, gear, :3], rel=1e-9, abs=1e-9)
+        arms = [
+            np.cross(np.array([0.0, 0.0, one.place]), force) for one, force in zip(held, each, strict=True)
+        ]
+        couple = (1.0 + rate * 1e-5) * 1e4 * motion[:, 3:5]  # that of the bearing that resists tilt
+        assert sum(arms)[:, :2] + couple == pytest.approx(moved.harmonics[:, gear, 3:5], rel=1e-9, abs=1e-9)
 
 
 def test_means_are_the_static_load_shared_by_levers() -> None:
