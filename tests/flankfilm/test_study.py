@@ -22,7 +22,7 @@ from flankfilm.studies.outputs import OUTPUTS
 from flankfilm.studies.plan import read_plan
 from flankfilm.studies.run import run_study
 from flankfilm.studies.table import Columns, append, read_lines
-from tests.flankfilm.program import EXAMPLES, SCRIPT, flankfilm
+from tests.flankfilm.program import EXAMPLES, SCRIPT, command, flankfilm
 
 GEOMETRY = """
 scene = "{scene}"
@@ -131,6 +131,7 @@ class TestRows:
         assert sorted(kept["row"]) == [0, 1, 2, 3]
         assert set(kept["contact_ratio"]) == {row.values[0] for row in found.rows}
 
+    @pytest.mark.usefixtures("rows_here")
     def test_a_row_that_fails_says_why_and_the_others_go_on(self, tmp_path):
         plan = read_plan(study_file(tmp_path, '"pair.pinion.tip_alteration" = [0.0, 0.9, -0.1]'))
         found = run_study(plan, tmp_path / "out", Execution(workers=1))
@@ -156,6 +157,7 @@ class TestRows:
         assert "died" in results[2].fault
         assert [results[i].values[0] for i in (0, 1, 3, 4)] == [0.0, 1.0, 3.0, 4.0]
 
+    @pytest.mark.usefixtures("rows_here")
     def test_a_torn_last_line_is_cut_off_and_its_row_computed_again(self, tmp_path):
         plan = read_plan(study_file(tmp_path, SHIFTS))
         found = run_study(plan, tmp_path / "out", Execution(workers=1))
@@ -193,6 +195,7 @@ def die_or_count(row):
     return RowResult(row.index, (float(row.index),), 0.0)
 
 
+@pytest.mark.usefixtures("rows_here")
 class TestFolder:
     def test_another_study_is_kept_out(self, tmp_path):
         out = tmp_path / "out"
@@ -295,10 +298,13 @@ class TestFolder:
 
 
 class TestCommand:
+    @pytest.mark.usefixtures("rows_here")
     def test_some_rows_failed_is_a_status_of_its_own(self, tmp_path):
         path = study_file(tmp_path, '"pair.pinion.tip_alteration" = [0.0, 0.9]')
-        assert "row 1 failed" in run(path, "--out", tmp_path / "out", status=4).stdout
+        done = command("study", path, "--out", "out", cwd=tmp_path, status=4)
+        assert "row 1 failed" in done.stdout
 
+    @pytest.mark.usefixtures("rows_here")
     def test_a_tolerance_in_percent_stands_on_the_page(self, tmp_path):
         scene = (EXAMPLES / "article.toml").read_text(encoding="utf-8")
         assert "tolerance = 0.005" in scene
@@ -309,7 +315,7 @@ class TestCommand:
             path.read_text(encoding="utf-8").replace((EXAMPLES / "article.toml").as_posix(), "scene.toml"),
             encoding="utf-8",
         )
-        run(path, "--out", tmp_path / "out")
+        command("study", path, "--out", "out", cwd=tmp_path)
         assert "tolerance of each row 0.5" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
     @pytest.mark.slow
@@ -335,21 +341,12 @@ class TestCommand:
         assert [row.values for row in here.rows] == [row.values for row in there.rows]
 
     @pytest.mark.parametrize("kind", ["dask", "mpi"])
-    def test_an_executor_that_is_not_installed_is_named(self, tmp_path, kind):
-        module = {"dask": "distributed", "mpi": "mpi4py"}[kind]
-        blocked = (
-            "import sys; sys.modules['dask'] = sys.modules['mpi4py'] = None; from flankfilm.cli import main; "
-        )
+    def test_an_executor_that_is_not_installed_is_named(self, tmp_path, monkeypatch, kind):
+        monkeypatch.setitem(sys.modules, "dask", None)
+        monkeypatch.setitem(sys.modules, "mpi4py", None)
         path = study_file(tmp_path, SHIFTS)
-        code = (
-            blocked
-            + f"sys.argv = ['flankfilm', 'study', {str(path)!r}, '--out', 'o', '--executor', '{kind}']; main()"
-        )
-        done = subprocess.run(
-            [sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=False
-        )
-        assert done.returncode == 2, done.stderr
-        assert module in done.stderr
+        done = command("study", path, "--out", "o", "--executor", kind, cwd=tmp_path, status=2)
+        assert {"dask": "distributed", "mpi": "mpi4py"}[kind] in done.stderr
 
 
 @pytest.mark.slow

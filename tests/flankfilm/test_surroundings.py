@@ -91,6 +91,7 @@ def forged(rows: Path, cells: list[str], last: bool = True) -> None:
         (["2", "0.3", "1.6", "0.1", ""], "other values of the keys"),
     ],
 )
+@pytest.mark.usefixtures("rows_here")
 def test_a_forged_row_with_its_checksum_is_refused(tmp_path, cells, said):
     plan = read_plan(study(tmp_path))
     run_study(plan, tmp_path / "out", Execution(workers=1))
@@ -99,6 +100,7 @@ def test_a_forged_row_with_its_checksum_is_refused(tmp_path, cells, said):
         run_study(plan, tmp_path / "out", Execution(workers=1, resume=True))
 
 
+@pytest.mark.usefixtures("rows_here")
 def test_a_genuine_row_is_taken(tmp_path):
     plan = read_plan(study(tmp_path))
     found = run_study(plan, tmp_path / "out", Execution(workers=1))
