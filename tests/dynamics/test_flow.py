@@ -134,7 +134,7 @@ def test_degree_and_cells_do_not_matter(osc, state):
     np.testing.assert_allclose(image.state, finer.state, rtol=0, atol=4 * EPS * osc.cells * size(image))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(
     st.lists(st.floats(-2.0, 3.0), min_size=1, max_size=5),
     st.floats(1e-7, 1e-1),
@@ -168,7 +168,7 @@ def test_first_exit_finds_the_first_root(roots, apart, end):
     assert found == pytest.approx(inside[0], rel=0, abs=1e-13 * np.sum(np.abs(c)) / near + 1e-15)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(
     st.sampled_from([-1, 0, 1]),
     st.floats(-0.06, 0.06),

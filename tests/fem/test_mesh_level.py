@@ -37,11 +37,11 @@ def test_the_coarser_mesh_is_the_same_whatever_has_been_asked_of_the_finer_one(b
 @pytest.mark.parametrize("options", [{}, {"moving_contact": True}, {"beyond_path": False}])
 def test_figures_and_errors_do_not_depend_on_what_was_asked_before(bodies, options):
     def asked(one):
-        return figures(fem.mesh_cycle(PAIR, 300.0, 8, one, **options))
+        return figures(fem.mesh_cycle(PAIR, 300.0, 4, one, **options))
 
     new, used = replace(bodies), replace(bodies)
-    figures(fem.mesh_cycle(PAIR, 500.0, 8, used, moving_contact=True))
-    figures(fem.mesh_cycle(PAIR, 200.0, 8, used))
+    figures(fem.mesh_cycle(PAIR, 500.0, 4, used, moving_contact=True))
+    figures(fem.mesh_cycle(PAIR, 200.0, 4, used))
     _ = used.coarser, used.back_flanks
     assert asked(new) == asked(used)
 

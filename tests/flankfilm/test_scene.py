@@ -196,7 +196,7 @@ VALUES = st.one_of(
 LINES = [line for line in template().splitlines() if re.match(r"\w+ = ", line)]
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(LINES), VALUES), min_size=1, max_size=4))
 def test_any_value_at_any_key_is_accepted_or_explained(changes: list[tuple[str, str]]):
     text = template()
@@ -206,7 +206,7 @@ def test_any_value_at_any_key_is_accepted_or_explained(changes: list[tuple[str, 
     assert found is None or all(fault.where and fault.allowed for fault in found)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(st.text(max_size=200))
 def test_any_text_is_refused_with_a_reason(text: str):
     with pytest.raises(InputError):
