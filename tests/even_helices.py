@@ -6,6 +6,8 @@ that of nodal forces on the mesh of a section.
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from base import Array
@@ -16,7 +18,13 @@ from fem.influence.gear_shape import GearShape, MeshedShape
 from fem.influence.gear_store import GearStore
 from fem.influence.helix_ends import HelixEnds
 from fem.influence.helix_lines import ContactLine
-from fem.influence.helix_waves import HelixHarmonics
+from fem.influence.helix_waves import HelixHarmonics, helix_harmonics
+
+
+@cache
+def waves_of(meshed: MeshedShape, twist: float) -> HelixHarmonics:
+    """Waves on a gear, solved once for all tests that ask for them: a few seconds each."""
+    return helix_harmonics(meshed, twist)
 
 
 def in_plane(meshed: MeshedShape, rho: Array) -> Array:

@@ -17,7 +17,7 @@ from fem.influence.helix_lines import ContactLine, along_line, between_lines
 from fem.influence.helix_waves import HelixHarmonics, helix_harmonics
 from gears import BasicRack, Gear
 from meshes import Sizes, mesh_sector
-from tests.even_helices import even_answer, in_plane
+from tests.even_helices import even_answer, in_plane, waves_of
 
 TWIST = 0.025
 SHAPE = GearShape(Gear(teeth=30, bore_radius=8.0), BasicRack(), 0.3 / 0.7)
@@ -33,7 +33,7 @@ class _Case(NamedTuple):
 
 @pytest.fixture(scope="module")
 def case() -> _Case:
-    return _Case(helix_harmonics(MESHED, 0.0), helix_harmonics(MESHED, TWIST))
+    return _Case(waves_of(MESHED, 0.0), waves_of(MESHED, TWIST))
 
 
 def _along(waves: HelixHarmonics, line: ContactLine, half_width: float = 0.0) -> Array:

@@ -12,9 +12,10 @@ from fem.elasticity.line_load import flank_points
 from fem.elasticity.prism import Face, prism, section
 from fem.influence.gear_face import axial_harmonics, solid_of
 from fem.influence.gear_shape import GearShape, MeshedShape
-from fem.influence.helix_waves import HelixHarmonics, helix_harmonics
+from fem.influence.helix_waves import HelixHarmonics
 from gears import BasicRack, Gear
 from meshes import Sizes, mesh_sector
+from tests.even_helices import waves_of
 
 TWIST = 0.025
 """[rad/module]: 19 degrees on the base circle."""
@@ -29,7 +30,7 @@ class _Case(NamedTuple):
 def case() -> _Case:
     shape = GearShape(Gear(teeth=30, bore_radius=8.0), BasicRack(), 0.3 / 0.7)
     meshed = MeshedShape(shape, Sizes(), 1)
-    return _Case(meshed, helix_harmonics(meshed, TWIST))
+    return _Case(meshed, waves_of(meshed, TWIST))
 
 
 def _solved(case: _Case, twist: float, rho: Array, wavenumber: float) -> Array:
@@ -56,7 +57,7 @@ def test_between_the_solved_places_and_waves(case: _Case, wavenumber: float) -> 
 
 
 def test_no_twist_is_the_spur_gear(case: _Case) -> None:
-    spur, straight = axial_harmonics(case.meshed), helix_harmonics(case.meshed, 0.0)
+    spur, straight = axial_harmonics(case.meshed), waves_of(case.meshed, 0.0)
     low, high = case.meshed.shape.profile.flank_rho
     rho, k = low + np.linspace(0.1, 0.95, 9) * (high - low), np.array([0.05, 0.5, 3.0, 12.0])
     own = straight.own_at(rho, rho, k)
