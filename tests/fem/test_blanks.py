@@ -75,10 +75,12 @@ def test_lame_in_rings_of_two_thicknesses():
     np.testing.assert_allclose(np.sum(u * points, axis=1) / r, exact, rtol=0, atol=1e-5 * exact.max())
 
 
-@pytest.mark.parametrize(("rim", "web"), [(1.2, 0.2), (2.7, 0.5), (8.0, 0.1)])
+@pytest.mark.parametrize(("rim", "web"), [(1.2, 0.2), (2.7, 0.5), (5.0, 0.1)])
 def test_a_torque_on_the_rim_turns_web_and_hub_as_rings_do(rim, web):
     """An even traction along the rim's inside: all outside turns without strain, teeth and all."""
-    profile = pair(rim, web).teeth_profiles[1]
+    blank = Blank(rim * M, web * WIDTH, hub_radius=0.012)
+    wheel = Gear(32, bore_radius=0.008, blank=blank)  # all of its teeth are meshed
+    profile = GearPair(Gear(25), wheel, M, WIDTH).teeth_profiles[1]
     gear = gear_mesh(mesh_sector(profile, refinements=1))
     assert sorted(set(gear.thickness.tolist())) == [web, 1.0]
     force = edge_load(

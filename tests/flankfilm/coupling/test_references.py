@@ -34,6 +34,7 @@ model = "MODEL"
 [film]
 model = "none"
 [dynamics]
+fourier_order = 3
 KEYS
 diagram = { speed_rpm = [15000, 16000], max_period = 1, searches = 2 }
 """
@@ -237,8 +238,9 @@ def test_films_from_the_cache_follow_the_reference_of_another_scene(tmp_path):
 
 
 def test_the_reference_is_of_finite_elements_alone():
-    assert run_of("", "ishikawa")[SCALING].reference == "teeth"
-    assert run_of("", "ishikawa")[REFERENCES] is None
+    closed = run_of("", "ishikawa")
+    assert closed[SCALING].reference == "teeth"
+    assert closed[REFERENCES] is None
     with pytest.raises(InputError, match=r"dynamics\.stiffness_reference"):
         run_of('stiffness_reference = "bore"', "ishikawa")
     with pytest.raises(InputError, match="body"):
