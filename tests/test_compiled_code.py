@@ -45,9 +45,9 @@ for name, pair in pairs.items():
     found[f"orbit, {name}"] = [*orbit.state, *np.abs(orbit.multipliers)]
 branch = dynamics.continue_branch(dynamics.find_orbit(both, (0.3, 0.0)), "frequency", (0.6, 0.66))
 found["special points"] = [point.parameter for point in branch.points]
-found["basins"] = dynamics.basins(both, (-1.0, 1.0, 2), (-1.0, 1.0, 2), limit=40).labels
-found["sweep"] = dynamics.sweep(both, "frequency", [0.6], transient=20, keep=8, max_period=4).states
-found["exponents"] = dynamics.lyapunov_exponents(both, periods=20, transient=20).exponents
+found["basins"] = dynamics.basins(both, (-1.0, 1.0, 2), (-1.0, 1.0, 2), limit=16).labels
+found["sweep"] = dynamics.sweep(both, "frequency", [0.6], transient=4, keep=8, max_period=4).states
+found["exponents"] = dynamics.lyapunov_exponents(both, periods=20, transient=0).exponents
 found["orbits"] = sorted(orbit.state[0] for orbit in dynamics.find_orbits(both, (1,), starts=4).orbits)
 chain = dynamics.DriveOscillator(
     [[1.0, 0.0], [0.0, 2.0]], [[0.1, 0.0], [0.0, 0.1]], [[0.5, -0.2], [-0.2, 0.4]], [1.0, -1.0], both.stiffness, 0.05,
@@ -56,7 +56,7 @@ chain = dynamics.DriveOscillator(
 image = dynamics.period_map(chain, (0.5, 0.2, 0.1, -0.3))
 found["map of a drive"] = [*image.states.ravel(), *image.jacobian.ravel(), *image.counts.ravel()]
 found["motion of a drive"] = dynamics.trajectory(chain, (0.5, 0.2, 0.1, -0.3), 1, 8).columns()
-found["basins of a drive"] = dynamics.basins(chain, (-1.0, 1.0, 2), (-1.0, 1.0, 2), limit=20).labels
+found["basins of a drive"] = dynamics.basins(chain, (-1.0, 1.0, 2), (-1.0, 1.0, 2), limit=10).labels
 found["exponents of a drive"] = dynamics.lyapunov_exponents(chain, periods=20, transient=0).exponents
 print(json.dumps({name: np.ravel(values).astype(float).tolist() for name, values in found.items()}))
 """

@@ -23,17 +23,22 @@ PACKAGES: tuple[str, ...] = (
 )
 """Packages whose public functions all have an example."""
 
-CASES = [
-    (package, name, value)
+CASES = {
+    id(value): (package, name, value)
     for package in PACKAGES
     for name in importlib.import_module(package).__all__
     if inspect.isfunction(value := getattr(importlib.import_module(package), name)) or inspect.isclass(value)
-]
+}
+"""Of each function and class one, however many packages show it."""
 
 
-@pytest.mark.parametrize(("package", "name", "value"), CASES, ids=[f"{p}.{n}" for p, n, _ in CASES])
-def test_examples_run(package: str, name: str, value: object, tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("package", "name", "value"), CASES.values(), ids=[f"{p}.{n}" for p, n, _ in CASES.values()]
+)
+def test_examples_run(package: str, name: str, value: object, tmp_path, monkeypatch, request):
     monkeypatch.chdir(tmp_path)
+    if name == "forget_gears":
+        request.getfixturevalue("no_gear_solved")  # tests after it would solve all gears anew
     tests = [t for t in doctest.DocTestFinder(recurse=True).find(value, name) if t.examples]
     if inspect.isfunction(value):
         assert tests, f"{package}.{name} has no example"

@@ -55,7 +55,7 @@ def face_gears(
     --------
     >>> from fem import compliance, face_gears
     >>> from gears import Gear, GearPair
-    >>> bodies = compliance(GearPair(Gear(teeth=20), Gear(teeth=20), module=2e-3, face_width=20e-3), tolerance=0.05)
+    >>> bodies = compliance(GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3), tolerance=0.05)
     >>> face_gears(bodies, "walls").ends is None
     True
     """

@@ -116,8 +116,8 @@ def fillets_over_face(
     Examples
     --------
     >>> from gears import Gear, GearPair
-    >>> pair = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
-    >>> fillets_over_face(fillets_of(pair, tolerance=0.05), pair, "walls").ends is None
+    >>> pair = GearPair(pinion=Gear(teeth=20), wheel=Gear(teeth=20), module=2e-3, face_width=20e-3)
+    >>> fillets_over_face(fillets_of(pair, tolerance=0.1), pair, "walls").ends is None
     True
     """
     with unclocked():
