@@ -30,7 +30,7 @@ def tilting_mesh(cycle: MeshCycle | None) -> dict[str, Any]:
     --------
     >>> from gears import Bearing, Gear, GearPair, Shaft, ShaftSegment
     >>> from flankfilm.coupling import Flanks, mesh_cycle
-    >>> pair = GearPair(Gear(24), Gear(31), 2e-3, 0.02)
+    >>> pair = GearPair(Gear(20), Gear(30), 2e-3, 0.02)
     >>> shaft = Shaft((ShaftSegment(0.2, 0.03),), (Bearing(0.0, 3e8), Bearing(0.2, 3e8)), 0.06, 0.2)
     >>> flanks = Flanks(False, cells=8, face_model="walls", shafts=(shaft, shaft))
     >>> tilting = tilting_mesh(mesh_cycle(pair, 80.0, tolerance=0.02, flanks=flanks))
