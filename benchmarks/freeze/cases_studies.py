@@ -22,6 +22,10 @@ STUDIES: dict[str, dict[str, Any]] = {
     "misalignment": {
         "vary": {"alignment.in_plane_um": [0.0, 20.0], "pair.pinion.crowning_um": [10.0]},
     },
+    "rating": {
+        "vary": {"operating.pinion_torque_Nm": [200.0], "pair.pinion.profile_shift": [0.0, 0.4]},
+    },
+    "tolerances": {"samples": 16},
     "profile_shift": {"vary": {"pair.pinion.profile_shift": [-0.1, 0.4]}},
     "tip_relief": {
         "vary": {

@@ -14,7 +14,16 @@ from flankfilm.scene.sections.ground import in_keys
 from flankfilm.scene.sections.rating import RatingSection
 from flankfilm.scene.sections.section import required
 from gears import GearPair
-from gears.rating import FaceData, GearOil, LoadBin, RatedSteel, RatingData, Required, ScuffingData
+from gears.rating import (
+    DeviationShares,
+    FaceData,
+    GearOil,
+    LoadBin,
+    RatedSteel,
+    RatingData,
+    Required,
+    ScuffingData,
+)
 
 PEAKS = 6.0
 """Rz over Ra where one of both follows from the other: ISO 6336-2 takes Ra = Rz/6."""
@@ -69,6 +78,7 @@ def rating_data(scene: Scene, pair: GearPair) -> RatingData:
         scuffing,
         steps,
         Required(**section.si_of("required")),
+        DeviationShares(**({} if section.tolerance_shares is None else section.tolerance_shares.si())),
     )
 
 

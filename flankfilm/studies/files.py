@@ -25,6 +25,7 @@ from flankfilm.studies.kept import kept_rows
 from flankfilm.studies.outputs import OUTPUTS
 from flankfilm.studies.page import write_study_page
 from flankfilm.studies.plan import Plan
+from flankfilm.studies.quantiles import sampled, write_quantiles
 from flankfilm.studies.row import RowResult
 from flankfilm.studies.run import StudyResults, computed, work_of_plan
 from flankfilm.studies.study_file import Value
@@ -122,9 +123,12 @@ class StudyOutcome(Outcome[StudyResults]):
         return SOLVER_FAULT if all(row.lost for row in self.result.rows) else PART_FAILED
 
     def tables(self, folder: Path) -> list[Path]:
-        """The rows, which are there, and what their columns err by."""
+        """The rows, which are there, what their columns err by, and quantiles of sampled rows."""
         plan = self.result.plan
-        return [folder / ROWS, write_columns(folder, plan.keys, plan.outputs)]
+        tables = [folder / ROWS, write_columns(folder, plan.keys, plan.outputs)]
+        if sampled(plan.design, len(plan.rows)):
+            tables.append(write_quantiles(folder, self.dataset, plan.outputs))
+        return tables
 
     @property
     def pictures(self) -> dict[str, Picture]:

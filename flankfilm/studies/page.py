@@ -23,6 +23,7 @@ from flankfilm.report.run_parts import inputs_of, work_of
 from flankfilm.report.text import counted, number, off, percent
 from flankfilm.scene import Scene, parse_tolerance
 from flankfilm.studies.outputs import ERROR_OF, MODEL_ERROR_OF
+from flankfilm.studies.quantiles import SHARES, quantiles, sampled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,10 +82,33 @@ def write_study_page(study: StudyResults, data: xr.Dataset, folder: Path) -> Pat
         Part("rows", "Rows", tables=(table,), unfolded=True),
         inputs_of(data),
     ]
+    if sampled(plan.design, rows):
+        parts.insert(1, _quantiles(data, plan.outputs))
     if notes:
         facts.append(Fact(f"{len(study.failures)} failed", "faults"))
         parts.insert(1, Part("faults", "Rows that failed", notes=notes, unfolded=True))
     return write_page(folder, Head(plan.title or "Study", facts, headlines), parts)
+
+
+def _quantiles(data: xr.Dataset, outputs: Sequence[str]) -> Part:
+    """Quantiles of every output over the drawn rows."""
+    heads = (
+        "output",
+        "rows",
+        *(f"{100 * share:g} %" for share in SHARES),
+        "largest change with half the rows",
+    )
+    cells = tuple(
+        (
+            words(data, output.name),
+            str(output.rows),
+            *map(number, output.values.tolist()),
+            number(float(output.changes.max()), 2),
+        )
+        for output in quantiles(data, outputs)
+    )
+    caption = "That share of the rows stays below the value. Errors of rows and of what was drawn are not contained."
+    return Part("quantiles", "Quantiles", tables=(Table(heads, cells, caption),), unfolded=True)
 
 
 def _tolerance(data: xr.Dataset) -> Fact:

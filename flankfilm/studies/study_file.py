@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from statistics import NormalDist
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
@@ -23,6 +24,14 @@ MOST_KEYS = 100
 LARGEST = 1e15
 """Of a varied number; no key of a scene takes a larger one."""
 
+DEVIATIONS = 3.0
+"""Standard deviations from the middle of a normal range to its ends."""
+
+_NORMAL = NormalDist()
+
+_OUTSIDE = _NORMAL.cdf(-DEVIATIONS)
+"""Probability of a normal distribution beyond one end."""
+
 Bounded = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
 
 Value = bool | int | float | str
@@ -36,6 +45,11 @@ class Range(Section):
     steps: int | None = Field(default=None, ge=2, le=MOST_ROWS, description="of a grid or a list")
     log: bool = Field(default=False, description="equal ratios instead of equal steps")
     whole: bool = Field(default=False, description="round to whole numbers, such as teeth")
+    normal: bool = Field(
+        default=False,
+        description="crowded about the middle by a normal distribution, whose ends are three standard deviations away; "
+        "nothing is drawn beyond them; else evenly spread",
+    )
 
     @model_validator(mode="after")
     def _a_range(self) -> Range:
@@ -49,6 +63,8 @@ class Range(Section):
 
     def at(self, unit: float) -> Value:
         """Value at a place between 0 and 1."""
+        if self.normal:
+            unit = 0.5 + _NORMAL.inv_cdf(_OUTSIDE + unit * (1.0 - 2.0 * _OUTSIDE)) / (2.0 * DEVIATIONS)
         if self.log:
             low, high = math.log(self.from_), math.log(self.to)
             value = math.exp(low + unit * (high - low))
@@ -65,8 +81,12 @@ class Range(Section):
         if self.log:
             if value <= 0:
                 return -math.inf
-            return math.log(value / self.from_) / math.log(self.to / self.from_)
-        return (value - self.from_) / (self.to - self.from_)
+            place = math.log(value / self.from_) / math.log(self.to / self.from_)
+        else:
+            place = (value - self.from_) / (self.to - self.from_)
+        if not self.normal:
+            return place
+        return (_NORMAL.cdf(2.0 * DEVIATIONS * (place - 0.5)) - _OUTSIDE) / (1.0 - 2.0 * _OUTSIDE)
 
 
 class Follow(Section):

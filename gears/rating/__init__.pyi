@@ -18,6 +18,7 @@ from .pitting import load_cycles as load_cycles
 from .pitting import pitting_safety as pitting_safety
 from .rating import Rating as Rating
 from .rating import rate as rate
+from .rating_data import DeviationShares as DeviationShares
 from .rating_data import FaceData as FaceData
 from .rating_data import RatingData as RatingData
 from .rating_data import Required as Required

@@ -36,7 +36,7 @@ class Rating:
     speed: float = quantity("rad/s", "speed of the pinion", shown="rpm", no_error=EXACT)
     life: float = quantity("s", "time under load", shown="h", no_error=EXACT)
     relief: float = quantity("m", "tip relief C_a, of the gears or by running in", shown="um")
-    tolerances: Tolerances = part("of the accuracy grade")
+    tolerances: Tolerances = part("of the accuracy grade, or what the gears have of them")
     misalignment: Misalignment | None = part("by method C; None where K_Hbeta is given")
     factors: LoadFactors = part("load factors")
     pitting: PittingSafety = part("safety against pitting")
@@ -235,7 +235,7 @@ def _checked(pair: GearPair, data: RatingData) -> Tolerances:
     """Tolerances of the grade, after everything that can be wrong beside it was looked at."""
     faults, graded = list[Fault](), list[Tolerances]()
     checks: list[Callable[[], object]] = [
-        lambda: graded.append(tolerances(pair, data.grade)),
+        lambda: graded.append(data.shares.of(tolerances(pair, data.grade))),
         lambda: _check_given(pair, data),
     ]
     if data.scuffing is not None:
@@ -259,6 +259,7 @@ def _check_given(pair: GearPair, data: RatingData) -> None:
         check_flanks(faults, data.viscosity_40, data.flank_roughness, data.life, data.Z_W, data.Z_X)
         check_roots(faults, data.steels, data.root_roughness)
         data.required.check(faults)
+        data.shares.check(faults)
 
 
 def _scuffing(

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from base import Faults, Limit
 from gears.rating.friction import GearOil
+from gears.rating.grades import Tolerances
 from gears.rating.spectrum import LoadBin
 from gears.rating.steels import Steels
 
@@ -76,6 +77,43 @@ class FaceData:
     B_2: float = 1.0
 
 
+SHARE = Limit(0.0, 2.0, remedy="1 is the tolerance of the grade, 0 a gear without the deviation")
+"""Parts of a tolerance that a gear has."""
+
+
+@dataclass(frozen=True)
+class DeviationShares:
+    """What a gear has of the tolerances of its grade, 1 of each as a rating takes them; below 1 of gears as made.
+
+    Parameters
+    ----------
+    f_pb, f_falpha, f_Hbeta : float
+        Base pitch, profile form and helix slope deviation over their tolerances.
+    """
+
+    f_pb: float = 1.0
+    f_falpha: float = 1.0
+    f_Hbeta: float = 1.0
+
+    def check(self, faults: Faults) -> None:
+        """Note parts that no gear has."""
+        for name in ("f_pb", "f_falpha", "f_Hbeta"):
+            faults.number(f"shares.{name}", getattr(self, name), SHARE)
+
+    def of(self, grade: Tolerances) -> Tolerances:
+        """Deviations of both gears, those that a rating depends on."""
+
+        def part(share: float, both_gears: tuple[float, float]) -> tuple[float, float]:
+            return share * both_gears[0], share * both_gears[1]
+
+        return replace(
+            grade,
+            f_pb=part(self.f_pb, grade.f_pb),
+            f_falpha=part(self.f_falpha, grade.f_falpha),
+            f_Hbeta=part(self.f_Hbeta, grade.f_Hbeta),
+        )
+
+
 @dataclass(frozen=True)
 class RatingData:
     """What a rating takes beside the pair, its torque and its speed.
@@ -114,6 +152,8 @@ class RatingData:
         Steps of a load spectrum; none leaves Miner's sum out.
     required : Required
         Safeties that the pair must have.
+    shares : DeviationShares
+        What the gears have of the tolerances of their grade.
 
     Examples
     --------
@@ -139,3 +179,4 @@ class RatingData:
     scuffing: ScuffingData | None = None
     spectrum: tuple[LoadBin, ...] = ()
     required: Required = field(default_factory=Required)
+    shares: DeviationShares = field(default_factory=DeviationShares)

@@ -17,7 +17,7 @@ from gears.rating.load_factors import LIMITS as LOADS
 from gears.rating.misalignment import LIMITS as FACE
 from gears.rating.pitting import FACTOR
 from gears.rating.pitting import LIMITS as FLANKS
-from gears.rating.rating_data import REQUIRED
+from gears.rating.rating_data import REQUIRED, SHARE
 from gears.rating.scuffing import LIMITS as SCUFFING
 from gears.rating.spectrum import LIMITS as STEP
 from gears.rating.steels import LIMITS as STRENGTHS
@@ -92,6 +92,16 @@ class ScuffingSection(Section):
     X_S: float = key("how oil reaches the teeth; 1 of gears that dip into it", 1.0, of="supply")
 
 
+class SharesSection(Section):
+    """What the gears have of the tolerances of their grade, to be drawn by a study."""
+
+    ground: ClassVar[Limits] = {"f_pb": SHARE, "f_falpha": SHARE, "f_Hbeta": SHARE}
+
+    f_pb: float = key("base pitch deviation over its tolerance", 1.0, example=0.5)
+    f_falpha: float = key("profile form deviation over its tolerance", 1.0, example=0.5)
+    f_Hbeta: float = key("helix slope deviation over its tolerance", 1.0, example=0.5)
+
+
 class StepSection(Section):
     """Step of a load spectrum, on the rated flanks."""
 
@@ -140,6 +150,12 @@ class RatingSection(Section):
     }
 
     accuracy_grade: int = key("accuracy grade of both gears by ISO 1328-1:1995", of="grade", example=6)
+    tolerance_shares: SharesSection | None = key(
+        "what the gears have of the tolerances of this grade; all of each if left out, as ratings have it",
+        None,
+        of="shares",
+        such_as={"f_pb": 0.5, "f_falpha": 0.5, "f_Hbeta": 0.5},
+    )
     K_A: float = key(
         "application factor; 1 of a torque that is the maximum already", of="application_factor", example=1.25
     )
