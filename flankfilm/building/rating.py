@@ -162,6 +162,11 @@ def _under(fault: Fault, scene: Scene) -> Fault:
         return in_keys(fault if wider else replace(fault, where="face_width"), scene.pair, "pair")
     if fault.where.endswith(("module", "reference_diameter")):
         return in_keys(fault, scene.pair, "pair")
+    if fault.where == "F_bx":
+        allowed = (
+            f"is required where method C begins with a misalignment of {fault.value}: it {fault.allowed}"
+        )
+        return Fault("rating.K_Hbeta", "", allowed, "Give K_Hbeta, by the loaded contact or another source")
     path = fault.where.replace(".steel.", ".")
     if scene.rating is not None and scene.rating.wheel is None and path.startswith("wheel."):
         path = path.replace("wheel.", "pinion.", 1)  # whose keys both gears have

@@ -199,6 +199,8 @@ def _remedy(item: Mapping[str, Any], about: Key) -> str:
     kind, value = item["type"], item["input"]
     if kind in ("float_type", "int_type") and isinstance(value, str):
         return "Write it without quotes" + ("; the unit is part of the key" if about.unit != "1" else "")
+    if item["loc"][-1] == "teeth" and isinstance(value, int) and value < 0:
+        return "Internal gears are not computed: both gears have external teeth"
     if kind in _RANGES and about.unit != "1":
         return f"Check the unit: the key {item['loc'][-1]} names it"
     if kind == "literal_error" and isinstance(value, str):
