@@ -8,7 +8,7 @@ import numpy as np
 
 from flankfilm.bench.case import Answer, Case, Levels, case, level, over, value
 from flankfilm.bench.examples import TORQUE, example_pair
-from flankfilm.bench.work_cases import work_geometry
+from flankfilm.bench.work_cases import work_geometry, work_rating
 
 if TYPE_CHECKING:
     from base import Array
@@ -38,8 +38,8 @@ def independent_pairs(pair: GearPair, form: str, positions: int) -> Array:
 
 
 def gears(quick: bool) -> tuple[Case, ...]:
-    """Closed forms, and work on the geometry."""
-    return (closed_forms(quick),) if quick else (closed_forms(quick), work_geometry())
+    """Closed forms, and work on the geometry and on ratings."""
+    return (closed_forms(quick),) if quick else (closed_forms(quick), work_geometry(), work_rating())
 
 
 @case("Closed forms", "positions")

@@ -43,6 +43,34 @@ def work_geometry() -> Levels:
     return Levels(series)
 
 
+@case("Ratings", "steps")
+def work_rating() -> Levels:
+    """Safeties by ISO 6336 and scuffing, and Miner's sum by the number of steps of a load spectrum.
+
+    Pair 36/40 at 300 N m, grade 6, case-hardened: K_Hbeta given, and by method C; spectra with one, ten and a hundred
+    steps by method C.
+    """
+    from gears.rating import FaceData, GearOil, LoadBin, RatedSteel, RatingData, ScuffingData, rate
+
+    pair, steels = example_pair(), (RatedSteel("Eh", 1500e6, 430e6),) * 2
+    test = ScuffingData(GearOil(220e-6, 19e-6, 890.0, 353.15), 0.8e-6, 450.1)
+    data = RatingData(6, steels, 7.2e7, 220e-6, 4.8e-6, (20e-6, 20e-6), 1.25, scuffing=test)
+
+    def rated(asked: RatingData) -> Callable[[], object]:
+        return lambda: rate(pair, 300.0, 209.44, asked)
+
+    def steps(count: int) -> RatingData:
+        torques = np.linspace(200.0, 300.0, count).tolist()
+        return replace(data, spectrum=tuple(LoadBin(torque, 209.44, 1e8) for torque in torques))
+
+    series = (
+        work("K_Hbeta given", rated(replace(data, face=FaceData(1.2)))),
+        work("method C", rated(data)),
+        *(work(f"spectrum of {count}", rated(steps(count)), count) for count in (1, 10, 100)),
+    )
+    return Levels(series)
+
+
 class _LogarithmicContact:
     """Local law with the slope of the pair 36/40."""
 

@@ -7,7 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from base import Faults, Limit
+import numpy as np
+
+from base import Array, Faults, Limit
 from gears.tooth.errors import GeometryError
 
 ENDURANCE = 0.85
@@ -72,6 +74,14 @@ class LifeCurve:
                 share = math.log(factor / high) / math.log(low / high)
                 return float(self.cycles[place - 1] * (self.cycles[place] / self.cycles[place - 1]) ** share)
         return math.inf
+
+    def lives(self, factors: Array) -> Array:
+        """Cycles that stresses survive which need these life factors; as of `life`, of an array."""
+        points, cycles = np.log(self.factors[::-1]), np.log(self.cycles[::-1])
+        tiny = float(np.finfo(np.float64).tiny)
+        endured = np.exp(np.interp(np.log(np.maximum(factors, tiny)), points, cycles))
+        endured = np.where(factors > self.factors[0], 0.0, endured)
+        return np.asarray(np.where(factors < self.factors[-1], math.inf, endured))
 
 
 _PITTED = (6e5, 1e7, 1e9, 1e10), (1.6, 1.3, 1.0, ENDURANCE)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -164,8 +165,12 @@ def _of_gears(
     damages, safeties = list[SpectrumDamage](), list[float]()
     for cycles, needed, curve in zip(counts, required, curves, strict=True):
         damages.append(miner(cycles.tolist(), needed, curve, safety))
-        safeties.append(
-            spectrum_safety(lambda s, n=cycles, f=needed, c=curve: miner(n.tolist(), f, c, s).damage)  # type: ignore[misc]
-        )
+        safeties.append(spectrum_safety(partial(_damage, cycles, np.array(needed), curve)))
     parts = np.array([damage.parts for damage in damages])
     return parts, (damages[0].damage, damages[1].damage), (safeties[0], safeties[1])
+
+
+def _damage(cycles: Array, required: Array, curve: LifeCurve, safety: float) -> float:
+    """Miner's sum as of `miner`, of arrays that were checked."""
+    with np.errstate(divide="ignore"):
+        return float(np.sum(cycles / curve.lives(safety * required)))

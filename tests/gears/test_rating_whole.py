@@ -6,6 +6,7 @@ import math
 import time
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from base import InputError, RangeWarning
@@ -18,6 +19,7 @@ from gears.rating import (
     RatingData,
     Required,
     ScuffingData,
+    contact_curve,
     load_factors,
     misalignment,
     pitting_safety,
@@ -149,3 +151,14 @@ def test_it_costs_less_than_five_milliseconds():
     for _ in range(20):
         rate(pair, 300.0, SPEED, whole)
     assert (time.process_time() - began) / 20 < 5e-3
+
+
+def test_lives_of_an_array_are_those_of_its_numbers():
+    factors = np.array([2.0, 1.6, 1.3, 1.0, 0.9, 0.85, 0.84, 0.0])
+    for curve in (
+        contact_curve("Eh"),
+        contact_curve("Eh", pitting_permitted=True),
+        contact_curve("NV nitrocar"),
+    ):
+        expected = [curve.life(float(factor)) for factor in factors]
+        assert curve.lives(factors) == pytest.approx(np.array(expected), rel=1e-9)
