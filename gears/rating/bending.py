@@ -24,7 +24,7 @@ _SLIP = {
 _LIMITS = {
     "torque": Limit.above(0.0, 1e9, "N m", "give the pinion's torque, without factors"),
     "speed": Limit.above(0.0, 1e5, "rad/s", "give the pinion's speed"),
-    "life": Limit.above(0.0, 1e11, "s", "give the life in seconds"),
+    "life": Limit.above(0.0, 3.6e10, "s", "give the life in seconds"),
 }
 ROUGHNESS = Limit(1e-8, 40e-6, "m", "give Rz of the root's fillet in metres; the standard has it up to 40 um")
 """Rz of a fillet."""

@@ -24,7 +24,7 @@ _LOAD = {
 LIMITS = {
     "viscosity_40": Limit(1e-6, 1e-2, "m2/s", "give nu_40 in m2/s: ISO VG 220 has 220e-6"),
     "roughness": Limit(1e-8, 1e-4, "m", "give the mean Rz of both flanks in metres, about 6 Ra"),
-    "life": Limit.above(0.0, 1e11, "s", "give the life in seconds"),
+    "life": Limit.above(0.0, 3.6e10, "s", "give the life in seconds"),
     "Z_X": FACTOR,
 }
 """What else a rating of the flanks takes."""

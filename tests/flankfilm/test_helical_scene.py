@@ -61,6 +61,16 @@ pinion = [{ position_mm = 0, radial_N_per_m = 3e8, axial_N_per_m = 1e8, tilting_
 wheel = [{ position_mm = 0, radial_N_per_m = 3e8, axial_N_per_m = 1e8, tilting_Nm_per_rad = 1e6 }]
 """
 ANSWERED = '"geometry", "closed-forms"'
+RATING = """
+[rating]
+accuracy_grade = 6
+K_A = 1.25
+life_h = 20000
+flank_Rz_um = 4.8
+pinion = { steel = "Eh", sigma_Hlim_MPa = 1500, sigma_Flim_MPa = 430, root_Rz_um = 20 }
+oil = { nu_40_mm2_per_s = 220 }
+"""
+
 OIL = """
 [lubricant]
 viscosity_Pa_s = 0.075
@@ -192,6 +202,8 @@ class TestTable:
             text += OIL
         if want == "bearing-forces":
             text += BEARINGS
+        if want == "rating":
+            text += RATING
         assert check_scene(parse_scene(text))
 
     GIVEN = (
