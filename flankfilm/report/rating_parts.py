@@ -94,6 +94,7 @@ def section(rating: Rating, own: OwnRating | None, results: xr.Dataset) -> Part:
         pictures(results, PICTURES),
         tuple(tables),
         tuple(_notes(rating, own)),
+        seen=len(PICTURES),
         unfolded=True,
     )
 
