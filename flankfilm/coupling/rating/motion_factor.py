@@ -2,7 +2,8 @@
 
 A base pitch that differs by f_pb makes the unloaded transmission error a sawtooth of that height: a pair whose pitch is
 too short takes over early, with a jump at A; one whose pitch is too long late, with a jump at E. The standard does not
-say which it is, so that both are followed and the larger force counts.
+say which it is, so that both are followed and the larger force counts. A load rounds the sawtooth, since pairs share it
+before one takes over: the factor is an upper estimate.
 """
 
 from __future__ import annotations
@@ -19,9 +20,13 @@ from flankfilm.coupling.speeds.sidebands import LEAST_ORDER, over_revolution
 from flankfilm.coupling.vibration.excitation import POSITIONS, ErrorSeries, error_series
 from flankfilm.coupling.vibration.oscillator import PairOscillator
 from flankfilm.coupling.vibration.resonance import vibrations
+from flankfilm.coupling.vibration.series import MOST_HARMONICS
 
 if TYPE_CHECKING:
     import gears
+
+ABOVE = 1.5
+"""Frequency of the last harmonic over the natural one."""
 
 _LIMITS = {
     "speed": Limit.above(0.0, 1e6, "rad/s", "give the pinion's speed"),
@@ -100,9 +105,9 @@ def motion_factor(
             "motion", "", "requires an oscillator with physical scales", "give pair and torque"
         )
     at = np.array([scales.frequency(speed)])
-    even = _swept(motion, None, at)
-    rough = [_swept(motion, error, at) for error in pitch_errors(pair, deviation, LEAST_ORDER)]
-    fine = [_swept(motion, error, at) for error in pitch_errors(pair, deviation, 2 * LEAST_ORDER)]
+    even, order = _swept(motion, None, at), harmonics_of(float(at[0]))
+    rough = [_swept(motion, error, at) for error in pitch_errors(pair, deviation, order)]
+    fine = [_swept(motion, error, at) for error in pitch_errors(pair, deviation, 2 * order)]
     worse = int(np.argmax([float(force[0]) for force, _, _ in rough]))
     K_v, change = float(rough[worse][0][0]), rough[worse][1]
     more = float(fine[worse][0][0])
@@ -110,7 +115,7 @@ def motion_factor(
     swept: dict[str, Any] = {"swept": None, "factor": None, "greatest": None, "greatest_at": None}
     runs, off = [even, *rough, *fine], change + series
     if speeds is not None:
-        error = pitch_errors(pair, deviation, LEAST_ORDER)[worse]
+        error = pitch_errors(pair, deviation, order)[worse]
         over = _swept(motion, error, np.array([scales.frequency(float(omega)) for omega in speeds]))
         runs.append(over)
         off = max(off, over[1] + series)
@@ -133,6 +138,20 @@ def motion_factor(
         converged=converged,
         message="" if converged else "some motions grow without bound; their factors are nan",
     )
+
+
+def harmonics_of(frequency: float) -> int:
+    """Harmonics of the sawtooth that count at a mesh over natural frequency: all up to half as much above resonance.
+
+    Harmonic j is excited with f_pb/(pi j) and answers the most at j = 1/frequency, in proportion to the frequency. At
+    slow speeds `MOST_HARMONICS` are enough: further ones change less than the error holds.
+
+    Examples
+    --------
+    >>> harmonics_of(0.165), harmonics_of(1.0), harmonics_of(1e-4)
+    (10, 3, 50)
+    """
+    return min(max(LEAST_ORDER, math.ceil(ABOVE / frequency)), MOST_HARMONICS)
 
 
 def pitch_errors(pair: gears.GearPair, deviation: float, order: int) -> tuple[ErrorSeries, ErrorSeries]:
