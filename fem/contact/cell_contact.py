@@ -99,6 +99,11 @@ class CellContact:
         """Gears in mesh."""
         return self.sides.setups[0].pair
 
+    @property
+    def helical(self) -> bool:
+        """Whether cells lie on lines that cross the flanks."""
+        return self.sides.setups[0].helical
+
     def faces(self, face: FaceSetting) -> tuple[FaceSetting, ...]:
         """A face of the loaded side as either side has it."""
         return (face, face.opposite(self.pair.working_pressure_angle))[: len(self.sides.flanks)]
@@ -288,6 +293,19 @@ class CellContact:
         z = ((np.arange(parts) + 0.5) / parts - 0.5) * self.pair.face_width
         whole = loaded.sum(axis=(-2, -1))
         return np.asarray((loaded.sum(axis=-2) @ z) / np.where(whole > 0.0, whole, 1.0))
+
+    def with_doubts(self, face: FaceSetting, coarse: CellShare) -> dict[str, CellShare]:
+        """Shares of gears that are off by each doubt of them (``HelixEnds.off_by``); none of spur pairs.
+
+        Parameters
+        ----------
+        face : FaceSetting
+            Of the loaded side.
+        coarse : CellShare
+            On that face.
+        """
+        del face, coarse
+        return {}
 
     def gap_drops(self, face: FaceSetting, coarse: CellShare) -> Array:
         """By how much the minimum gap of cells falls short of their mean (torques, ..., pairs, cells) [m].

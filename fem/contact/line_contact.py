@@ -19,9 +19,10 @@ from fem.contact.cell_coupling import CellCoupling
 from fem.contact.cell_laws import WITHIN, LineFilmLaw, drops_within
 from fem.contact.cell_matrix import coupled_by, kept_unless_large
 from fem.elasticity.flamant import hertz_half_width
+from fem.influence.helix_ends import OF_ENDS, OFF_BY
 from fem.laws.contact_candidates import SEEN_ALONG, line_gaps
 from fem.laws.local_law import FilmLaw, PairLaws
-from fem.pair.line_compliance import GearLines, gear_lines
+from fem.pair.line_compliance import FeltLine, GearLines, gear_lines
 from fem.pair.line_shafts import PlacesOnLines, ShaftsUnderLines, shafts_under_lines
 from fem.pair.wide_contact import NARROW, shares_together
 
@@ -65,6 +66,8 @@ class LineContact(CellContact):
 
     def coupling(self, face: FaceSetting) -> CellCoupling:
         """Compliance of the bodies between cells of all lines."""
+        if self.bodies.doubt in OF_ENDS:
+            return self._off_by_ends(face)
         bodies, lines, cells = self.bodies, self.lines, self.lines.divided(face.cells)
         offset = self.sides.flanks[0].candidates.offset.tolist()
         module = self.pair.module
@@ -83,6 +86,33 @@ class LineContact(CellContact):
         key = coupled_by(bodies, face, lines.middle, np.array(_held_by(bodies)), *own)
         numbers = int(np.sum(cells.count.sum(axis=-1) ** 2))
         return kept_unless_large("lines", (lines.slope, *key), numbers, cut)
+
+    def _off_by_ends(self, face: FaceSetting) -> CellCoupling:
+        """The same with free ends off by a part of a doubt."""
+        bodies, lines, cells = self.bodies, self.lines, self.lines.divided(face.cells)
+        offset = self.sides.flanks[0].candidates.offset.tolist()
+        sure = replace(self, bodies=bodies.doubtful(""))
+        own = [gear.own(rho) for gear, rho in zip((bodies.pinion, bodies.wheel), cells.rho, strict=True)]
+
+        def cut() -> CellCoupling:
+            known = sure.coupling(face)
+            solved = [gear_lines(each, lines.slope, face.model) for each in (bodies, sure.bodies)]
+            blocks = []
+            for position, block in enumerate(known.blocks):
+                off, as_solved = (ends_compliance(bodies, each, offset, cells, position) for each in solved)
+                blocks.append(block + OFF_BY * (off - as_solved))
+            return CellCoupling(known.cells, tuple(blocks), known.unknowns)
+
+        key = coupled_by(bodies, face, lines.middle, np.array(_held_by(bodies)), *own)
+        numbers = int(np.sum(cells.count.sum(axis=-1) ** 2))
+        return kept_unless_large("lines off", (lines.slope, bodies.doubt, *key), numbers, cut)
+
+    def with_doubts(self, face: FaceSetting, coarse: CellShare) -> dict[str, CellShare]:
+        """As of ``CellContact``: free ends off by ``OFF_BY`` of ``fem.influence.helix_ends.OF_ENDS``."""
+        return {
+            doubt: replace(self, bodies=self.bodies.doubtful(doubt)).shared(face, coarse.forces, coarse.rise)
+            for doubt in OF_ENDS
+        }
 
     def laws(self, face: FaceSetting) -> JointLaw:
         """Hertz's law of each cell."""
@@ -282,6 +312,36 @@ def lines_compliance(
     half_width : float
         Of the pressure, in modules.
     """
+
+    def between(solved: GearLines, load: FeltLine, point: FeltLine) -> Array:
+        return solved.between(load, point, half_width)
+
+    compliance = _of_gears(bodies, gears, offset, cells, position, half_width, between)
+    # what hubs and supports move all teeth by, by the part of the normal force across the axis
+    return compliance + _held_by(bodies) * bodies.pair.helix.base_cosine**2
+
+
+def ends_compliance(
+    bodies: PairCompliance,
+    gears: Sequence[GearLines],
+    offset: Sequence[int],
+    cells: LineCells,
+    position: int,
+) -> Array:
+    """What of ``lines_compliance`` free ends of both gears add (n, n) [m/N]; arguments as there."""
+    return _of_gears(bodies, gears, offset, cells, position, 0.0, GearLines.by_ends)
+
+
+def _of_gears(
+    bodies: PairCompliance,
+    gears: Sequence[GearLines],
+    offset: Sequence[int],
+    cells: LineCells,
+    position: int,
+    half_width: float,
+    between: Callable[[GearLines, FeltLine, FeltLine], Array],
+) -> Array:
+    """Sum over both gears of what stands between the used cells of all lines (n, n) [m/N]."""
     count, module = cells.count[position], bodies.pair.module
     chosen = np.flatnonzero(count).tolist()
     ends = np.concatenate([[0], np.cumsum(count[chosen])])
@@ -301,14 +361,13 @@ def lines_compliance(
         ]
         for i, load in enumerate(lines):
             own = slice(ends[i], ends[i + 1])
-            compliance[own, own] += solved.between(load, load, half_width)
+            compliance[own, own] += between(solved, load, load)
             for j, point in enumerate(lines[:i]):
                 other = slice(ends[j], ends[j + 1])
-                moved = solved.between(load, point, half_width)
+                moved = between(solved, load, point)
                 compliance[own, other] += moved
                 compliance[other, own] += moved.T
-    # what hubs and supports move all teeth by, by the part of the normal force across the axis
-    return compliance + _held_by(bodies) * bodies.pair.helix.base_cosine**2
+    return compliance
 
 
 def _held_by(bodies: PairCompliance) -> float:

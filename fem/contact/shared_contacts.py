@@ -13,7 +13,9 @@ all.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,8 +52,8 @@ class SharedContacts:
         As of ``fem.contact.cell_contact.CellShare``.
     lost : (2, 2, torques, pitches, positions, pairs) array
         Parts of both base radii by which levers of forces, and of further ones, are shorter: 0 of contacts that stay.
-    errors : CellErrors
-        By the cells, and of the face-load factor by free ends.
+    estimate : callable
+        Gives `errors`, once.
     shafts : HeldShafts or None
         None where they are rigid.
     fewer : (torques, pitches, positions, pairs, cells) array or None
@@ -68,11 +70,16 @@ class SharedContacts:
     strips: Array
     rise: Array
     lost: Array
-    errors: CellErrors
+    estimate: Callable[[], CellErrors]
     shafts: HeldShafts | None = None
     fewer: Array | None = None
     slopes: Array | None = None
     tilting: Array | None = None
+
+    @property
+    def errors(self) -> CellErrors:
+        """Errors by the cells, and of the face-load factor by free ends; found when they are first asked for."""
+        return self.estimate()
 
     @classmethod
     def even(cls, share: LoadShare, open_: Array) -> SharedContacts:
@@ -80,7 +87,7 @@ class SharedContacts:
         forces, count = share.forces[..., None], len(share.forces)
         lost = np.zeros((2, 2, *share.forces.shape))
         none = np.zeros_like(forces)
-        return cls(share, forces, open_[..., None], np.zeros(count), none, lost, no_errors(count))
+        return cls(share, forces, open_[..., None], np.zeros(count), none, lost, lambda: no_errors(count))
 
     @property
     def turn(self) -> Array:
@@ -192,7 +199,7 @@ def share_staying(bodies: PairCompliance, whole: Array, sides: ContactSides) -> 
         fine.strips,
         fine.rise,
         np.zeros((2, 2, *share.forces.shape)),
-        cell_errors(over, face, fine, coarse),
+        cache(partial(cell_errors, over, face, fine, coarse)),
         fine.shafts,
         **(_of_lines(lines, (face, few), (fine, coarse)) if sides.setups[0].helical else {}),
     )

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from base import Array, Booleans, Cost, RangeWarning
+from base.results import WORST
 from fem.contact.cell_laws import FEW_CELLS
 from fem.contact.contact_state import ContactState
 from fem.contact.opposite_flanks import OppositeFlanks
@@ -59,6 +60,7 @@ def cycle_of(
     if large:
         warnings.warn("; ".join(large), RangeWarning, stacklevel=5)
     held, supports = held_turns(bodies)
+    unsettled = [] if refusal else _unbelieved(setup, bodies.error + by_cells)
     approach = contact.share.transmission_error[number]
     bearing = opposite if opposite is not None and np.any(opposite.share.forces[number] > 0.0) else None
     behind = None if bearing is None else (bearing.candidates, bearing.share.forces[number])
@@ -94,9 +96,9 @@ def cycle_of(
         lever_loss=lost[0],
         further_lever_loss=lost[1],
         cost=cost,
-        converged=bodies.converged and not refusal,
+        converged=bodies.converged and not refusal and not unsettled,
         message=refusal
-        or "; ".join([bodies.message, *_remarks(setup, contact, number, forces, edge), *large]),
+        or "; ".join([bodies.message, *unsettled, *_remarks(setup, contact, number, forces, edge), *large]),
         pair=setup.pair,
         candidates=candidates,
         friction=float(setup.friction),
@@ -117,11 +119,23 @@ def cycle_of(
             tolerance,
             corner_laws=corner_laws,
             scatter=errors.of(number),
+            ends_scatter=errors.ends_of(number),
             ends_error=float(errors.ends[number]),
         ),
         flank="back" if setup.back else "front",
         opposite=None if bearing is None else _opposite(bearing, number),
     )
+
+
+def _unbelieved(setup: MeshSetup, error: float) -> list[str]:
+    """Why figures of a helical pair are not believed, as those of a compliance from as large an error on."""
+    if not setup.helical or error < WORST:
+        return []
+    width = setup.pair.face_width / setup.pair.module
+    return [
+        f"the error of stiffness and deflection is {error:.0%} on a face of {width:.2g} modules; from {WORST:.0%} on "
+        "no figure is believed: give a wider face, more cells, or a spur pair"
+    ]
 
 
 def _opposite(contact: ContactState, number: int) -> OppositeFlanks:

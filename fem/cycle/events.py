@@ -13,6 +13,7 @@ from fem.contact.face_errors import half_as_many
 from fem.contact.shared_contacts import yielding_over_face
 from fem.contact.solver import solve_contact
 from fem.cycle.fit_errors import doubts
+from fem.influence.helix_ends import BETWEEN, OFF_BY
 from fem.laws.corner_laws import CornerLaws
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
@@ -62,6 +63,8 @@ class ContactProblem:
         What cells of the face leave at positions, as of ``gears.sharing.mesh_figures.FewerCells``.
     ends_error : float
         Relative, of stiffness and deflection by free ends of the face.
+    ends_scatter : mapping, optional
+        What free ends of helical gears leave at positions, likewise.
     """
 
     setup: MeshSetup
@@ -76,6 +79,7 @@ class ContactProblem:
     varied: tuple[tuple[Film, float], ...] = ()
     scatter: Mapping[str, Scatter] | None = None
     ends_error: float = 0.0
+    ends_scatter: Mapping[str, Scatter] | None = None
 
     def less(self, turn: Array) -> ContactProblem:
         """Leave a further turn of pinion and wheel per force (2,) [m/N] out of the deflection."""
@@ -97,9 +101,12 @@ class ContactProblem:
             varied.append((self._alike(self.bodies.doubtful(doubt), fine), 1.0))
         fewer = None
         if self.scatter:
-            few, share = half_as_many(self.setup.face)
+            few, share = half_as_many(self.setup.face, self.setup.helical)
             problem = replace(self, setup=replace(self.setup, face=few))
             fewer = FewerCells(problem._alike(self.bodies, fine), share, self.scatter)
+            if self.ends_scatter:
+                off = problem._alike(self.bodies.doubtful(BETWEEN), fine)
+                fewer = replace(fewer, ends=(off, 1.0 / OFF_BY), ends_scatter=self.ends_scatter)
         return MeshArcs(fine, coarse, self.bodies.gain, self.ends_error, tuple(varied), fewer)
 
     def divided(self) -> Division:
@@ -221,12 +228,17 @@ def measured_less(mesh_arcs: MeshArcs, force: float, turn: Array, pressed: bool 
 
     before = None if mesh_arcs.before is None else less(mesh_arcs.before)
     division = replace(mesh_arcs.division, arcs=less(mesh_arcs.division.arcs))
+    few = mesh_arcs.fewer
+    if few is not None:
+        few = replace(
+            few, arcs=less(few.arcs), ends=None if few.ends is None else (less(few.ends[0]), few.ends[1])
+        )
     return replace(
         mesh_arcs,
         division=division,
         before=before,
         varied=tuple((less(arcs), share) for arcs, share in mesh_arcs.varied),
-        fewer=None if mesh_arcs.fewer is None else replace(mesh_arcs.fewer, arcs=less(mesh_arcs.fewer.arcs)),
+        fewer=few,
     )
 
 

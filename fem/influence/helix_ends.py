@@ -18,6 +18,7 @@ E- and E+ exchanged.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -34,7 +35,16 @@ from fem.influence.gear_store import GearStore
 from fem.influence.helix_lines import ContactLine
 from meshes.outline import Sizes
 
-__all__ = ["HelixEnds", "depth_of", "helix_ends", "lengths"]
+__all__ = ["BETWEEN", "FEWER", "OF_ENDS", "HelixEnds", "depth_of", "helix_ends", "lengths"]
+
+BETWEEN, FEWER = "between places", "fewer places"
+"""What is doubtful: how answers go on between the places of loads, and the highest order along the flank."""
+
+OF_ENDS = (BETWEEN, FEWER)
+"""Doubts of free ends (`HelixEnds.off_by`)."""
+
+OFF_BY = 0.25
+"""Part of a doubt by which gears are off: answers change in proportion, and a whole one may leave no solution."""
 
 PLACES = 5
 """Places of loads. More of them follow the nodes of the section, where a load is within an edge of the end."""
@@ -105,10 +115,15 @@ class _Effect:
             return np.zeros((len(load), len(point)))
         return np.asarray(load @ ((table.T if tooth < 0 else table) @ point.T))
 
-    def on(self, line: ContactLine) -> Array:
-        """Means of all functions over cells (cells, places functions)."""
+    def on(self, line: ContactLine, rho: Array | None = None, doubt: str = "") -> Array:
+        """Means of all functions over cells (cells, places functions), off by a doubt; `rho` as of `HelixEnds`."""
         along = self.pieces.means(self.sense * (line.z - self.start), line.length)
         places = self.place.basis(line.rho, PLACES - 1)
+        if doubt == BETWEEN and rho is not None:
+            known = self.place.basis(rho, PLACES - 1)
+            places = np.stack([np.interp(line.rho, rho, column) for column in known.T], axis=-1)
+        elif doubt == FEWER:
+            places[:, -1] = 0.0
         return np.asarray((places[:, :, None] * along[:, None, :]).reshape(len(line.z), -1))
 
 
@@ -120,13 +135,29 @@ class HelixEnds:
     ----------
     effects : tuple of _Effect
         Of the lower end, of the upper end, and of one on the other's.
+    rho : (places,) array, optional
+        Curvature radii of the places of loads, growing.
+    doubt : str
+        What they are off by: `OF_ENDS`; empty where they are as solved.
     """
 
     effects: tuple[_Effect, ...]
+    rho: Array | None = None
+    doubt: str = ""
+
+    def off_by(self, doubt: str) -> HelixEnds:
+        """The same, off by a doubt: what answers are compared with.
+
+        A load near an end moves what is close to it most, closer than places are to one another. What a polynomial
+        through the answers at the places leaves out there is about what it differs by from straight lines through them
+        ("between places"). These lie on one side of a curve that bends one way, a polynomial on both: in the mean it
+        leaves out less than a polynomial of one order less does ("fewer places").
+        """
+        return replace(self, doubt=doubt)
 
     def on(self, line: ContactLine) -> tuple[Array, ...]:
         """Means over cells of a line of what every effect is known by, as `joining` asks for them."""
-        return tuple(effect.on(line) for effect in self.effects)
+        return tuple(effect.on(line, self.rho, self.doubt) for effect in self.effects)
 
     def joining(self, load: tuple[Array, ...], point: tuple[Array, ...], tooth: int) -> Array:
         """Mean displacements by unit forces on cells (loads, points), in modules and E*.
@@ -184,7 +215,8 @@ def helix_ends(
             "helix ends together", (meshed, size, wide), partial(_both_ends, meshed, size, wide)
         )
         ends.append((-half, 1, between, tables) if twist >= 0.0 else (half, -1, between, tables))
-    return HelixEnds(tuple(_Effect(start, sense, over, place, tables) for start, sense, over, tables in ends))
+    effects = tuple(_Effect(start, sense, over, place, tables) for start, sense, over, tables in ends)
+    return HelixEnds(effects, sample_places(meshed.shape.profile, PLACES))
 
 
 def depth_of(meshed: MeshedShape) -> float:

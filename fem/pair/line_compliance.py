@@ -16,7 +16,7 @@ import numpy as np
 from base import Array, record
 from fem.influence.gear_shape import MeshedShape, rounded
 from fem.influence.gear_store import GearStore
-from fem.influence.helix_ends import HelixEnds, helix_ends
+from fem.influence.helix_ends import OF_ENDS, HelixEnds, helix_ends
 from fem.influence.helix_lines import ContactLine, along_line, between_lines
 from fem.influence.helix_waves import HelixHarmonics, helix_harmonics
 from fem.pair.face_setting import FREE_ENDS
@@ -88,6 +88,13 @@ class GearLines:
             moved = moved + self.ends.joining(load.ends, point.ends, point.line.tooth - line.tooth)
         return np.asarray(moved / (modulus * module))
 
+    def by_ends(self, load: FeltLine, point: FeltLine) -> Array:
+        """What of `between` free ends add (loads, points) [m/N]; 0 where they are left out."""
+        if self.ends is None:
+            return np.zeros((len(load.line.z), len(point.line.z)))
+        moved = self.ends.joining(load.ends, point.ends, point.line.tooth - load.line.tooth)
+        return np.asarray(moved / (self.flexible.law.plane_modulus * self.flexible.module))
+
 
 def gear_lines(
     bodies: PairCompliance, slope: float, model: str = FREE_ENDS, store: GearStore | None = None
@@ -112,6 +119,8 @@ def gear_lines(
         twist = side * slope * pair.module / pair.base_radii[gear]
         reach = max(meshed.shape.reach, lines)
         ends = helix_ends(meshed, twist, width, store) if model == FREE_ENDS else None
+        if ends is not None and bodies.doubt in OF_ENDS:
+            ends = ends.off_by(bodies.doubt)
         solved.append(
             GearLines(
                 (bodies.pinion, bodies.wheel)[gear],

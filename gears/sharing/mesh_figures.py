@@ -77,6 +77,14 @@ class FewerCells:
     arcs: Arcs = part("curves with fewer cells")
     share: float = quantity("1", "how much of what fewer cells change is error")
     scatter: Mapping[str, Scatter] = part("that part at positions, of curves by their names")
+    ends: tuple[Arcs, float] | None = part(
+        "as many cells, with free ends of helical gears off by a part of what is doubtful of them, and how much of it "
+        "every change stands for; None of spur gears",
+        default=None,
+    )
+    ends_scatter: Mapping[str, Scatter] | None = part(
+        "the most that free ends move extremes (`size`) and ranges (`varying`) by", default=None
+    )
 
 
 @record
@@ -116,15 +124,15 @@ class MeshArcs:
     def mean(self, name: str, between: tuple[float, float] | None = None) -> Estimate:
         """Mean of a curve, all over or between two ends of arcs in every base pitch."""
         value, error = self.arcs.mean(name, between)
-        return self._estimate(
-            value, error, lambda arcs: arcs.mean(name, between)[0], self._scatter(name).of_mean
-        )
+        scatter = self._scatter(name).of_mean
+        # what free ends change of means is `other`
+        return self._estimate(value, error, lambda arcs: arcs.mean(name, between)[0], scatter, ends=None)
 
     def extreme(self, name: str, greatest: bool) -> Estimate:
         """Minimum or maximum value of a curve."""
         value, error = self.arcs.extremes(name)[greatest]
-        scatter = self._scatter(name).size
-        return self._estimate(value, error, lambda arcs: arcs.extremes(name)[greatest][0], scatter)
+        scatter, ends = self._scatter(name).size, self._ends_scatter(name).size
+        return self._estimate(value, error, lambda arcs: arcs.extremes(name)[greatest][0], scatter, ends)
 
     def range(self, name: str) -> Estimate:
         """Maximum minus minimum value of a curve."""
@@ -134,7 +142,8 @@ class MeshArcs:
             (low, _), (high, _) = arcs.extremes(name)
             return high - low
 
-        return self._estimate(most - least, hypot(off, more), apart, self._scatter(name).varying)
+        scatter, ends = self._scatter(name).varying, self._ends_scatter(name).varying
+        return self._estimate(most - least, hypot(off, more), apart, scatter, ends)
 
     def greatest_share(self) -> Estimate:
         """Largest share of the torque that a pair takes; nan where pairs are not distinguished."""
@@ -198,6 +207,10 @@ class MeshArcs:
             # what cells change has a phase by chance: half of its square is along the harmonic, half across
             change = self.fewer.share * np.abs(value - figure(self.fewer.arcs)) / sqrt(2.0)
             parts.append(_phase(value)[:, None] * change[:, None] * np.array([1.0, 1j]))
+            if self.fewer.ends is not None:
+                of_ends, share = self.fewer.ends
+                change = share * np.abs(figure(of_ends) - figure(self.fewer.arcs)) / sqrt(2.0)
+                parts.append(_phase(value)[:, None] * change[:, None] * np.array([1.0, 1j]))
         return value, np.concatenate(parts, axis=1)
 
     def _scatter(self, name: str) -> Scatter:
@@ -205,15 +218,25 @@ class MeshArcs:
         none = Scatter(0.0, 0.0, 0.0)
         return none if self.fewer is None else self.fewer.scatter.get(name, none)
 
+    def _ends_scatter(self, name: str) -> Scatter:
+        """The most that free ends move of a curve."""
+        none = Scatter(0.0, 0.0, 0.0)
+        known = None if self.fewer is None else self.fewer.ends_scatter
+        return none if known is None else known.get(name, none)
+
     def _estimate(
         self,
         value: float,
         sampling: float,
         figure: Callable[[Arcs], float],
         least: float = 0.0,
+        ends: float | None = 0.0,
         alike: bool = True,
     ) -> Estimate:
-        """Estimate with the error of arcs, mesh, cells (`least`: what these change at positions) and other models."""
+        """Estimate with the error of arcs, mesh, cells, free ends and other models.
+
+        Cells change at positions `least` and free ends `ends`, None where these are among other models.
+        """
         if self.other is None:
             return Estimate(value, None)
         other = self.other * value if alike else 0.0
@@ -221,7 +244,11 @@ class MeshArcs:
         varied = [share * abs(value - figure(arcs)) for arcs, share in self.varied]
         if self.fewer is not None:
             # the change of a figure may vanish by chance where cells change much at single positions
-            varied.append(max(self.fewer.share * abs(value - figure(self.fewer.arcs)), least))
+            few = figure(self.fewer.arcs)
+            varied.append(max(self.fewer.share * abs(value - few), least))
+            if self.fewer.ends is not None and ends is not None:
+                off, share = self.fewer.ends
+                varied.append(max(share * abs(figure(off) - few), ends))
         return Estimate(value, hypot(sampling, mesh, other, *varied))
 
 
