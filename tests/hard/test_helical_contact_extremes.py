@@ -49,7 +49,7 @@ def test_the_steepest_helix(angle: float) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("overlap", [0.01, 0.999, 1.0])
 def test_a_whole_overlap_and_hardly_any(overlap: float) -> None:
-    """Across a whole overlap nothing jumps; the axial force bends a disc of .1 modules, which only its error knows."""
+    """Across a whole overlap nothing jumps. The axial force bends a disc of .1 modules, by 1 % more with finer ends."""
     width = overlap * np.pi * 1e-3 / np.sin(ANGLE)
     cycle = _solved(_pair(width=float(width)), torque=4.0 * overlap)
     assert cycle.lines is not None
@@ -57,7 +57,7 @@ def test_a_whole_overlap_and_hardly_any(overlap: float) -> None:
     assert swing < 1e-9 or overlap != 1.0
     assert swing < 0.01 or overlap < 0.9
     assert np.ptp(cycle.transmission_error) < 0.06 * cycle.transmission_error.mean() or overlap < 0.9
-    assert (cycle.error > 1.0) == (overlap < 0.9)
+    assert 1e-3 < cycle.error < 0.05
 
 
 @pytest.mark.parametrize("angle", [45.1, -50.0])
