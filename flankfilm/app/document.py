@@ -13,7 +13,7 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Item
 
 from base import InputError
-from flankfilm.app.form import CHOICE, form_keys
+from flankfilm.app.form import CHOICE, SWITCH, form_keys
 from flankfilm.scene.reader import LARGEST_FILE, bounded, parse_toml
 from flankfilm.scene.toml import toml
 
@@ -145,7 +145,7 @@ def value_of(path: str, typed: str) -> Any:
     (2.5, '2.', '12')
     """
     about = form_keys()[path]
-    is_word = about.kind == CHOICE or typed in about.choices or about.name in PROSE
+    is_word = about.kind == CHOICE or about.name in PROSE or (about.kind != SWITCH and typed in about.choices)
     if not is_word and typed.isprintable():
         try:
             bounded(tomllib.loads(f"value = {typed}"), path)

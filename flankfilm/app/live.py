@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import threading
 from collections.abc import Callable
@@ -43,6 +44,8 @@ class Live:
         self._newest, self._begun, self._spoke = 0, 0, False
         self._request: Message | None = None
         self._timer: threading.Timer | None = None
+        self._asked: dict[int, str] = {}
+        self._solving = ""
 
     def ask(self, document: Document, place: Place) -> int:
         """Ask for a scene, in place of all before; give its number, which its answers have.
@@ -60,6 +63,7 @@ class Live:
                 "root": str(place.root),
                 "folder": str(place.folder),
             }
+            self._asked[self._newest] = _gears(document)
             self._send()
             self._watch(self._newest)
             return self._newest
@@ -96,7 +100,7 @@ class Live:
 
     def _start(self) -> None:
         self._end()
-        self._spoke = False
+        self._spoke, self._solving = False, ""
         self._process = subprocess.Popen(
             python(*module("flankfilm.app.live_child")),
             stdin=subprocess.PIPE,
@@ -129,6 +133,9 @@ class Live:
                     if process is not self._process:
                         continue
                     self._spoke = True
+                    begins = message["kind"] == "begun"
+                    self._solving = self._asked.get(message["number"], "") if begins else ""
+                    self._asked = {n: gears for n, gears in self._asked.items() if n >= message["number"]}
                     if message["number"] != self._newest:
                         continue
                     self._begun = message["number"]
@@ -155,7 +162,13 @@ class Live:
         with self._lock:
             if number != self._newest or self._request is None or self._begun >= number:
                 return
-            if self._spoke:  # one that has said nothing yet is starting
+            # one that has said nothing yet is starting, and one that solves the same gears does what is wanted
+            if self._spoke and self._solving != self._asked[number]:
                 self._end()
                 self._send()
             self._watch(number)
+
+
+def _gears(document: Document) -> str:
+    """What the gears of a scene depend on: all but its load."""
+    return json.dumps({**document.raw, "operating": None}, sort_keys=True, default=str)

@@ -92,6 +92,8 @@ def test_a_key_that_is_emptied_goes_with_a_table_that_it_empties():
         ("pair.module_mm", '"""', '"""'),
         ("pair.module_mm", "2\n[film]", "2\n[film]"),
         ("pair.pinion.teeth", "36", 36),
+        ("pair.tight", "true", True),
+        ("pair.tight", "tru", "tru"),
         ("title", "12", "12"),
         ("title", 'a "b" \\ c', 'a "b" \\ c'),
         ("film.model", "ehl", "ehl"),

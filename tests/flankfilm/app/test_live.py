@@ -168,9 +168,20 @@ def test_a_process_that_is_stuck_at_an_older_scene_is_started_anew(child):
     while not asking._begun:
         time.sleep(0.01)
     stuck = asking.process
-    asking.ask(Document(SCENE), HERE)
+    asking.ask(Document(SCENE.replace("teeth = 25", "teeth = 26")), HERE)
     assert messages.get(timeout=20.0)["number"] == 2
     assert asking.process != stuck
+
+
+def test_a_process_that_solves_the_same_gears_is_waited_for(child):
+    asking, messages = child(STUCK.replace("60", "2"), 0.2)
+    asking.ask(Document(SCENE), HERE)
+    while not asking._begun:
+        time.sleep(0.01)
+    solving = asking.process
+    asking.ask(Document(SCENE.replace("= 200", "= 210")), HERE)
+    assert messages.get(timeout=20.0)["number"] == 2
+    assert asking.process == solving
 
 
 def test_a_process_that_has_died_is_told_and_started_anew(child):
