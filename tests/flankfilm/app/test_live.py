@@ -75,6 +75,11 @@ def test_curves_and_figures_are_those_of_a_run_digit_by_digit():
     lines = {curve["name"]: curve["lines"] for curve in drawn["curves"]}
     lag = (run.transmission_error / 1e-6).tolist()
     assert lines["transmission_error"] == (tuple(lag),)
+    per_face = 1e-9 / engine.scene.pair.face_width_mm * 1e3  # N/m to N/(mm um)
+    for name in ("stiffness", "secant_stiffness"):
+        np.testing.assert_allclose(lines[name], [per_face * getattr(run, name)], rtol=1e-14)
+    pressures = [value for line in lines["hertz_pressure"] for value in line if value is not None]
+    assert max(pressures) == pytest.approx(1e-6 * np.nanmax(run.contact.hertz_pressure), rel=1e-14)
     share = np.array([[math.nan if v is None else v for v in line] for line in lines["load_share"]])
     np.testing.assert_allclose(np.nansum(share, axis=0), 1.0, rtol=1e-9)
     of_run = [tuple(v if v > 0 else None for v in column) for column in run.load_share.T.tolist()]
@@ -160,6 +165,18 @@ def test_answers_have_the_number_of_the_newest_scene(child):
     asking.forget()
     with pytest.raises(queue.Empty):
         messages.get(timeout=0.2)
+
+
+def test_an_answer_for_an_older_scene_is_dropped(child):
+    late = ECHO.replace(
+        "for kind in", "for number in (number - 1, number + 1, number):\n      for kind in"
+    ).replace("        print", "          print")
+    asking, messages = child(late, 30.0)
+    for _ in range(3):
+        number = asking.ask(Document(SCENE), HERE)
+        assert messages.get(timeout=20.0)["number"] == number
+    asking.forget()
+    assert messages.empty()
 
 
 def test_a_process_that_is_stuck_at_an_older_scene_is_started_anew(child):
