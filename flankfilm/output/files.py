@@ -23,13 +23,17 @@ def write_netcdf(path: Path, dataset: xr.Dataset) -> None:
 
     It is made in memory first: HDF5 does not survive a disk that fills while it writes. `Dataset.to_netcdf` would do
     the same, but asks dask for its scheduler, which loads `distributed` where that is installed.
+
+    Attributes of the file come last: written first, as xarray does, HDF5 2.0 loses what it has cached where they are of
+    some lengths (16 in a row, of one dataset of 322 variables), and ends with "Read only entry modified".
     """
     import h5netcdf
     from xarray.backends import H5NetCDFStore
 
     content = io.BytesIO()
     with h5netcdf.File(content, "w") as file:
-        dataset.dump_to_store(H5NetCDFStore(file))
+        dataset.drop_attrs(deep=False).dump_to_store(H5NetCDFStore(file))
+        file.attrs.update(dataset.attrs)
     with replacing(path) as beside:
         beside.write_bytes(content.getbuffer())
 

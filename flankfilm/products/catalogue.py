@@ -18,11 +18,10 @@ from flankfilm.products import (
     geometry,
     lines,
     losses,
+    motion_in_time,
     oscillator,
     rating,
     root_stress,
-    run_up,
-    spectrum,
     stiffness,
     sweep,
 )
@@ -51,8 +50,8 @@ PRODUCTS: tuple[Product, ...] = (
     drive.PRODUCT,
     bearing_forces.PRODUCT,
     diagram.PRODUCT,
-    spectrum.PRODUCT,
-    run_up.PRODUCT,
+    motion_in_time.LINES_OF_MOTION,
+    motion_in_time.PASSAGE,
     dynamic_map.PRODUCT,
 )
 """In the order of the report."""

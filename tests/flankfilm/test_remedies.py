@@ -281,6 +281,13 @@ OWN = {
 FORM = {"mean_force": 0.1, "error_amplitude": 0.2, "half_backlash": 0.2}
 DAMPED = {"wants": ["sweep"], "dynamics": {"damping_ratio": "film", "sweep": {"speed_rpm": [500, 3000]}}}
 CROWNED = {"pair.pinion.crowning_um": 10.0}
+HELD = [{"position_mm": 0.0, "radial_N_per_m": 3e8, "axial_N_per_m": 1e8, "tilting_Nm_per_rad": 1e6}]
+IN_SPACE = {
+    "wants": ["bearing-forces"],
+    "pair.helix_angle_deg": 20.0,
+    "bearings": {"pinion": HELD, "wheel": HELD},
+    "dynamics": {"damping_ratio": 0.05, "bearing_forces": {"speed_rpm": [500, 6000]}},
+}
 WORDED = [
     # what is changed, where the fault is, words with the numbers of the remedy, what they say
     ({**TURNING, "dynamics.sweep.speed_rpm": [0.01, 0.02]}, "dynamics.sweep.speed_rpm",
@@ -361,6 +368,13 @@ WORDED = [
      lambda n: {"stiffness.plane": n}),
     ({"stiffness.reference": "bore", "dynamics.stiffness_reference": "teeth"}, "dynamics.stiffness_reference",
      r"(Leave it out)", lambda n: {"dynamics.stiffness_reference": None}),
+    ({**IN_SPACE, "pair.helix_angle_deg": 0.0}, "pair.helix_angle_deg", r"(Give the angle)",
+     lambda n: {"pair.helix_angle_deg": 20.0}),
+    ({**IN_SPACE, "operating.pinion_torque_Nm": -600.0}, "operating.pinion_torque_Nm", r"a value (above 0)",
+     lambda n: {"operating.pinion_torque_Nm": 600.0}),
+    ({**IN_SPACE, "shafts": {}}, "[shafts]", r"(Leave it out)", lambda n: {"shafts": None}),
+    ({**IN_SPACE, "dynamics.mean_force": 0.1}, "dynamics.mean_force", r"(physical units)",
+     lambda n: {"dynamics.mean_force": None}),
     ({"lubricant.viscosity_index": 95.0}, "lubricant", r"(not both ways at once)",
      lambda n: {"lubricant.viscosity_index": None}),
 ]  # fmt: skip

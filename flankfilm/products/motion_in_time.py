@@ -1,4 +1,4 @@
-"""Run-up and coast-down: the motion while the speed rises and falls evenly in time."""
+"""Motion in time: orders of the settled motion with sidebands of a revolution, and run-up and coast-down."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array, Figure
+from base import Array, Figure, InputError
 from flankfilm import coupling
+from flankfilm.building.pair import pinion_torque
 from flankfilm.figures.reading import Pictures
 from flankfilm.output.drives import carrying
 from flankfilm.products.drive import of_a_train
@@ -18,16 +19,98 @@ from flankfilm.products.product import CurveTable, Product, section_of, wanting,
 from flankfilm.products.sweep import greatest_of
 from flankfilm.report.drive_parts import RPM, carried_table
 from flankfilm.report.page import Part, Table, pictures, said
-from flankfilm.report.text import number, percent
+from flankfilm.report.text import counted, number, percent
 from flankfilm.scene.sections.section import required
 from flankfilm.stages.drives import DRIVE, moving
 from flankfilm.stages.engine import Engine, stage
+from flankfilm.stages.excitation import REVOLUTION_ERROR
 from flankfilm.stages.motion import SCALING
 
 if TYPE_CHECKING:
     import xarray as xr
 
-PICTURES: Pictures = {
+LISTED = 12
+"""Lines that a table lists; the data files hold all."""
+
+LINES: Pictures = {"spectrum": "spectrum_force"}
+
+
+@stage(
+    "spectrum",
+    "orders of the motion at the speed, with sidebands of a revolution",
+    "operating dynamics",
+    SCALING,
+    DRIVE,
+    REVOLUTION_ERROR,
+    kept="dynamics flankfilm gears",
+)
+def SPECTRUM(run: Engine) -> coupling.MotionSpectrum:
+    """Spectrum of the motion at the scene's speed; over a revolution where teeth differ."""
+    motion = moving(run)
+    error = None if motion.scales is None else run[REVOLUTION_ERROR]
+    if error is not None and pinion_torque(run.scene) < 0.0:
+        allowed = "must be positive for a spectrum with deviations of single teeth, which are those of the front flanks"
+        raise InputError.at(
+            "operating.pinion_torque_Nm", "negative", allowed, "leave spectrum out, or the pitches"
+        )
+    return coupling.mesh_spectrum(motion, error)
+
+
+def _of_lines(stage: coupling.MotionSpectrum, results: xr.Dataset) -> Part:
+    """Draw the orders of the motion, and list the largest lines."""
+    from flankfilm.figures.motion import rpm_text, scale  # which loads matplotlib
+
+    force, length = scale(results, "force"), scale(results, "length")
+    largest = np.argsort(-np.nan_to_num(stage.displacement), kind="stable")[:LISTED]
+    rows = tuple(
+        (
+            f"{stage.order[k]:.6g}",
+            number(float(force.values) * float(stage.force[k])),
+            number(float(length.values) * float(stage.displacement[k])),
+        )
+        for k in sorted(largest.tolist())
+    )
+    heads = ("mesh order", force.named("force, amplitude"), length.named("displacement, amplitude"))
+    meshes = counted(stage.meshes, "mesh", "meshes")
+    notes = [
+        said(
+            "spectrum",
+            speed=rpm_text(results),
+            motion=stage.motion,
+            meshes=meshes,
+            part=percent(stage.sidebands),
+            error=percent(stage.error),
+        )
+    ]
+    if stage.error_left_out is not None:
+        orders = float(stage.error_order[-1])
+        notes.append(said("spectrum_revolution", orders=orders, left=percent(stage.error_left_out)))
+    notes += [] if stage.converged else [stage.message]
+    drawn = pictures(results, LINES)
+    return Part(
+        "spectrum", "Orders of the motion", figures=drawn, tables=(Table(heads, rows),), notes=tuple(notes)
+    )
+
+
+def _lines() -> tuple[Named, ...]:
+    """Numbers that a study can ask for."""
+    of_lines = outputs_from(lambda engine: engine[SPECTRUM], coupling.MotionSpectrum, "spectrum")
+    return (of_lines("sidebands"),)
+
+
+LINES_OF_MOTION = Product(
+    name="spectrum",
+    goals=wanting("spectrum", SPECTRUM),
+    variables=when(SPECTRUM, lambda lines: [carrying("spectrum", lines)]),
+    solved={"spectrum": SPECTRUM},
+    tables={"spectrum": CurveTable("spectrum", "force", axis="line")},
+    pictures=LINES,
+    sections=section_of(SPECTRUM, _of_lines),
+    outputs=_lines,
+)
+
+
+PASSAGES: Pictures = {
     "run_up": "run_up_peak_up",
     "waterfall": "run_up_order_force_up",
     "drive_run_up": ("run_up_bearings", "run_up_shafts"),
@@ -37,8 +120,8 @@ PICTURES: Pictures = {
 @stage("run-up", "run-up and coast-down", "dynamics", SCALING, DRIVE, kept="dynamics flankfilm gears")
 def RUN_UP(run: Engine) -> coupling.SpeedRunUp:
     """Motion while the speed rises and falls evenly in time."""
-    section = required(run.scene.dynamics, "[dynamics]", "the run-up")
-    asked = required(section.run_up, "dynamics.run_up", "the run-up", "add the range")
+    dynamics = required(run.scene.dynamics, "[dynamics]", "the run-up")
+    asked = required(dynamics.run_up, "dynamics.run_up", "the run-up", "add the range")
     periods = 8000 if asked.periods is None else asked.periods
     motion, rows = moving(run), run.rows(RUN_UP)
     if asked.frequency is not None:
@@ -48,7 +131,7 @@ def RUN_UP(run: Engine) -> coupling.SpeedRunUp:
     return coupling.speed_run_up(motion, speeds, seconds=asked.seconds, periods=periods, progress=rows)
 
 
-def section(stage: coupling.SpeedRunUp, results: xr.Dataset) -> Part:
+def _of_passages(stage: coupling.SpeedRunUp, results: xr.Dataset) -> Part:
     """Draw run-up and coast-down with their orders, and list the maximum force and its largest change."""
     from flankfilm.figures.motion import scale  # which loads matplotlib
 
@@ -72,7 +155,7 @@ def section(stage: coupling.SpeedRunUp, results: xr.Dataset) -> Part:
         greatest=percent(stage.greatest_error),
     )
     carried = _carried_on_the_way(stage)
-    drawn = pictures(results, PICTURES)
+    drawn = pictures(results, PASSAGES)
     tables = (Table(heads, rows), *carried)
     return Part("run-up", "Run-up and coast-down", figures=drawn, tables=tables, notes=(note,))
 
@@ -104,7 +187,7 @@ def _extremes(stage: coupling.SpeedRunUp, way: str, unit: float) -> tuple[str, .
     return number(unit * float(factor[most])), f"{at[most]:.5g}{rpm}", f"{at[after]:.5g}{rpm}", *ends
 
 
-def outputs() -> tuple[Named, ...]:
+def _passages() -> tuple[Named, ...]:
     """Numbers that a study can ask for."""
     of_parts = outputs_from(of_a_train(RUN_UP), coupling.SpeedRunUp, "run-up")
     return (
@@ -130,13 +213,13 @@ def outputs() -> tuple[Named, ...]:
     )
 
 
-PRODUCT = Product(
+PASSAGE = Product(
     name="run-up",
     goals=wanting("run-up", RUN_UP),
     variables=when(RUN_UP, lambda ways: [carrying("run_up", ways)]),
     solved={"run_up": RUN_UP},
     tables={"run_up": CurveTable("run_up", "force_factor_up", axis="block")},
-    pictures=PICTURES,
-    sections=section_of(RUN_UP, section),
-    outputs=outputs,
+    pictures=PASSAGES,
+    sections=section_of(RUN_UP, _of_passages),
+    outputs=_passages,
 )
