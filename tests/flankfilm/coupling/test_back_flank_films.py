@@ -22,7 +22,7 @@ Cycles = Callable[..., LubricatedCycle]
 
 @pytest.fixture(scope="module")
 def bodies() -> fem.PairCompliance:
-    return fem.compliance(PAIR.with_backlash(100e-6), tolerance=0.02)
+    return fem.compliance(PAIR.with_backlash(300e-6), tolerance=0.02)
 
 
 @pytest.fixture(scope="module")

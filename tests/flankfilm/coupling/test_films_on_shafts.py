@@ -15,7 +15,7 @@ from flankfilm.coupling import FilmModel, Flanks, LoadedTeeth, LubricatedCycle, 
 from flankfilm.coupling.mesh.resolution import resolution_of
 from gears import Alignment, Bearing, Gear, GearPair, Shaft, ShaftSegment
 
-PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
+PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(300e-6)
 OIL = ehl.Lubricant(0.05, 19e-9, 870.0, temperature=353.15, eyring_stress=5e6)
 SPEED, TORQUE = 200.0, 100.0
 SHAFT = Shaft(

@@ -15,7 +15,7 @@ from flankfilm.coupling.losses.heated_table import HeatedTable, heated_table
 from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth
 from gears import Alignment, Gear, GearPair
 
-PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
+PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(300e-6)
 OIL = ehl.Lubricant(0.05, 19e-9, 870.0, temperature=353.15, eyring_stress=5e6)
 SPEED, TORQUE = 200.0, 100.0
 STEELS = (ehl.STEEL, ehl.STEEL)
