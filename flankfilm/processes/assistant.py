@@ -1,9 +1,9 @@
 """A second process that works beside this one: tasks wait in a queue, from which both take them.
 
 Files of a run do not depend on each other. The assistant is started when a run begins, so that it has loaded what it
-needs by the time there is something to write. Who waits for a task that has not begun does it here; so does a run
-without an assistant, and one whose assistant died. The same function with the same arguments makes the same file in
-either place.
+needs by the time there is something to write. Who waits for a task that has not begun does it here. A run without an
+assistant, or whose assistant died, does them all; a task that cannot be sent is done here as well. The same function
+with the same arguments makes the same file in either place.
 """
 
 from __future__ import annotations
@@ -114,7 +114,12 @@ class Assistant:
                     return
                 task = self._queue.popleft()
             try:
-                pickle.dump((task.work, task.arguments), to)
+                sent = pickle.dumps((task.work, task.arguments))
+            except Exception:  # noqa: BLE001 - objects refuse to be sent in ways of many kinds
+                task.do()
+                continue
+            try:
+                to.write(sent)
                 to.flush()
                 done, outcome = pickle.load(back)  # from the process started here alone
             except (OSError, EOFError, pickle.PickleError):

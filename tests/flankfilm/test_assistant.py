@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 import time
 from functools import partial
 
@@ -90,6 +91,15 @@ def test_the_work_of_an_assistant_that_died_is_done_here(two_cores, monkeypatch)
         assert ended(dying).fault is None
         assert dying.ended.is_set()
         assert helper.result(after) == os.getpid()
+
+
+@pytest.mark.parametrize(
+    "argument", [threading.Lock(), lambda: 0], ids=["a lock", "a function without a name"]
+)
+def test_a_task_that_cannot_be_sent_is_done_here_and_the_next_there(two_cores, argument):
+    with assistant(["base"]) as helper:
+        assert ended(helper.submit(id, argument)).value == id(argument)
+        assert ended(helper.submit(os.getpid)).value not in (None, os.getpid())
 
 
 def test_one_core_has_no_assistant(monkeypatch):
