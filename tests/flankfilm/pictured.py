@@ -361,7 +361,7 @@ def overlapping(artists: Sequence[Artist], renderer: Any) -> bool:
 
 
 def faults_of(figure: Figure) -> list[str]:
-    """What a picture does that none may: titles without units, legends over data, texts over texts or cut off."""
+    """What no picture may have: titles without units, legends over data, texts over texts, cut off, or scales apart."""
     renderer = FigureCanvasAgg(figure).get_renderer()
     figure.draw(renderer)
     panels = [axes for axes in figure.axes if axes.axison and axes.get_visible()]
@@ -386,6 +386,8 @@ def faults_of(figure: Figure) -> list[str]:
             # turned words stand beside each other in boxes that overlap
             if not any(label.get_rotation() % 90.0 for label in shown) and overlapping(shown, renderer):
                 faults.append(f"numbers of {titles} overprint")
+            if apart := way.get_offset_text().get_text():
+                faults.append(f"{apart} stands apart from the numbers of {titles}")
     names = [axes.yaxis.label for axes in panels if axes.get_ylabel()]
     names += [axes.xaxis.label for axes in panels if axes.get_xlabel() and axes.xaxis.label.get_visible()]
     if overlapping([*names, *legends], renderer):

@@ -199,6 +199,7 @@ def broken(draw: Callable[[Any], None]) -> list[str]:
         ("'radius' has no unit", lambda axes: axes.set_ylabel("radius")),
         ("a legend covers data", lambda axes: axes.legend(loc="center")),
         ("numbers of", lambda axes: axes.set_xticks([8.0, 8.01], ["8.00", "8.01"])),
+        ("1e6 stands apart", lambda axes: axes.set_ylim(0.0, 3e6)),
         ("something is cut off", lambda axes: axes.set_ylabel(f"{60 * 'wide'} [-]")),
         ("titles of two panels", lambda axes: [way.set_label_coords(0.5, 0.5) for way in (axes.xaxis, axes.yaxis)]),
     ],
