@@ -7,6 +7,7 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -20,7 +21,8 @@ from flankfilm.studies.execution import Execution
 from flankfilm.studies.executors import Kind
 
 if TYPE_CHECKING:
-    from flankfilm.outcome.outcome import Outcome
+    from flankfilm.outcome.outcome import Line, Outcome
+    from flankfilm.outcome.results import Results
     from flankfilm.scene import Scene
 
 app = App(
@@ -118,14 +120,23 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     # a scene with faults is refused before what computes it is loaded
     wanted = _read(scene, options.tolerance)
     from flankfilm.processes.progress import console_progress
+    from flankfilm.runs import report
     from flankfilm.runs.run_scene import run_outcome
 
     # a results file is called like all others: its folder distinguishes it
     name = scene.absolute().parent.name if scene.suffix == ".nc" else scene.stem
     folder = options.out or Path(f"{name}-results")
+    figures: list[str] = []
+
+    def found(results: Results) -> None:
+        lines = report.found(results)
+        with suppress(OSError):  # a closed pipe keeps no file from being written; it shows again at the end
+            _printed(lines)
+            figures.extend(lines)
+
     with console_progress() as progress:
-        outcome = run_outcome(wanted, folder, use_cache=options.cache, progress=progress)
-    return _shown(outcome)
+        outcome = run_outcome(wanted, folder, use_cache=options.cache, progress=progress, found=found)
+    return _shown(outcome, len(figures))
 
 
 @app.command
@@ -223,18 +234,23 @@ def optimise(task: Path, /, *, out: RowsFolder, how: HowRows = RowOptions()) -> 
     return _shown(outcome)
 
 
-def _shown(outcome: Outcome[Any]) -> int:
-    """Print what a command gave; its exit status."""
-    for line in outcome.lines:
+def _shown(outcome: Outcome[Any], printed: int = 0) -> int:
+    """Print what a command gave, but for as many lines as were `printed` before; its exit status."""
+    _printed(outcome.lines[printed:])
+    for fault in outcome.faults:
+        print(f"flankfilm: {printable(fault)}", file=sys.stderr)
+    return outcome.status
+
+
+def _printed(lines: Sequence[Line]) -> None:
+    """Print sentences and tables."""
+    for line in lines:
         if isinstance(line, str):
-            print(printable(line))
+            print(printable(line), flush=True)
         else:
             from rich.console import Console
 
             Console(width=None if sys.stdout.isatty() else 160).print(line)
-    for fault in outcome.faults:
-        print(f"flankfilm: {printable(fault)}", file=sys.stderr)
-    return outcome.status
 
 
 @app.command

@@ -219,7 +219,13 @@ def _bar(text: str, rate: bool = False) -> Iterator[Progress | None]:
     if rate:
         columns.append(progress.TextColumn("{task.fields[rate]}"))
     columns.append(progress.TimeRemainingColumn())
-    with progress.Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    bar = progress.Progress(
+        *columns,
+        console=Console(stderr=True),
+        transient=True,
+        redirect_stdout=sys.stdout.isatty(),  # else what is printed meanwhile would go to the terminal too
+    )
+    with bar:
         task = bar.add_task("starting", total=None, rate="")
 
         def show(what: str, done: int, total: int) -> None:

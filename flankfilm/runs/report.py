@@ -40,8 +40,8 @@ def _headlines(results: Results) -> list[Headline]:
     return shown if shown or pair is None else pair_parts.headlines(pair)
 
 
-def summary(results: Results) -> list[str]:
-    """Lines for the terminal: headline figures with errors, and the files."""
+def found(results: Results) -> list[str]:
+    """Lines for the terminal that are known before files are: headline figures with errors, and decisions."""
     if set(results.scene.wants) <= GEOMETRY:
         lines = pair_parts.printed(results.dataset)
     else:
@@ -50,7 +50,12 @@ def summary(results: Results) -> list[str]:
     lines += [decision.line for decision in results.decisions]
     if results.plan is not None:
         lines.append(results.plan.line)
-    lines.append(f"{results.written} after {results.seconds:.1f} s")
+    return lines
+
+
+def summary(results: Results) -> list[str]:
+    """Lines for the terminal: what was `found`, and the files."""
+    lines = [*found(results), f"{results.written} after {results.seconds:.1f} s"]
     if results.others:
         more = ", ..." if len(results.others) > SHOWN else ""
         lines.append(f"kept, not of this run: {', '.join(results.others[:SHOWN])}{more}")

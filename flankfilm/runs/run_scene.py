@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -142,13 +142,24 @@ class RunOutcome(Outcome[Results]):
 
 
 def run_outcome(
-    scene: Scene, folder: Path | None, *, use_cache: bool = True, progress: Progress = silent
+    scene: Scene,
+    folder: Path | None,
+    *,
+    use_cache: bool = True,
+    progress: Progress = silent,
+    found: Callable[[Results], None] | None = None,
 ) -> RunOutcome:
-    """Compute what a scene wants and write it where there is a folder; arguments and faults as of `run_scene`."""
+    """Compute what a scene wants and write it where there is a folder; arguments and faults as of `run_scene`.
+
+    `found` is called with the results before files are written.
+    """
     start = time.perf_counter()
     shared = LOADED if folder is not None and "vtk" in scene.wants else ()
     with occupied(folder, RunOutcome.data, RunOutcome.folders), assistant(shared) as helper:
-        outcome = concluded(_computed(scene, use_cache, progress, helper), folder)
+        computed = _computed(scene, use_cache, progress, helper)
+        if found is not None:
+            found(computed.result)
+        outcome = concluded(computed, folder)
     results = replace(
         outcome.result, files=outcome.files, others=outcome.others, seconds=time.perf_counter() - start
     )

@@ -138,6 +138,22 @@ def test_a_full_disk_ends_with_a_message_and_no_half_written_file(tmp_path):
     assert [path.name for path in (tmp_path / "out").rglob("*.*")] == [".lock"]
 
 
+def test_a_reader_who_left_keeps_no_file_from_being_written(tmp_path):
+    (tmp_path / "scene.toml").write_text(ishikawa("X", "geometry", "report"), encoding="utf-8")
+    gone, end = os.pipe()
+    os.close(gone)
+    with os.fdopen(end, "w") as out:
+        done = subprocess.run(
+            [SCRIPT, "run", tmp_path / "scene.toml", "--out", tmp_path / "out"],
+            stdout=out,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert "Traceback" not in done.stderr
+    assert {"results.nc", "report.html"} <= {path.name for path in (tmp_path / "out").iterdir()}
+
+
 LOADED = """
 import sys
 from flankfilm.__main__ import main

@@ -16,6 +16,8 @@ from flankfilm.optimisation.files import OptimumOutcome, optimum_outcome
 from flankfilm.optimisation.optimum import Evaluation, Optimum
 from flankfilm.optimisation.task import read_task
 from flankfilm.outcome.outcome import Outcome, concluded
+from flankfilm.outcome.results import Results
+from flankfilm.runs import report
 from flankfilm.runs.run_scene import run_outcome, run_scene
 from flankfilm.scene import parse_scene
 from flankfilm.studies.execution import Execution
@@ -58,6 +60,19 @@ def optimised(source: Path, folder: Path | None) -> Outcome:
 
 def verified(source: Path, folder: Path | None) -> Outcome:
     return verification_outcome(parse_scene(RUN), folder)
+
+
+def test_figures_of_a_run_are_known_before_its_files_are(tmp_path):
+    said: list[str] = []
+
+    def found(results: Results) -> None:
+        assert not [path for path in tmp_path.rglob("*") if path.suffix]
+        said.extend(report.found(results))
+
+    outcome = run_outcome(parse_scene(RUN), tmp_path, use_cache=False, found=found)
+    assert (tmp_path / "results.nc").exists()
+    assert said
+    assert list(outcome.lines[: len(said)]) == said
 
 
 KINDS = {"results.nc": ran, "study.nc": studied, "optimum.nc": optimised, "verify.nc": verified}
