@@ -12,7 +12,7 @@ import numpy as np
 from base import Array, record
 from fem.influence.helix_ends import BETWEEN, FEWER, OFF_BY
 from fem.pair.face_setting import FREE_ENDS, WALLS
-from gears.sharing.mesh_figures import Scatter
+from gears.sharing.mesh_arcs import Scatter
 
 if TYPE_CHECKING:
     from fem.contact.cell_contact import CellContact, CellShare
@@ -56,7 +56,7 @@ class CellErrors:
         As `scatter`, from what free ends of helical gears leave uncertain, but the most that it may move extremes and
         ranges; None of spur gears.
     scatter : dict of (3, torques) arrays
-        As of ``gears.sharing.mesh_figures.FewerCells``.
+        As of ``gears.sharing.mesh_arcs.FewerCells``.
     centre : (torques,) array
         Of the centre of the load along the face, root mean square over positions [m].
     shafts, tilt, matrix : (torques,) arrays

@@ -21,7 +21,7 @@ from fem.laws.relieved_flanks import ends_of_flanks, starts_of_relief
 from fem.pair.pair_compliance import PairCompliance
 from gears.sharing.arcs import Arcs
 from gears.sharing.events import Division, Sampled, Sampler, arcs_alike, arcs_between_events
-from gears.sharing.mesh_figures import CURVES, FewerCells, MeshArcs, Scatter
+from gears.sharing.mesh_arcs import CURVES, FewerCells, MeshArcs, Scatter
 
 __all__ = ["ContactProblem", "measured_less"]
 
@@ -60,7 +60,7 @@ class ContactProblem:
     varied : tuple of (Film, float)
         Other films, and how much of what they change is error.
     scatter : mapping, optional
-        What cells of the face leave at positions, as of ``gears.sharing.mesh_figures.FewerCells``.
+        What cells of the face leave at positions, as of ``gears.sharing.mesh_arcs.FewerCells``.
     ends_error : float
         Relative, of stiffness and deflection by free ends of the face.
     ends_scatter : mapping, optional

@@ -32,7 +32,8 @@ from fem.laws.contact_candidates import ContactCandidates
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.references import check_reference, turns
 from gears import GearPair
-from gears.sharing.mesh_figures import MeshArcs, MeshFigures
+from gears.sharing.mesh_arcs import MeshArcs
+from gears.sharing.mesh_figures import MeshFigures
 
 __all__ = ["MeshCycle"]
 

@@ -20,7 +20,7 @@ from fem.stress.gear_root import FaceRootStress
 from fem.stress.root_peaks import LOADED, OTHER, SIGNS, RootNodes, RootPeak, extreme
 from fem.stress.tooth_stress import Beside, CellLoads, ToothStress
 from gears.sharing.arcs import Arcs
-from gears.sharing.mesh_figures import MeshArcs
+from gears.sharing.mesh_arcs import MeshArcs
 
 __all__ = ["Maximum", "RootSearch", "face_root_stress"]
 

@@ -10,7 +10,7 @@ import pytest
 import fem
 from base import SolverError
 from gears import Gear, GearDeviations, GearPair, Material, PitchDeviations, TipRelief
-from gears.sharing.mesh_figures import CURVES
+from gears.sharing.mesh_arcs import CURVES
 
 MANY = 1600
 

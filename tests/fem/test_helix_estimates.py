@@ -19,7 +19,7 @@ from fem.influence.helix_ends import BETWEEN, FEWER, OF_ENDS, OFF_BY, PLACES, He
 from fem.influence.helix_lines import ContactLine
 from fem.pair.face_setting import FaceSetting
 from gears import Alignment, Gear, GearPair
-from gears.sharing.mesh_figures import Scatter
+from gears.sharing.mesh_arcs import Scatter
 
 SPUR = GearPair(Gear(20), Gear(30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
 SMALL = GearPair(Gear(18), Gear(23), module=1e-3, face_width=5e-3, helix_angle=radians(18.0))

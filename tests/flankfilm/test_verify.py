@@ -13,7 +13,7 @@ from flankfilm.verification.run import unknown_over_face, verification_outcome
 from flankfilm.verification.tables import face_table
 from gears import BasicRack, Gear, GearPair, closed_form
 from gears.sharing.events import Sampled, arcs_between_events
-from gears.sharing.mesh_figures import CURVES, MeshArcs
+from gears.sharing.mesh_arcs import CURVES, MeshArcs
 from tests.flankfilm.program import EXAMPLES, command, flankfilm
 from tests.flankfilm.test_face_scene import SCENE
 

@@ -12,7 +12,8 @@ import fem
 from base import Array, Cost, InputError, described, part, quantity, record
 from base.results import ITSELF
 from gears.closed_form.record import UNKNOWN
-from gears.sharing.mesh_figures import MeshArcs, MeshFigures
+from gears.sharing.mesh_arcs import MeshArcs
+from gears.sharing.mesh_figures import MeshFigures
 
 
 class ByPairs(Protocol):

@@ -15,7 +15,7 @@ from flankfilm.coupling.mesh.deflection_law import DeflectionLaw, PathLaw, Place
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 from flankfilm.coupling.mesh.single_pairs import MODELS, single_pair_stiffness
 from gears.sharing.events import Sampled, arcs_alike, arcs_between_events
-from gears.sharing.mesh_figures import CURVES, MeshArcs
+from gears.sharing.mesh_arcs import CURVES, MeshArcs
 
 SAMPLING = 0.1
 """Part of a tolerance that what the arcs leave out may be."""

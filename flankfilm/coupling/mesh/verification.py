@@ -19,7 +19,7 @@ from flankfilm.coupling.mesh.sharing_pairs import contact_places
 from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS, MODELS, single_pair_stiffness
 from gears.closed_form.record import UNKNOWN
 from gears.pair.spur_only import require_spur
-from gears.sharing.mesh_figures import Estimate, MeshArcs
+from gears.sharing.mesh_arcs import Estimate, MeshArcs
 
 POSITIONS = 360
 """Positions of a base pitch in curves; figures follow from arcs, whatever the positions."""

@@ -16,7 +16,7 @@ from flankfilm.coupling.films.films import FilmModel, PlacedMeniscus
 from flankfilm.coupling.films.lubricated import lubricate
 from flankfilm.coupling.films.lubricated_path import BETWEEN
 from gears import Gear, GearPair
-from gears.sharing.mesh_figures import MeshArcs
+from gears.sharing.mesh_arcs import MeshArcs
 
 PAIR = GearPair(pinion=Gear(teeth=36), wheel=Gear(teeth=40), module=2e-3, face_width=40e-3)
 OIL = ehl.Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9, density=910.0)

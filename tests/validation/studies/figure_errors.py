@@ -28,7 +28,7 @@ from base import InputError, SolverError
 from fem.pair.pair_fillets import fillets
 from fem.stress.tooth_root import root_stress
 from gears import LoadSharingError, Material, TipRelief
-from gears.sharing.mesh_figures import MeshArcs
+from gears.sharing.mesh_arcs import MeshArcs
 from tests.hard.random_pairs import random_pair
 
 STEEL, PLASTIC = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)

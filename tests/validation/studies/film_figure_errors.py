@@ -26,7 +26,7 @@ from flankfilm.coupling import LoadedTeeth, resolution_of
 from flankfilm.coupling.films import films as path_films
 from flankfilm.coupling.films.lubricated import lubricate
 from gears import LoadSharingError
-from gears.sharing.mesh_figures import MeshArcs
+from gears.sharing.mesh_arcs import MeshArcs
 from tests.validation.studies import figure_errors
 
 TOLERANCE = 5e-3

@@ -1,0 +1,248 @@
+"""Errors of figures from the smooth arcs between the events of a mesh cycle.
+
+The error of a figure is that of its arcs' series and, by finite elements, that of the mesh and of fits along the
+flanks: the figure is computed once more from gears on the mesh before the last refinement whose fits are off by as
+much more, with separate events. What films may err by changes it likewise: it is computed once more with films so
+changed, and with half as many cells of the face. These parts have nothing to do with each other and are added as
+squares. A part of a harmonic's error is complex, with the phase of what causes it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import hypot, sqrt
+
+import numpy as np
+
+from base import Array, Integers, part, quantity, record
+from gears.sharing.arcs import Arcs
+from gears.sharing.events import Division
+
+__all__ = ["CURVES", "Estimate", "FewerCells", "MeshArcs", "Scatter"]
+
+CURVES = ("transmission_error", "stiffness", "secant_stiffness")
+"""Curves of every mesh cycle on its arcs."""
+
+STEP = 1e-3
+"""Smallest relative step of the tangent stiffness that is a separate event."""
+
+UNLIKE = 0.2
+"""Part of a change across a harmonic, in the complex plane, that may lie along it.
+
+A mesh's error falls with the order 3 to 4, by 7 to 15, not everywhere alike, and what an arc leaves out is not all at
+one place.
+"""
+
+
+@record
+class Estimate:
+    """A figure with its estimated error, both in the figure's unit."""
+
+    value: float = quantity("", "figure")
+    error: float | None = quantity("", "its error; None where it is unknown")
+
+    @property
+    def relative(self) -> float | None:
+        """Relative error."""
+        return None if self.error is None else self.error / abs(self.value) if self.value else self.error
+
+
+@record
+class Scatter:
+    """What cells leave of a curve at the positions of a cycle, in the curve's unit."""
+
+    no_error = "what the estimates of a cycle are made of: MeshFigures has the errors"
+
+    size: float = quantity("", "root mean square over positions")
+    varying: float = quantity("", "the same of what is not alike at all positions")
+    of_mean: float = quantity("", "of their mean, which changes of sign leave the less of the more there are")
+
+
+@record
+class FewerCells:
+    """A cycle with half as many cells of the face."""
+
+    no_error = "what the estimates of a cycle are made of: MeshFigures has the errors"
+
+    arcs: Arcs = part("curves with fewer cells")
+    share: float = quantity("1", "how much of what fewer cells change is error")
+    scatter: Mapping[str, Scatter] = part("that part at positions, of curves by their names")
+    ends: tuple[Arcs, float] | None = part(
+        "as many cells, with free ends of helical gears off by a part of what is doubtful of them, and how much of it "
+        "every change stands for; None of spur gears",
+        default=None,
+    )
+    ends_scatter: Mapping[str, Scatter] | None = part(
+        "the most that free ends move extremes (`size`) and ranges (`varying`) by", default=None
+    )
+
+
+@record
+class MeshArcs:
+    """Curves of a mesh cycle on smooth arcs, and the same on the mesh before for an estimate."""
+
+    no_error = "what the estimates of a cycle are made of: MeshFigures has the errors"
+
+    division: Division = part("arcs and events")
+    before: Arcs | None = part("curves on the mesh before the last refinement; None where there is no mesh")
+    gain: float = quantity("1", "by how much the last refinement reduced the error")
+    other: float | None = quantity(
+        "1", "further relative error of all figures; None where a model's is unknown"
+    )
+    varied: tuple[tuple[Arcs, float], ...] = part(
+        "the same with a part of the model changed, such as its films, and how much of every change is error",
+        default=(),
+    )
+    fewer: FewerCells | None = part(
+        "the same with half as many cells of the face; None where it has none", default=None
+    )
+
+    @property
+    def arcs(self) -> Arcs:
+        """Curves on their arcs."""
+        return self.division.arcs
+
+    @property
+    def events(self) -> Array:
+        """Where contacts begin or end: where a switch turns, or the tangent stiffness steps by 0.1 % (events,)."""
+        events, row = self.division.events, self.arcs.names.index("stiffness")
+        ends = np.array([arc.values[row, [0, -1]] for arc in self.arcs.arcs])
+        before, after = np.roll(ends[:, 1], 1), ends[:, 0]
+        steps = np.append(np.abs(after / before - 1) > STEP, False)
+        return np.asarray(events.position[steps | (events.switched >= 0)])
+
+    def mean(self, name: str, between: tuple[float, float] | None = None) -> Estimate:
+        """Mean of a curve, all over or between two ends of arcs in every base pitch."""
+        value, error = self.arcs.mean(name, between)
+        scatter = self._scatter(name).of_mean
+        # what free ends change of means is `other`
+        return self._estimate(value, error, lambda arcs: arcs.mean(name, between)[0], scatter, ends=None)
+
+    def extreme(self, name: str, greatest: bool) -> Estimate:
+        """Minimum or maximum value of a curve."""
+        value, error = self.arcs.extremes(name)[greatest]
+        scatter, ends = self._scatter(name).size, self._ends_scatter(name).size
+        return self._estimate(value, error, lambda arcs: arcs.extremes(name)[greatest][0], scatter, ends)
+
+    def range(self, name: str) -> Estimate:
+        """Maximum minus minimum value of a curve."""
+        (least, off), (most, more) = self.arcs.extremes(name)
+
+        def apart(arcs: Arcs) -> float:
+            (low, _), (high, _) = arcs.extremes(name)
+            return high - low
+
+        scatter, ends = self._scatter(name).varying, self._ends_scatter(name).varying
+        return self._estimate(most - least, hypot(off, more), apart, scatter, ends)
+
+    def greatest_share(self) -> Estimate:
+        """Largest share of the torque that a pair takes; nan where pairs are not distinguished."""
+        shares = self.arcs.shares()
+        if shares is None:
+            return Estimate(float("nan"), None)
+        value, error = shares.greatest_of_all()
+
+        def greatest(arcs: Arcs) -> float:
+            others = arcs.shares()
+            return value if others is None else others.greatest_of_all()[0]
+
+        # what all pairs have alike changes no share
+        return self._estimate(value, error, greatest, alike=False)
+
+    def harmonics(self, name: str, orders: Integers) -> tuple[Array, Array | None]:
+        """Complex amplitudes of harmonics of the mesh frequency, and their errors, in the curve's unit."""
+        value, changes = self._harmonics(name, orders, False)
+        return value, None if changes is None else np.linalg.norm(changes, axis=1)
+
+    def over_mean(self, name: str, orders: Integers) -> tuple[Array, Array | None]:
+        """Complex amplitudes of harmonics over the mean, and their errors.
+
+        What changes the mean and all harmonics alike is no error of their ratio.
+        """
+        value, changes = self._harmonics(name, orders, True)
+        return value, None if changes is None else np.linalg.norm(changes, axis=1)
+
+    def amplitudes(self, name: str, orders: Integers, over_mean: bool) -> tuple[Array, Array | None]:
+        """Sizes of `harmonics`, or `over_mean`, and their errors: what only turns a phase changes no size."""
+        value, changes = self._harmonics(name, orders, over_mean)
+        size = np.abs(value)
+        if changes is None:
+            return size, None
+        either = np.abs(value[:, None] + np.stack([changes, -changes]))
+        sizes = np.max(np.abs(either - size[:, None]), axis=0)
+        across = np.abs(np.imag(changes * np.conj(_phase(value))[:, None]))
+        return size, np.linalg.norm(np.hypot(sizes, UNLIKE * across), axis=1)
+
+    def _harmonics(self, name: str, orders: Integers, over_mean: bool) -> tuple[Array, Array | None]:
+        """Complex amplitudes, and what each part of their errors changes (orders, parts); None where one is unknown.
+
+        Parts are what a much finer mesh would change, arcs leave out, and other models change.
+        """
+
+        def figure(arcs: Arcs) -> Array:
+            return arcs.harmonics(name, orders)[0] / (arcs.mean(name)[0] if over_mean else 1.0)
+
+        value, off = self.arcs.harmonics_and_parts(name, orders)
+        parts = [off]
+        if over_mean:
+            mean, less = self.arcs.mean(name)
+            value = value / mean
+            parts = [off / mean, (value * less / mean)[:, None]]
+        if self.other is None:
+            return value, None
+        parts.append(self.other * value[:, None])
+        before = () if self.before is None else ((self.before, 1.0 / self.gain),)
+        parts += [share * (value - figure(arcs))[:, None] for arcs, share in (*before, *self.varied)]
+        if self.fewer is not None:
+            # what cells change has a phase by chance: half of its square is along the harmonic, half across
+            change = self.fewer.share * np.abs(value - figure(self.fewer.arcs)) / sqrt(2.0)
+            parts.append(_phase(value)[:, None] * change[:, None] * np.array([1.0, 1j]))
+            if self.fewer.ends is not None:
+                of_ends, share = self.fewer.ends
+                change = share * np.abs(figure(of_ends) - figure(self.fewer.arcs)) / sqrt(2.0)
+                parts.append(_phase(value)[:, None] * change[:, None] * np.array([1.0, 1j]))
+        return value, np.concatenate(parts, axis=1)
+
+    def _scatter(self, name: str) -> Scatter:
+        """What the cells leave of a curve at positions."""
+        none = Scatter(0.0, 0.0, 0.0)
+        return none if self.fewer is None else self.fewer.scatter.get(name, none)
+
+    def _ends_scatter(self, name: str) -> Scatter:
+        """The most that free ends move of a curve."""
+        none = Scatter(0.0, 0.0, 0.0)
+        known = None if self.fewer is None else self.fewer.ends_scatter
+        return none if known is None else known.get(name, none)
+
+    def _estimate(
+        self,
+        value: float,
+        sampling: float,
+        figure: Callable[[Arcs], float],
+        least: float = 0.0,
+        ends: float | None = 0.0,
+        alike: bool = True,
+    ) -> Estimate:
+        """Estimate with the error of arcs, mesh, cells, free ends and other models.
+
+        Cells change at positions `least` and free ends `ends`, None where these are among other models.
+        """
+        if self.other is None:
+            return Estimate(value, None)
+        other = self.other * value if alike else 0.0
+        mesh = 0.0 if self.before is None else abs(value - figure(self.before)) / self.gain
+        varied = [share * abs(value - figure(arcs)) for arcs, share in self.varied]
+        if self.fewer is not None:
+            # the change of a figure may vanish by chance where cells change much at single positions
+            few = figure(self.fewer.arcs)
+            varied.append(max(self.fewer.share * abs(value - few), least))
+            if self.fewer.ends is not None and ends is not None:
+                off, share = self.fewer.ends
+                varied.append(max(share * abs(figure(off) - few), ends))
+        return Estimate(value, hypot(sampling, mesh, other, *varied))
+
+
+def _phase(value: Array) -> Array:
+    """Of complex amplitudes, as numbers of size one."""
+    size = np.abs(value)
+    return np.asarray(np.divide(value, size, out=np.ones_like(value), where=size > 0.0))
