@@ -128,14 +128,14 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     folder = options.out or Path(f"{name}-results")
     figures: list[str] = []
 
-    def found(results: Results) -> None:
-        lines = report.found(results)
+    def computed(results: Results) -> None:
+        lines = report.figure_lines(results)
         with suppress(OSError):  # a closed pipe keeps no file from being written; it shows again at the end
             _printed(lines)
             figures.extend(lines)
 
     with console_progress() as progress:
-        outcome = run_outcome(wanted, folder, use_cache=options.cache, progress=progress, found=found)
+        outcome = run_outcome(wanted, folder, use_cache=options.cache, progress=progress, computed=computed)
     return _shown(outcome, len(figures))
 
 

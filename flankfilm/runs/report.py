@@ -40,7 +40,7 @@ def _headlines(results: Results) -> list[Headline]:
     return shown if shown or pair is None else pair_parts.headlines(pair)
 
 
-def found(results: Results) -> list[str]:
+def figure_lines(results: Results) -> list[str]:
     """Lines for the terminal that are known before files are: headline figures with errors, and decisions."""
     if set(results.scene.wants) <= GEOMETRY:
         lines = pair_parts.printed(results.dataset)
@@ -54,8 +54,8 @@ def found(results: Results) -> list[str]:
 
 
 def summary(results: Results) -> list[str]:
-    """Lines for the terminal: what was `found`, and the files."""
-    lines = [*found(results), f"{results.written} after {results.seconds:.1f} s"]
+    """Lines for the terminal: `figure_lines`, and the files."""
+    lines = [*figure_lines(results), f"{results.written} after {results.seconds:.1f} s"]
     if results.others:
         more = ", ..." if len(results.others) > SHOWN else ""
         lines.append(f"kept, not of this run: {', '.join(results.others[:SHOWN])}{more}")

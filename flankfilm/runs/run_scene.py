@@ -147,19 +147,19 @@ def run_outcome(
     *,
     use_cache: bool = True,
     progress: Progress = silent,
-    found: Callable[[Results], None] | None = None,
+    computed: Callable[[Results], None] | None = None,
 ) -> RunOutcome:
     """Compute what a scene wants and write it where there is a folder; arguments and faults as of `run_scene`.
 
-    `found` is called with the results before files are written.
+    `computed` is called with the results before files are written.
     """
     start = time.perf_counter()
     shared = LOADED if folder is not None and "vtk" in scene.wants else ()
     with occupied(folder, RunOutcome.data, RunOutcome.folders), assistant(shared) as helper:
-        computed = _computed(scene, use_cache, progress, helper)
-        if found is not None:
-            found(computed.result)
-        outcome = concluded(computed, folder)
+        outcome = _computed(scene, use_cache, progress, helper)
+        if computed is not None:
+            computed(outcome.result)
+        outcome = concluded(outcome, folder)
     results = replace(
         outcome.result, files=outcome.files, others=outcome.others, seconds=time.perf_counter() - start
     )

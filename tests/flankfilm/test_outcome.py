@@ -65,11 +65,11 @@ def verified(source: Path, folder: Path | None) -> Outcome:
 def test_figures_of_a_run_are_known_before_its_files_are(tmp_path):
     said: list[str] = []
 
-    def found(results: Results) -> None:
+    def computed(results: Results) -> None:
         assert not [path for path in tmp_path.rglob("*") if path.suffix]
-        said.extend(report.found(results))
+        said.extend(report.figure_lines(results))
 
-    outcome = run_outcome(parse_scene(RUN), tmp_path, use_cache=False, found=found)
+    outcome = run_outcome(parse_scene(RUN), tmp_path, use_cache=False, computed=computed)
     assert (tmp_path / "results.nc").exists()
     assert said
     assert list(outcome.lines[: len(said)]) == said
