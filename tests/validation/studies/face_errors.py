@@ -15,10 +15,7 @@ true error below a tenth of the tolerance, where care costs nothing. Without a s
 
 from __future__ import annotations
 
-import json
-import sys
 import time
-import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import replace
@@ -36,6 +33,7 @@ from gears import Alignment, GearPair, Lead, Material
 from gears.sharing.arcs import Arcs
 from tests.hard.random_pairs import random_pair
 from tests.seeds import SEED
+from tests.validation.studies.pair_by_pair import Row, begin, pair_by_pair, quantiles
 
 STEEL = Material(206e9, 0.3, 7850.0)
 
@@ -195,46 +193,28 @@ def show(rows: list[dict[str, Any]]) -> None:
     for model in ("walls", "free-ends"):
         some = [ratios(row) for row in whole if row["model"] == model]
         for name in some[0] if some else ():
-            values = np.array([one[name][0] for one in some])
-            small = np.array([one[name][1] for one in some])
-            columns = " ".join(f"{v:7.2f}" for v in np.percentile(values, [0, 5, 50, 95, 100]))
-            inside, harmless = (values >= 0.5) & (values <= 5.0), small & (values > 5.0)
-            shares = f"{100 * inside.mean():4.0f} % {100 * (inside | harmless).mean():4.0f} %"
-            print(f"{model:10} {name:20} {len(values):5} {columns} {shares}", end="")
-            print(f" {np.sum(values < 0.5):4} {np.sum((values > 5.0) & ~small):4}")
+            values, small = (np.array([one[name][k] for one in some]) for k in (0, 1))
+            print(f"{model:10} {name:20} {len(values):5} {quantiles(values, small)}")
+
+
+def anew(number: int, seed: int) -> Row:
+    """Figures of a pair whose gears nothing was solved for."""
+    fem.forget_gears()
+    return one(number, seed)
 
 
 def main(file: Path, pairs: int, seed: int, seconds: float) -> None:
-    began = time.monotonic()
-    rows = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
-    known = {(row["seed"], row["number"]) for row in rows}
-    for number in range(pairs):
-        if (seed, number) in known:
-            continue
-        if time.monotonic() - began > seconds:
-            print(f"{len(rows)} of {pairs} pairs: run it again to go on")
-            return
-        fem.forget_gears()
-        try:
-            row = one(number, seed)
-        except FlankfilmError as fault:
-            row = {"fault": f"{type(fault).__name__}: {fault}"[:300]}
-        row |= {"seed": seed, "number": number}
-        rows.append(row)
-        with file.open("a") as kept:
-            kept.write(json.dumps(row) + "\n")
-        said = (
-            {name: f"{ratio:.2g}{' small' * small}" for name, (ratio, small) in ratios(row).items()}
-            if "found" in row
-            else row["fault"]
-        )
-        print(number, row.get("teeth"), row.get("model"), said, row.get("seconds"), flush=True)
-    show(rows)
+    rows = pair_by_pair(
+        file,
+        pairs,
+        seed,
+        seconds,
+        anew,
+        lambda row: {name: f"{ratio:.2g}{' small' * small}" for name, (ratio, small) in ratios(row).items()},
+    )
+    if rows is not None:
+        show(rows)
 
 
 if __name__ == "__main__":
-    warnings.simplefilter("ignore")
-    words = sys.argv[1:]
-    given = [float(word) for word in words[1:]]
-    chosen = int(given[1]) if len(given) > 1 else SEED
-    main(Path(words[0]), int(given[0]) if given else 60, chosen, given[2] if len(given) > 2 else np.inf)
+    begin(main, 60, SEED)

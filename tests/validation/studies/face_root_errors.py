@@ -12,10 +12,7 @@ until it prints the table. Without a seed it is that of ``tests/seeds.py``.
 
 from __future__ import annotations
 
-import json
-import sys
 import time
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -28,9 +25,9 @@ import fem
 import fem.influence.fillet_ends as ends
 import fem.influence.fillet_waves as waves
 import fem.pair.pair_fillets as plane
-from base import FlankfilmError
 from tests.seeds import SEED
 from tests.validation.studies import face_errors
+from tests.validation.studies.pair_by_pair import begin, pair_by_pair
 
 FREE_ENDS_OF = 3
 """One pair of so many has free ends."""
@@ -44,10 +41,10 @@ FLOOR = 1e-5
 @contextmanager
 def finer_fillets() -> Iterator[None]:
     """Twice the waves and places along face and flank; meshes and pieces of fillets over the face finer."""
-    shape, before = plane.LoadedShape, (waves.PLACES, waves.DEGREE, ends.PLACES, ends.DEGREE, ends.SIZES)
+    shape, before = plane.LoadedShape, (waves.PLACES, ends.PLACES, ends.SIZES)
     mesh, solved, half = shape.mesh, shape.solved, ends.half_face
     edge, last = 0.5 * plane.COARSEST, 0.5 * ends.LAST
-    waves.PLACES, waves.DEGREE, ends.PLACES, ends.DEGREE = 24, 16, 14, 10
+    waves.PLACES, ends.PLACES = 24, 14
     ends.SIZES = ends.SIZES.scaled(0.7)
     changed: dict[tuple[Any, str], Any] = {
         (shape, "mesh"): lambda self: mesh(self, edge),
@@ -60,7 +57,7 @@ def finer_fillets() -> Iterator[None]:
         with face_errors.twice_as_fine():
             yield
     finally:
-        waves.PLACES, waves.DEGREE, ends.PLACES, ends.DEGREE, ends.SIZES = before
+        waves.PLACES, ends.PLACES, ends.SIZES = before
         shape.mesh, shape.solved, ends.half_face = mesh, solved, half  # type: ignore[method-assign]
 
 
@@ -143,33 +140,17 @@ def show(rows: list[dict[str, Any]]) -> None:
 
 
 def main(file: Path, pairs: int, seed: int, seconds: float) -> None:
-    began = time.monotonic()
-    rows = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
-    known = {(row["seed"], row["number"]) for row in rows}
-    for number in range(pairs):
-        if (seed, number) in known:
-            continue
-        if time.monotonic() - began > seconds:
-            print(f"{len(rows)} of {pairs} pairs: run it again to go on")
-            return
-        try:
-            row = one(number, seed)
-        except FlankfilmError as fault:
-            row = {"fault": f"{type(fault).__name__}: {fault}"[:300]}
-        row |= {"seed": seed, "number": number}
-        rows.append(row)
-        with file.open("a") as kept:
-            kept.write(json.dumps(row) + "\n")
-        said = (
-            {name: f"{ratio:.2g}" for name, ratio in ratios(row).items()} if "found" in row else row["fault"]
-        )
-        print(number, row.get("teeth"), row.get("model"), said, row.get("seconds"), flush=True)
-    show(rows)
+    rows = pair_by_pair(
+        file,
+        pairs,
+        seed,
+        seconds,
+        one,
+        lambda row: {name: f"{ratio:.2g}" for name, ratio in ratios(row).items()},
+    )
+    if rows is not None:
+        show(rows)
 
 
 if __name__ == "__main__":
-    warnings.simplefilter("ignore")
-    words = sys.argv[1:]
-    given = [float(word) for word in words[1:]]
-    chosen = int(given[1]) if len(given) > 1 else SEED
-    main(Path(words[0]), int(given[0]) if given else 60, chosen, given[2] if len(given) > 2 else np.inf)
+    begin(main, 60, SEED)

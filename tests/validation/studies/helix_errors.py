@@ -17,11 +17,8 @@ true error below 5e-4, where care costs nothing. A pair takes two to four minute
 from __future__ import annotations
 
 import hashlib
-import json
 import pickle
-import sys
 import time
-import warnings
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
@@ -32,11 +29,12 @@ from typing import Any
 import numpy as np
 
 import fem
-from base import Array, FlankfilmError
+from base import Array
 from fem.influence import helix_ends, helix_waves
 from fem.influence.gear_shape import plain
 from fem.influence.gear_store import GearStore
 from gears import Gear, GearPair
+from tests.validation.studies.pair_by_pair import begin, pair_by_pair, quantiles
 
 SEED = 2811
 
@@ -227,50 +225,24 @@ def show(rows: list[dict[str, Any]]) -> None:
     )
     some = [ratios(row) for row in whole]
     for name in some[0] if some else ():
-        values = np.array([one[name][0] for one in some])
-        small = np.array([one[name][1] for one in some])
-        columns = " ".join(f"{v:7.2f}" for v in np.percentile(values, [0, 5, 50, 95, 100]))
-        inside, harmless = (values >= 0.5) & (values <= 5.0), small & (values > 5.0)
-        shares = f"{100 * inside.mean():4.0f} % {100 * (inside | harmless).mean():4.0f} %"
+        values, small = (np.array([one[name][k] for one in some]) for k in (0, 1))
         size = np.median([row["true"][name] for row in whole])
-        print(f"{name:25} {len(values):5} {size:12.2g} {columns} {shares}", end="")
-        print(f" {np.sum(values < 0.5):4} {np.sum((values > 5.0) & ~small):4}")
+        print(f"{name:25} {len(values):5} {size:12.2g} {quantiles(values, small)}")
 
 
 def main(file: Path, pairs: int, seed: int, seconds: float) -> None:
-    began = time.monotonic()
-    rows = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
-    known = {(row["seed"], row["number"]) for row in rows}
-    for number in range(pairs):
-        if (seed, number) in known:
-            continue
-        if time.monotonic() - began > seconds:
-            print(f"{len(rows)} of {pairs} pairs: run it again to go on")
-            return
-        try:
-            row = one(number, seed, file.parent / f"{file.name}.gears")
-        except FlankfilmError as fault:
-            row = {"fault": f"{type(fault).__name__}: {fault}"[:300]}
-        row |= {"seed": seed, "number": number}
-        rows.append(row)
-        with file.open("a") as lines:
-            lines.write(json.dumps(row) + "\n")
-        said = (
-            {name: f"{ratio:.2g}{' small' * small}" for name, (ratio, small) in ratios(row).items()}
-            if "true" in row
-            else row["fault"]
-        )
-        print(number, row.get("teeth"), row.get("overlap"), said, row.get("seconds"), flush=True)
-    show(rows)
+    kept = file.parent / f"{file.name}.gears"
+    rows = pair_by_pair(
+        file,
+        pairs,
+        seed,
+        seconds,
+        lambda number, chosen: one(number, chosen, kept),
+        lambda row: {name: f"{ratio:.2g}{' small' * small}" for name, (ratio, small) in ratios(row).items()},
+    )
+    if rows is not None:
+        show(rows)
 
 
 if __name__ == "__main__":
-    warnings.simplefilter("ignore")
-    words = sys.argv[1:]
-    given = [float(word) for word in words[1:]]
-    main(
-        Path(words[0]),
-        int(given[0]) if given else 40,
-        int(given[1]) if len(given) > 1 else SEED,
-        given[2] if len(given) > 2 else np.inf,
-    )
+    begin(main, 40, SEED)
