@@ -225,7 +225,12 @@ def _lines(setup: MeshSetup) -> ContactCandidates:
     gap = np.where(cells.used, seen, np.inf).min(axis=-1)
     numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
     none, tiles = np.zeros_like(touchable), (1, setup.pitches, 1)
-    behind = np.where(touchable, other.pitch_gap(other.teeth(steps)), np.inf).min(axis=-1)
+    # the other flanks of these teeth stand at the mirrored place, where it touches at all
+    beyond = 0.5 * pair.face_width * abs(setup.line_slope)
+    mirrored = 2.0 * pair.points.A + setup.mirror * pair.base_pitch - middle
+    held = np.clip(mirrored, setup.ends[0] - beyond, setup.ends[1] + beyond)
+    apart = other.pitch_gap(other.teeth(steps)) + setup.rolling_gap(held)
+    behind = np.where(touchable, apart, np.inf).min(axis=-1)
     return ContactCandidates(
         position=(number[..., 0] + position).ravel(),
         offset=offset,

@@ -108,6 +108,23 @@ def test_unequal_base_pitches_are_pitches_that_grow_by_them(bodies: PairComplian
     np.testing.assert_allclose(turned, turned[0], atol=1e-5 * by)
 
 
+@pytest.mark.parametrize("back", [False, True])
+def test_unequal_base_pitches_without_load_are_those_of_a_spur_pair_at_a_slight_helix(back: bool) -> None:
+    """Smallest gaps of both flanks; and along a line of a steep helix nothing changes, while lines differ."""
+    slight, spur = (replace(SMALL, helix_angle=angle).with_backlash(40e-6) for angle in (1e-9, 0.0))
+    face = face_setting(slight, None, 16, "free-ends")
+    assert face is not None
+    given = {"positions": 7, "beyond_path": False, "base_pitch_difference": 1.5e-6, "back": back}
+    helical = contact_candidates(MeshSetup(slight, face=face, **given))
+    plain = contact_candidates(MeshSetup(spur, **given))
+    np.testing.assert_allclose(helical.gap.min(axis=-1), plain.gap.min(axis=-1), atol=1e-14)
+    np.testing.assert_allclose(helical.back_gap, plain.back_gap, atol=1e-14)
+    assert np.ptp(plain.back_gap) > 0.5e-6
+    steep = contact_candidates(MeshSetup(SMALL, face=face, **given)).gap
+    step = np.diff(steep, axis=-1)
+    np.testing.assert_allclose(step[np.isfinite(step)], -1.5e-6, rtol=1e-9)
+
+
 @pytest.mark.slow
 def test_a_profile_of_each_tooth_is_that_of_all_where_they_are_alike(bodies: PairCompliance) -> None:
     """And a trace that lacks what a tip relief lacks is one."""

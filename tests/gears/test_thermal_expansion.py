@@ -66,6 +66,39 @@ def test_involutes_drawn_at_their_own_temperatures_roll_with_the_gaps_that_are_s
         )
 
 
+@pytest.mark.parametrize("degrees", [20.0, -8.0, 1e-6])
+def test_helicoids_at_their_own_temperatures_have_one_gap_along_a_line(degrees):
+    """That at mid-face: leads grow as base circles do, so that lines on both flanks keep their angle."""
+    cold = pair(material=(Material(206e9, 0.3, 7850.0), PLASTIC), helix_angle=math.radians(degrees))
+    heat = Heat(393.15, 343.15, 323.15, housing_expansion=23e-6)
+    warm = warm_pair(replace(cold, tight=True), heat)
+    s_1, s_2, s_h = heat.growths(cold)
+    (cold_1, cold_2), (psi_1, psi_2) = (
+        cold.base_radii,
+        [tooth.base_half_angle for tooth in cold.teeth_profiles],
+    )
+    r_1, r_2, distance = cold_1 * s_1, cold_2 * s_2, cold.working_centre_distance * s_h
+    alpha = math.acos((r_1 + r_2) / distance)
+    line, small, grown = distance * math.sin(alpha), 1.5 * abs(s_1 - s_2), warm.pair
+    assert grown.helix_angle == cold.helix_angle
+    assert warm.pressure_angle == pytest.approx(alpha, rel=1e-12)
+    pitch = 2 * math.pi / cold.wheel.teeth
+    turns = [math.tan(cold.helix.base_angle) / radius for radius in (cold_1, cold_2)]  # per length, cold
+    for middle in np.linspace(grown.points.A, grown.points.E, 3):
+        turn = (middle - grown.points.C) / grown.base_radii[0]
+        said = -warm.base_pitch_difference / cold.base_pitch * (middle - grown.points.C)
+        for z in (-0.02, 0.0, 0.013):
+            first = math.tan(alpha) - psi_1 - alpha + turn + z * turns[0] / s_1
+            second = math.tan(alpha) - psi_2 - alpha - turn * 36 / 40 - z * turns[1] / s_2
+            gap = line - r_1 * (first + psi_1 + alpha) - r_2 * (second + psi_2 + alpha)
+            assert gap == pytest.approx(said, abs=small * abs(said) + 1e-10)
+            behind = line - r_1 * (-first + psi_1 + alpha) - r_2 * (-second - pitch + psi_2 + alpha)
+            back = grown.base_radii[0] * (alpha + psi_1 - (math.tan(alpha) - psi_1 - alpha + turn))
+            apart = -warm.base_pitch_difference / cold.base_pitch * (back - grown.points.C)
+            within = small * (abs(apart) + abs(grown.backlash)) + 1e-10
+            assert behind == pytest.approx(grown.base_tangent_backlash + apart, abs=within)
+
+
 def test_shape_in_modules_stays():
     cold = GearPair(
         Gear(36, bore_radius=15e-3, tip_relief=TipRelief(20e-6, 2e-3), tip_chamfer=1e-4),
