@@ -101,7 +101,6 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
         "must be false",
         "Give contact_beyond_path = false",
     ),
-    SpurKey("heat", "loaded teeth at other temperatures"),
     SpurKey(
         "shafts.*.segments",
         "motion on shafts that bend, whose axial forces and tilting moments count",

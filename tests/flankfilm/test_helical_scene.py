@@ -213,7 +213,6 @@ class TestTable:
         ("stiffness.pairs", "independent", True),
         ("stiffness.moving_contact", True, True),
         ("operating.friction", 0.05, False),
-        ("heat", {"pinion_temperature_C": 60.0}, False),
         ("stiffness.plane", "stress", False),
         ("stiffness.contact_beyond_path", True, False),
         ("shafts.wheel.segments", [{"length_mm": 200.0, "diameter_mm": 40.0}], "motion"),

@@ -94,3 +94,20 @@ def test_a_double_helical_pair_is_two_halves():
     assert float(right["mesh_force_axial"]) + float(left["mesh_force_axial"]) == 0.0
     for name in ("iso6336_2_stresses", "iso6336_1_c_gamma", "contact_lines_mean", "dimensions_span"):
         assert np.array_equal(right[name].values, left[name].values), name
+
+
+@pytest.mark.parametrize("angle", [45.0, -45.0, 20.0, 1e-9])
+@pytest.mark.filterwarnings("ignore")
+def test_heat_that_closes_the_backlash_names_the_temperature_that_does_not(angle):
+    text = TEXT.replace('"geometry", "closed-forms"', '"stiffness", "root-stress"')
+    text = text.replace("deg = 20", f"deg = {angle!r}\nbacklash_um = 20")
+    hot = text + "[heat]\npinion_temperature_C = 280\nwheel_temperature_C = 40\nhousing_temperature_C = 30\n"
+    with pytest.raises(InputError) as caught:
+        check_scene(parse_scene(hot))
+    (fault,) = caught.value.faults
+    assert fault.where == "heat.pinion_temperature_C"
+    bound = fault.allowed.removeprefix("must be at most ").split()[0]
+    said = check_scene(parse_scene(hot.replace("= 280", f"= {bound}")))
+    assert any(line.startswith("Heat: backlash 20.0 µm cold, 0.0 µm warm") for line in said)
+    with pytest.raises(InputError, match="pinion_temperature_C"):
+        check_scene(parse_scene(hot.replace("= 280", f"= {float(bound) + 0.1}")))
