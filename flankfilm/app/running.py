@@ -12,7 +12,8 @@ from pathlib import Path
 
 from flankfilm.app.checking import Place
 from flankfilm.app.document import Document
-from flankfilm.app.messages import heard
+from flankfilm.app.messages import Message, heard
+from flankfilm.app.time_left import Clock
 from flankfilm.files.folder import PAGE
 from flankfilm.processes.worker_processes import module, python
 
@@ -45,6 +46,8 @@ class RunState:
         Of the results.
     report : bool
         Whether they have a report.
+    left, stage_left : float or None
+        Seconds left of the run and of its stage, from now; None where nothing foresees them.
     """
 
     what: str = "starting"
@@ -56,6 +59,8 @@ class RunState:
     cancelled: bool = False
     folder: str = ""
     report: bool = False
+    left: float | None = None
+    stage_left: float | None = None
 
 
 class Run:
@@ -78,7 +83,7 @@ class Run:
         self._tell, self._folder, self._began = tell, folder, time.perf_counter()
         self._lines: list[str] = []
         self._what, self._done, self._total = "starting", 0, 1
-        self._cancelled = False
+        self._cancelled, self._clock = False, Clock()
         self._process = subprocess.Popen(
             python(*module("flankfilm.app.run_child", str(place.root), str(place.folder), str(folder))),
             stdin=subprocess.PIPE,
@@ -130,6 +135,7 @@ class Run:
             self._process.kill()
 
     def _state(self, status: int | None) -> RunState:
+        left = self._clock.left(time.perf_counter()) if status is None else None
         return RunState(
             self._what,
             self._done,
@@ -140,6 +146,7 @@ class Run:
             self._cancelled,
             str(self._folder),
             status is not None and (self._folder / PAGE).is_file(),
+            *(left or (None, None)),
         )
 
     def _follow(self, text: str) -> None:
@@ -152,14 +159,20 @@ class Run:
             self._process.stdin.close()
         with suppress(ValueError, OSError):
             for message in heard(self._process.stdout):
-                if isinstance(message, str):
-                    self._lines = [*self._lines[-LONGEST:], message]
-                elif message.keys() >= {"what", "done", "total"}:
-                    self._what = str(message["what"])
-                    self._done, self._total = int(message["done"]), max(int(message["total"]), 1)
+                self._take(message)
                 self._tell(self._state(None))
         self._process.stdout.close()
         status = self._process.wait()
         if status == 0:
             self._what, self._done = "done", self._total
         self._tell(self._state(status))
+
+    def _take(self, message: Message | str) -> None:
+        if isinstance(message, str):
+            self._lines = [*self._lines[-LONGEST:], message]
+        elif "foreseen" in message:
+            self._clock = Clock(message["foreseen"])
+        elif message.keys() >= {"what", "done", "total"}:
+            self._what = str(message["what"])
+            self._done, self._total = int(message["done"]), max(int(message["total"]), 1)
+            self._clock.begins(self._what, self._done, self._total, time.perf_counter())

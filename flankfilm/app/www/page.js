@@ -16,7 +16,7 @@
   <v-alert v-if="problem" type="error" density="compact" closable role="alert" @click:close="problem = ''">
     {{ problem }}</v-alert>
   <section v-if="run" class="ff-run" aria-label="Run">
-    <div class="ff-row"><b>{{ runTitle }}</b><span>{{ run.seconds.toFixed(0) }} s</span>
+    <div class="ff-row"><b>{{ runTitle }}</b><span>{{ (run.seconds + waited).toFixed(0) }} s</span><span v-if="timeLeft">{{ timeLeft }}</span>
       <v-btn v-if="running" size="small" variant="outlined" @click="call('cancel')">Cancel</v-btn>
       <a v-if="run.report && !running" :href="report" target="_blank" rel="noopener">Open the report</a></div>
     <v-progress-linear :model-value="100 * run.done / run.total" :indeterminate="running && !run.done"
@@ -122,7 +122,7 @@
     data: () => ({
       form: [], files: [], examples: [], folder: "", opened: ["pair", "pair.pinion", "operating"], typing: "", typed: "",
       view: { values: {}, faults: {}, answers: [], sliders: [], heard: [], drawing: null, number: 0, why_no_curves: "" },
-      problem: "", dialog: "", saveName: "", shownText: "", run: null, position: 0.25,
+      problem: "", dialog: "", saveName: "", shownText: "", run: null, waited: 0, position: 0.25,
       live: null, before: null, figures: [], figuresBefore: [], fault: "", arrived: 0, waiting: {}, busy: false, seconds: 0,
     }),
     computed: {
@@ -132,6 +132,12 @@
         if (this.running) return `Run: ${this.run.what}`;
         if (this.run.cancelled) return "Run cancelled";
         return this.run.status === 0 ? `Results in ${this.run.folder}` : `Run ended with status ${this.run.status}`;
+      },
+      // Counted down between what the program says; nothing once a stage takes longer than foreseen.
+      timeLeft() {
+        if (!this.running || this.run.left === null || this.waited > this.run.stage_left) return "";
+        const left = this.run.left - this.waited;
+        return left < 100 ? `about ${Math.ceil(left)} s left` : `about ${Math.ceil(left / 60)} min left`;
       },
       report() {
         const below = this.run.folder.slice(this.folder.length + 1);
@@ -172,6 +178,7 @@
     async mounted() {
       this.session = this.trame.client.getConnection().getSession();
       this.session.subscribe("flankfilm.told", ([message]) => this.told(message));
+      setInterval(() => { this.waited = this.running ? (performance.now() - this.runTold) / 1000 : 0; }, 500);
       const answer = await this.call("start");
       if (answer) this.form = Vue.markRaw(answer.form);
     },
@@ -201,10 +208,11 @@
         if (view.why_no_curves && !Object.keys(view.faults).length) { this.live = null; this.figures = []; }
         this.view = view;
         for (const name of ["files", "examples", "folder", "run"]) if (answer[name] !== undefined) this[name] = answer[name];
+        if (answer.run) { this.runTold = performance.now(); this.waited = 0; }
         if (answer.notes && answer.notes.length) this.problem = answer.notes.join("; ");
       },
       told({ kind, content }) {
-        if (kind === "run") { this.run = content; return; }
+        if (kind === "run") { this.run = content; this.runTold = performance.now(); this.waited = 0; return; }
         if (content.number !== this.view.number && !this.busy) return;
         if (content.kind === "curves") { this.live = Vue.markRaw(content); this.seconds = content.seconds; this.fault = ""; }
         if (content.kind === "figures") this.figures = content.figures;

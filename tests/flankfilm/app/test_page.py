@@ -174,6 +174,7 @@ def test_a_run_has_a_stage_and_a_report_and_is_cancelled(served, browser):
     opened(browser, served)
     browser.run(PRESS.format("Run"))
     wait(browser, "document.querySelector('.ff-run')?.innerText.includes('Cancel')")
+    wait(browser, r"/about \d+ s left/.test(document.querySelector('.ff-run').innerText)")
     browser.run(PRESS.format("Cancel"))
     wait(browser, "document.querySelector('.ff-run').innerText.includes('Run cancelled')")
     browser.run(PRESS.format("Open"))
