@@ -6,11 +6,12 @@ Nothing here is about browsers: the page shows what `Model.view` gives, and call
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+import threading
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from base import InputError
+from base import FlankfilmError, InputError
 from flankfilm.app.answers import instant
 from flankfilm.app.checking import Checked, checked
 from flankfilm.app.contact import answerable
@@ -19,6 +20,7 @@ from flankfilm.app.drawing import drawing
 from flankfilm.app.live import Live
 from flankfilm.app.running import Run, RunState
 from flankfilm.app.scene_files import Opened, SceneFiles, python_of
+from flankfilm.app.side_by_side import compared
 from flankfilm.app.sliders import Slider, beside, sliders
 from flankfilm.building.pair import gear_pair
 
@@ -41,7 +43,7 @@ class Model:
     ----------
     files : SceneFiles
     tell : callable
-        Takes what comes later, in another thread: a kind, "live" or "run", and plain values.
+        Takes what comes later, in another thread: a kind, "live", "run" or "comparison", and plain values.
     name : str
         Scene to open, from the folder of the files; the template if empty.
 
@@ -184,6 +186,23 @@ class Model:
         """End the run."""
         if self._run is not None:
             self._run.cancel()
+
+    def compare(self, *names: str) -> None:
+        """Compare results of the folder in another thread, which hands on a "comparison".
+
+        Parameters
+        ----------
+        *names : str
+            Of `flankfilm.app.kept.kept_results`.
+        """
+        threading.Thread(target=self._compare, args=(names,), daemon=True).start()
+
+    def _compare(self, names: Sequence[str]) -> None:
+        try:
+            comparison = dataclasses.asdict(compared(self.files.place, names))
+        except (FlankfilmError, OSError) as error:
+            comparison = {"problem": str(error)}
+        self._tell("comparison", comparison)
 
     @property
     def run_state(self) -> RunState | None:

@@ -8,6 +8,7 @@ from typing import Any
 
 from base import FlankfilmError, InputError
 from flankfilm.app.form import form
+from flankfilm.app.kept import kept_results
 from flankfilm.app.model import Model
 from flankfilm.app.scene_files import SceneFiles
 
@@ -46,6 +47,7 @@ class Window:
             "save": self._save,
             "run": self._run,
             "cancel": self._model.cancel,
+            "compare": self._model.compare,
             "python": lambda: {"python": self._model.python()},
             "text": lambda: {"text": self._model.text},
             "listed": self._listed,
@@ -93,7 +95,15 @@ class Window:
 
     def _listed(self) -> dict[str, Any]:
         files = self._model.files
-        return {"files": files.listed(), "examples": files.examples(), "folder": str(files.root)}
+        return {
+            "files": files.listed(),
+            "examples": files.examples(),
+            "folder": str(files.root),
+            "results": self._results(),
+        }
+
+    def _results(self) -> list[dict[str, Any]]:
+        return [vars(kept) for kept in kept_results(self._model.files.root)]
 
     def _save(self, name: str) -> dict[str, Any]:
         left_out = self._model.save(name)

@@ -21,11 +21,12 @@ window.flankfilmCharts = (() => {
     low -= spare; high += spare;
     const x = (value) => LEFT + value * (WIDE - LEFT - RIGHT);
     const y = (value) => TOP + ((high - value) / (high - low)) * (TALL - TOP - BOTTOM);
-    const path = (line) => {
+    const path = (line, at) => {
+      const places = Array.isArray(position[0]) ? position[at] : position;
       let drawn = "", pen = false;
       line.forEach((value, k) => {
         if (value === null) { pen = false; return; }
-        drawn += `${pen ? "L" : "M"}${x(position[k]).toFixed(1)} ${y(value).toFixed(1)}`;
+        drawn += `${pen ? "L" : "M"}${x(places[k]).toFixed(1)} ${y(value).toFixed(1)}`;
         pen = true;
       });
       return drawn;
@@ -36,6 +37,15 @@ window.flankfilmCharts = (() => {
       rows: ticks(low, high).map((tick) => ({ ...tick, y: y(tick.value) })),
       columns: ticks(0, 1).map((tick) => ({ ...tick, x: x(tick.value) })),
     };
+  };
+
+  // Curves of several runs, each over its positions; the axes are those of all.
+  const overlay = (runs) => {
+    const at = runs.flatMap((run) => run.lines.map(() => run.position));
+    const whole = chart(at, { lines: runs.flatMap((run) => run.lines) }, null);
+    if (!whole) return null;
+    const paths = [...whole.paths];
+    return { ...whole, runs: runs.map((run) => paths.splice(0, run.lines.length)) };
   };
 
   const outline = (points) => points.map((point) => point.join(",")).join(" ");
@@ -57,5 +67,5 @@ window.flankfilmCharts = (() => {
     };
   };
 
-  return { chart, mesh };
+  return { chart, mesh, overlay };
 })();

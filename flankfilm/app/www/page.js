@@ -11,6 +11,7 @@
     <v-btn size="small" variant="tonal" @click="call('undo')">Undo</v-btn>
     <v-btn size="small" variant="tonal" @click="show('python')">Python</v-btn>
     <v-btn size="small" variant="tonal" @click="show('text')">File</v-btn>
+    <v-btn size="small" variant="tonal" @click="showResults">Results</v-btn>
     <v-btn size="small" color="primary" :disabled="faulty || running" @click="call('run')">Run</v-btn>
   </header>
   <v-alert v-if="problem" type="error" density="compact" closable role="alert" @click:close="problem = ''">
@@ -97,7 +98,7 @@
       <ul v-if="(view.heard || []).length" class="ff-heard"><li v-for="text in view.heard">{{ text }}</li></ul>
     </main>
   </div>
-  <v-dialog :model-value="!!dialog" @update:model-value="dialog = ''" max-width="760" scrollable>
+  <v-dialog :model-value="!!dialog" @update:model-value="dialog = ''" :max-width="dialog === 'results' ? 1100 : 760" scrollable>
     <v-card v-if="dialog === 'open'" title="Open">
       <v-card-text class="ff-list"><p>Files in {{ folder }}</p>
         <v-btn v-for="file in files" :key="file" variant="text" @click="open('open', file)">{{ file }}</v-btn>
@@ -109,6 +110,10 @@
         persistent-hint autofocus @keyup.enter="save"></v-text-field></v-card-text>
       <v-card-actions><v-btn @click="dialog = ''">Cancel</v-btn><v-btn color="primary" @click="save">Save</v-btn></v-card-actions>
     </v-card>
+    <v-card v-else-if="dialog === 'results'" title="Results">
+      <v-card-text><flankfilm-results :results="results" :comparison="comparison" :call="call" :unit="unit"
+        :address="address"></flankfilm-results></v-card-text>
+    </v-card>
     <v-card v-else title="The same for a program">
       <v-card-text><pre class="ff-code" tabindex="0">{{ shownText }}</pre></v-card-text>
     </v-card>
@@ -119,8 +124,9 @@
   const page = {
     template: TEMPLATE,
     inject: ["trame"],
+    components: { "flankfilm-results": flankfilmResults },
     data: () => ({
-      form: [], files: [], examples: [], folder: "", opened: ["pair", "pair.pinion", "operating"], typing: "", typed: "",
+      form: [], files: [], examples: [], results: [], comparison: null, folder: "", opened: ["pair", "pair.pinion", "operating"], typing: "", typed: "",
       view: { values: {}, faults: {}, answers: [], sliders: [], heard: [], drawing: null, number: 0, why_no_curves: "" },
       problem: "", dialog: "", saveName: "", shownText: "", run: null, waited: 0, position: 0.25,
       live: null, before: null, figures: [], figuresBefore: [], fault: "", arrived: 0, waiting: {}, busy: false, seconds: 0,
@@ -140,8 +146,7 @@
         return left < 100 ? `about ${Math.ceil(left)} s left` : `about ${Math.ceil(left / 60)} min left`;
       },
       report() {
-        const below = this.run.folder.slice(this.folder.length + 1);
-        return `/results/${below.split("/").map(encodeURIComponent).join("/")}/report.html`;
+        return this.address(this.run.folder.slice(this.folder.length + 1));
       },
       sections() {
         const keys = Object.keys(this.view.faults);
@@ -207,11 +212,12 @@
         if (Object.keys(view.faults).length) { view.answers = this.view.answers; view.drawing = this.view.drawing; }
         if (view.why_no_curves && !Object.keys(view.faults).length) { this.live = null; this.figures = []; }
         this.view = view;
-        for (const name of ["files", "examples", "folder", "run"]) if (answer[name] !== undefined) this[name] = answer[name];
+        for (const name of ["files", "examples", "results", "folder", "run"]) if (answer[name] !== undefined) this[name] = answer[name];
         if (answer.run) { this.runTold = performance.now(); this.waited = 0; }
         if (answer.notes && answer.notes.length) this.problem = answer.notes.join("; ");
       },
       told({ kind, content }) {
+        if (kind === "comparison") { this.comparison = Vue.markRaw(content); return; }
         if (kind === "run") { this.run = content; this.runTold = performance.now(); this.waited = 0; return; }
         if (content.number !== this.view.number && !this.busy) return;
         if (content.kind === "curves") { this.live = Vue.markRaw(content); this.seconds = content.seconds; this.fault = ""; }
@@ -239,6 +245,8 @@
       unit(text) { return text.replace(/\bum\b/, "µm").replace("deg", "°"); },
       plain(text) { return text.replace(/^"|"$/g, ""); },
       async open(how, name) { this.dialog = ""; this.live = this.before = null; this.figures = []; await this.call(how, name); },
+      address(name) { return `/results/${name.split("/").map(encodeURIComponent).join("/")}/report.html`; },
+      async showResults() { await this.call("listed"); this.dialog = "results"; },
       startSaving() { this.saveName = this.view.name || "scene.toml"; this.dialog = "save"; },
       async save() { this.dialog = ""; await this.call("save", this.saveName.trim()); },
       async show(what) { const answer = await this.call(what); if (answer) { this.shownText = answer[what] || ""; this.dialog = what; } },

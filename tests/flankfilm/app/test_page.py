@@ -19,6 +19,7 @@ from urllib.parse import quote, urlsplit
 import pytest
 
 from tests.flankfilm.app.test_model import RUN
+from tests.flankfilm.app.test_side_by_side import results
 from tests.flankfilm.conftest import Browser
 from tests.processes import MARK, left_after, marked, new_mark
 from tests.seeds import SEED
@@ -191,6 +192,27 @@ def test_a_run_has_a_stage_and_a_report_and_is_cancelled(served, browser):
     page = browser.run(f"fetch({address!r}).then((reply) => reply.text())")
     assert "contact ratio" in page
     assert (served.folder / "pair-results" / "report.html").read_text(encoding="utf-8") == page
+    assert browser.logged == []
+
+
+def test_results_of_runs_are_compared_side_by_side(served, browser):
+    for name, stiffness in (("first-results", 8.0e8), ("second-results", 8.8e8)):
+        results(served.folder, name, stiffness, 0.005)
+    opened(browser, served)
+    browser.run(PRESS.format("Results"))
+    wait(browser, "document.querySelectorAll('.ff-kept input').length === 2")
+    for number in (0, 1):
+        browser.run(f"document.querySelectorAll('.ff-kept input')[{number}].click()")
+        wait(
+            browser,
+            f"document.querySelector('.ff-results button').innerText.trim() === 'Compare {number + 1}'",
+        )
+    browser.run(PRESS.format("Compare 2"))
+    wait(browser, "document.querySelectorAll('.ff-side figure path').length >= 4")
+    table = browser.run("document.querySelector('.ff-side table').innerText")
+    assert "mean mesh stiffness (tangent), without film" in table
+    assert "+2" in table or "-2" in table
+    assert browser.run("document.querySelectorAll('.ff-side td b').length") >= 1
     assert browser.logged == []
 
 
