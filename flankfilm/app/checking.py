@@ -17,7 +17,7 @@ from flankfilm.scene import Scene
 from flankfilm.scene.reader import refuse_long_lists, validated
 from flankfilm.scene.tables.flank_files import read_flank_files
 
-__all__ = ["Checked", "Place", "checked"]
+__all__ = ["Checked", "Place", "checked", "files_outside"]
 
 QUOTES = "Write it without quotes"
 """How the remedy begins for a number in quotes, which nobody typed into a form."""
@@ -127,7 +127,7 @@ def checked(document: Document, place: Place) -> Checked:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            outside = list(_files_outside(raw, place))
+            outside = list(files_outside(raw, place))
             if outside:
                 return Checked(None, tuple(outside))
             refuse_long_lists(raw)
@@ -148,11 +148,20 @@ def _half_typed(fault: Fault) -> Fault:
     return replace(fault, remedy=f"Such as {about.example or about.default or 1}")
 
 
-def _files_outside(raw: Any, place: Place, path: str = "") -> Iterator[Fault]:
-    """Fault for each file that a scene names outside the place."""
+def files_outside(raw: Any, place: Place, path: str = "") -> Iterator[Fault]:
+    """Fault for each file that a scene names outside the place.
+
+    Parameters
+    ----------
+    raw : object
+        Keys of the scene as read, or a part of them.
+    place : Place
+    path : str
+        Key of the part.
+    """
     if isinstance(raw, list):
         for entry in raw:
-            yield from _files_outside(entry, place, path)
+            yield from files_outside(entry, place, path)
     elif isinstance(raw, Mapping):
         for key, value in raw.items():
             here = f"{path}.{key}".lstrip(".")
@@ -163,4 +172,4 @@ def _files_outside(raw: Any, place: Place, path: str = "") -> Iterator[Fault]:
                     for fault in error.faults:
                         yield Fault(here, fault.value, fault.allowed, fault.remedy)
             else:
-                yield from _files_outside(value, place, here)
+                yield from files_outside(value, place, here)

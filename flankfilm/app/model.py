@@ -22,6 +22,7 @@ from flankfilm.app.running import Run, RunState
 from flankfilm.app.scene_files import Opened, SceneFiles, python_of
 from flankfilm.app.side_by_side import compared
 from flankfilm.app.sliders import Slider, beside, sliders
+from flankfilm.app.studies import asked_rows
 from flankfilm.building.pair import gear_pair
 
 __all__ = ["Model"]
@@ -43,7 +44,7 @@ class Model:
     ----------
     files : SceneFiles
     tell : callable
-        Takes what comes later, in another thread: a kind, "live", "run" or "comparison", and plain values.
+        Takes what comes later, in another thread: a kind, "live", "run", "rows" or "comparison", and plain values.
     name : str
         Scene to open, from the folder of the files; the template if empty.
 
@@ -169,18 +170,40 @@ class Model:
         InputError
             Where the scene has faults, or a run of this window is at work.
         """
-        if self._run is not None and self._run.running:
-            raise InputError.at("run", "", "is at work already", "Cancel it first")
+        self._refuse_second()
         if self._judged.scene is None:
             raise InputError(self._judged.faults)
-        folder = self.files.place.inside(str(self._results))
-        self._run = Run(
-            self._opened.document,
-            self._opened.place,
-            folder,
-            lambda state: self._tell("run", dataclasses.asdict(state)),
-        )
+        place, folder = self._opened.place, self.files.place.inside(str(self._results))
+        arguments = (str(place.root), str(place.folder), str(folder))
+        self._run = Run("run", arguments, folder, self._tell, self._opened.document.text)
         return self._run.state
+
+    def rows(self, name: str, example: str = "", resume: str = "") -> RunState:
+        """Start a study or an optimisation.
+
+        Parameters
+        ----------
+        name : str
+            Of `flankfilm.app.studies.rows_files`.
+        example, resume : str
+            Whether it is an example, and whether rows that are there are kept; "" for no.
+
+        Raises
+        ------
+        InputError
+            Where there is none of that name, or a run of this window is at work.
+        """
+        self._refuse_second()
+        asked, place, file = asked_rows(self.files, name, bool(example))
+        folder = self.files.place.inside(asked.folder)
+        arguments = (str(place.root), str(place.folder), str(folder), str(file))
+        kept = ("resume",) if resume else ()
+        self._run = Run(asked.kind, (*arguments, *kept), folder, self._tell)
+        return self._run.state
+
+    def _refuse_second(self) -> None:
+        if self._run is not None and self._run.running:
+            raise InputError.at("run", "", "is at work already", "Cancel it first")
 
     def cancel(self) -> None:
         """End the run."""

@@ -34,7 +34,7 @@ HOST = "127.0.0.1"
 
 WWW = Path(__file__).with_name("www")
 
-FILES = {"scripts": ("charts.js", "results.js", "page.js"), "styles": ("page.css",)}
+FILES = {"scripts": ("charts.js", "results.js", "studies.js", "page.js"), "styles": ("page.css",)}
 
 LOST = "<p class='lost'>The connection to flankfilm is lost. Start it again, and open the address that it prints.</p>"
 

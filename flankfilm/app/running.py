@@ -1,21 +1,22 @@
-"""A run of the page's scene: a process with its stage, log, end, and cancelling."""
+"""A run, a study or an optimisation of the page: a process with its stage, log, end, and cancelling."""
 
 from __future__ import annotations
 
 import subprocess
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
-from flankfilm.app.checking import Place
-from flankfilm.app.document import Document
 from flankfilm.app.messages import Message, heard
+from flankfilm.app.studies import Growing
 from flankfilm.app.time_left import Clock
 from flankfilm.files.folder import PAGE
 from flankfilm.processes.worker_processes import module, python
+from flankfilm.studies.table import ROWS
 
 __all__ = ["Run", "RunState"]
 
@@ -68,24 +69,33 @@ class Run:
 
     Parameters
     ----------
-    document : Document
-    place : Place
-        Where the files are that it names.
+    kind : {"run", "study", "optimise"}
+    arguments : sequence of str
+        Of `flankfilm.app.run_child`, after the kind.
     folder : Path
         Of the results.
     tell : callable
-        Takes each state, in another thread.
+        Takes each state, as "run", and new rows, as "rows" with ``first`` and ``rows``, or with ``heads``, once; in
+        another thread.
+    text : str
+        Scene to run.
     """
 
     def __init__(
-        self, document: Document, place: Place, folder: Path, tell: Callable[[RunState], None]
+        self,
+        kind: str,
+        arguments: Sequence[str],
+        folder: Path,
+        tell: Callable[[str, Mapping[str, Any]], None],
+        text: str = "",
     ) -> None:
         self._tell, self._folder, self._began = tell, folder, time.perf_counter()
         self._lines: list[str] = []
         self._what, self._done, self._total = "starting", 0, 1
         self._cancelled, self._clock = False, Clock()
+        self._table = None if kind == "run" else Growing(folder / ROWS)
         self._process = subprocess.Popen(
-            python(*module("flankfilm.app.run_child", str(place.root), str(place.folder), str(folder))),
+            python(*module("flankfilm.app.run_child", kind, *arguments)),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -93,7 +103,7 @@ class Run:
             encoding="utf-8",
             errors="replace",
         )
-        self._thread = threading.Thread(target=self._follow, args=(document.text,), daemon=True)
+        self._thread = threading.Thread(target=self._follow, args=(text,), daemon=True)
         self._thread.start()
 
     @property
@@ -160,19 +170,30 @@ class Run:
         with suppress(ValueError, OSError):
             for message in heard(self._process.stdout):
                 self._take(message)
-                self._tell(self._state(None))
+                self._hand_on(None)
         self._process.stdout.close()
         status = self._process.wait()
         if status == 0:
             self._what, self._done = "done", self._total
-        self._tell(self._state(status))
+        self._hand_on(status)
+
+    def _hand_on(self, status: int | None) -> None:
+        """Hand on the state, and rows that are new."""
+        self._tell("run", asdict(self._state(status)))
+        if self._table is not None:
+            first, rows = self._table.more()
+            if rows:
+                self._tell("rows", {"first": first, "rows": rows})
 
     def _take(self, message: Message | str) -> None:
         if isinstance(message, str):
             self._lines = [*self._lines[-LONGEST:], message]
         elif "foreseen" in message:
             self._clock = Clock(message["foreseen"])
+        elif "heads" in message:
+            self._tell("rows", {"heads": message["heads"], "rows": []})
         elif message.keys() >= {"what", "done", "total"}:
             self._what = str(message["what"])
             self._done, self._total = int(message["done"]), max(int(message["total"]), 1)
-            self._clock.begins(self._what, self._done, self._total, time.perf_counter())
+            there = int(message.get("there", 0))
+            self._clock.begins(self._what, self._done, self._total, time.perf_counter(), there)

@@ -145,7 +145,7 @@ class Clock:
     _place: int = -1
     _rows: float | None = None
 
-    def begins(self, what: str, done: int, total: int, now: float) -> None:
+    def begins(self, what: str, done: int, total: int, now: float, there: int = 0) -> None:
         """Note what is at work.
 
         Parameters
@@ -157,11 +157,13 @@ class Clock:
             Rows, where they are counted.
         now : float
             [s].
+        there : int
+            Rows that were there before.
         """
         title = what.partition(": ")[0]
         if title == self._title:
-            if done and title != what:
-                self._rows = (now - self._since) / done * (total - done)
+            if done > there and title != what:
+                self._rows = (now - self._since) / (done - there) * (total - done)
             return
         if self._title in self.foreseen and title in self.foreseen:
             self.spent[self._title] = now - self._since

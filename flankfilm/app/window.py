@@ -11,6 +11,7 @@ from flankfilm.app.form import form
 from flankfilm.app.kept import kept_results
 from flankfilm.app.model import Model
 from flankfilm.app.scene_files import SceneFiles
+from flankfilm.app.studies import rows_files
 
 __all__ = ["Window"]
 
@@ -46,6 +47,8 @@ class Window:
             "example": self._model.example,
             "save": self._save,
             "run": self._run,
+            "rows": self._rows,
+            "studies": lambda: {"studies": [vars(asked) for asked in rows_files(files)]},
             "cancel": self._model.cancel,
             "compare": self._model.compare,
             "python": lambda: {"python": self._model.python()},
@@ -111,3 +114,6 @@ class Window:
 
     def _run(self) -> dict[str, Any]:
         return {"run": vars(self._model.run())}
+
+    def _rows(self, *arguments: str) -> dict[str, Any]:
+        return {"run": vars(self._model.rows(*arguments))}

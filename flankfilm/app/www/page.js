@@ -11,8 +11,9 @@
     <v-btn size="small" variant="tonal" @click="call('undo')">Undo</v-btn>
     <v-btn size="small" variant="tonal" @click="show('python')">Python</v-btn>
     <v-btn size="small" variant="tonal" @click="show('text')">File</v-btn>
-    <v-btn size="small" variant="tonal" @click="showResults">Results</v-btn>
-    <v-btn size="small" color="primary" :disabled="faulty || running" @click="call('run')">Run</v-btn>
+    <v-btn size="small" variant="tonal" @click="list('listed', 'results')">Results</v-btn>
+    <v-btn size="small" variant="tonal" @click="list('studies', 'studies')">Studies</v-btn>
+    <v-btn size="small" color="primary" :disabled="faulty || running" @click="startRun">Run</v-btn>
   </header>
   <v-alert v-if="problem" type="error" density="compact" closable role="alert" @click:close="problem = ''">
     {{ problem }}</v-alert>
@@ -23,6 +24,7 @@
     <v-progress-linear :model-value="100 * run.done / run.total" :indeterminate="running && !run.done"
       height="8" :aria-label="run.what"></v-progress-linear>
     <details :open="run.status !== null && run.status !== 0"><summary>Log</summary><pre tabindex="0">{{ run.log.join("\\n") }}</pre></details>
+    <flankfilm-rows v-if="table" :table="table" :unit="unit"></flankfilm-rows>
   </section>
   <div class="ff-body">
     <nav class="ff-form" aria-label="Scene">
@@ -98,7 +100,7 @@
       <ul v-if="(view.heard || []).length" class="ff-heard"><li v-for="text in view.heard">{{ text }}</li></ul>
     </main>
   </div>
-  <v-dialog :model-value="!!dialog" @update:model-value="dialog = ''" :max-width="dialog === 'results' ? 1100 : 760" scrollable>
+  <v-dialog :model-value="!!dialog" @update:model-value="dialog = ''" :max-width="['results', 'studies'].includes(dialog) ? 1100 : 760" scrollable>
     <v-card v-if="dialog === 'open'" title="Open">
       <v-card-text class="ff-list"><p>Files in {{ folder }}</p>
         <v-btn v-for="file in files" :key="file" variant="text" @click="open('open', file)">{{ file }}</v-btn>
@@ -114,6 +116,10 @@
       <v-card-text><flankfilm-results :results="results" :comparison="comparison" :call="call" :unit="unit"
         :address="address"></flankfilm-results></v-card-text>
     </v-card>
+    <v-card v-else-if="dialog === 'studies'" title="Studies and optimisations">
+      <v-card-text><flankfilm-studies :studies="studies" :running="running" :address="address"
+        @start="startRows"></flankfilm-studies></v-card-text>
+    </v-card>
     <v-card v-else title="The same for a program">
       <v-card-text><pre class="ff-code" tabindex="0">{{ shownText }}</pre></v-card-text>
     </v-card>
@@ -124,9 +130,9 @@
   const page = {
     template: TEMPLATE,
     inject: ["trame"],
-    components: { "flankfilm-results": flankfilmResults },
+    components: { "flankfilm-results": flankfilmResults, "flankfilm-studies": flankfilmStudies, "flankfilm-rows": flankfilmRows },
     data: () => ({
-      form: [], files: [], examples: [], results: [], comparison: null, folder: "", opened: ["pair", "pair.pinion", "operating"], typing: "", typed: "",
+      form: [], files: [], examples: [], results: [], comparison: null, studies: [], table: null, folder: "", opened: ["pair", "pair.pinion", "operating"], typing: "", typed: "",
       view: { values: {}, faults: {}, answers: [], sliders: [], heard: [], drawing: null, number: 0, why_no_curves: "" },
       problem: "", dialog: "", saveName: "", shownText: "", run: null, waited: 0, position: 0.25,
       live: null, before: null, figures: [], figuresBefore: [], fault: "", arrived: 0, waiting: {}, busy: false, seconds: 0,
@@ -135,8 +141,8 @@
       faulty() { return Object.keys(this.view.faults).length > 0; },
       running() { return !!this.run && this.run.status === null; },
       runTitle() {
-        if (this.running) return `Run: ${this.run.what}`;
-        if (this.run.cancelled) return "Run cancelled";
+        if (this.running) return this.run.what.startsWith("rows") ? this.run.what : `Run: ${this.run.what}`;
+        if (this.run.cancelled) return this.table ? "Cancelled: Studies resumes from the rows that are there" : "Run cancelled";
         return this.run.status === 0 ? `Results in ${this.run.folder}` : `Run ended with status ${this.run.status}`;
       },
       // Counted down between what the program says; nothing once a stage takes longer than foreseen.
@@ -212,12 +218,13 @@
         if (Object.keys(view.faults).length) { view.answers = this.view.answers; view.drawing = this.view.drawing; }
         if (view.why_no_curves && !Object.keys(view.faults).length) { this.live = null; this.figures = []; }
         this.view = view;
-        for (const name of ["files", "examples", "results", "folder", "run"]) if (answer[name] !== undefined) this[name] = answer[name];
+        for (const name of ["files", "examples", "results", "studies", "folder", "run"]) if (answer[name] !== undefined) this[name] = answer[name];
         if (answer.run) { this.runTold = performance.now(); this.waited = 0; }
         if (answer.notes && answer.notes.length) this.problem = answer.notes.join("; ");
       },
       told({ kind, content }) {
         if (kind === "comparison") { this.comparison = Vue.markRaw(content); return; }
+        if (kind === "rows") { this.grown(content); return; }
         if (kind === "run") { this.run = content; this.runTold = performance.now(); this.waited = 0; return; }
         if (content.number !== this.view.number && !this.busy) return;
         if (content.kind === "curves") { this.live = Vue.markRaw(content); this.seconds = content.seconds; this.fault = ""; }
@@ -246,7 +253,13 @@
       plain(text) { return text.replace(/^"|"$/g, ""); },
       async open(how, name) { this.dialog = ""; this.live = this.before = null; this.figures = []; await this.call(how, name); },
       address(name) { return `/results/${name.split("/").map(encodeURIComponent).join("/")}/report.html`; },
-      async showResults() { await this.call("listed"); this.dialog = "results"; },
+      async list(method, dialog) { await this.call(method); this.dialog = dialog; },
+      async startRun() { this.table = null; await this.call("run"); },
+      async startRows(...texts) { this.dialog = ""; this.table = null; await this.call("rows", ...texts); },
+      grown({ heads, first, rows }) {
+        const there = this.table || { heads: [], rows: [] };
+        this.table = Vue.markRaw(heads ? { heads, rows: there.rows } : { heads: there.heads, rows: [...there.rows.slice(0, first), ...rows] });
+      },
       startSaving() { this.saveName = this.view.name || "scene.toml"; this.dialog = "save"; },
       async save() { this.dialog = ""; await this.call("save", this.saveName.trim()); },
       async show(what) { const answer = await this.call(what); if (answer) { this.shownText = answer[what] || ""; this.dialog = what; } },

@@ -20,6 +20,7 @@ import pytest
 
 from tests.flankfilm.app.test_model import RUN
 from tests.flankfilm.app.test_side_by_side import results
+from tests.flankfilm.app.test_studies import STUDY
 from tests.flankfilm.conftest import Browser
 from tests.processes import MARK, left_after, marked, new_mark
 from tests.seeds import SEED
@@ -213,6 +214,30 @@ def test_results_of_runs_are_compared_side_by_side(served, browser):
     assert "mean mesh stiffness (tangent), without film" in table
     assert "+2" in table or "-2" in table
     assert browser.run("document.querySelectorAll('.ff-side td b').length") >= 1
+    assert browser.logged == []
+
+
+def test_a_study_fills_its_table_is_cancelled_and_resumed_to_its_report(served, browser):
+    text = STUDY.replace("steps = 4", "steps = 60")
+    (served.folder / "shift.toml").write_text(text, encoding="utf-8")
+    opened(browser, served)
+
+    def press(button: str) -> None:
+        browser.run(PRESS.format("Studies"))
+        item = "[...document.querySelectorAll('.ff-kept li')].find((one) => one.innerText.includes('shift.toml'))"
+        wait(browser, f"{item}?.querySelector('button').innerText.trim() === {button!r}")
+        browser.run(f"{item}.querySelector('button').click()")
+
+    press("Start")
+    wait(browser, "document.querySelectorAll('.ff-rows tbody tr').length > 2")
+    assert "contact_ratio" in browser.run("document.querySelector('.ff-rows thead').innerText")
+    browser.run(PRESS.format("Cancel"))
+    wait(browser, "document.querySelector('.ff-run').innerText.includes('Cancelled')")
+    press("Resume")
+    address = wait(browser, "document.querySelector('.ff-run a')?.href")
+    assert browser.run("document.querySelectorAll('.ff-rows tbody tr').length") == 60
+    page = browser.run(f"fetch({address!r}).then((reply) => reply.text())")
+    assert "Contact ratio over the profile shift" in page
     assert browser.logged == []
 
 
