@@ -16,13 +16,24 @@ from fem.influence.memo import Memo
 from flankfilm import coupling
 from flankfilm.app.answers import Answer, answers_of
 from flankfilm.coupling.mesh.loaded_teeth import POSITIONS
+from flankfilm.products import root_stress
 from flankfilm.report import stiffness_parts
 from flankfilm.report.text import percent
 from flankfilm.scene import Scene
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.mesh import COMPLIANCE, FACE_GEARS, PLAN, along_the_face, loaded_teeth
+from flankfilm.stages.mesh import COMPLIANCE, FACE_GEARS, PAIR, PLAN, along_the_face, loaded_teeth
 
-__all__ = ["Curve", "KnownGears", "answerable", "curves", "figures_of", "solve_gears", "solved"]
+__all__ = [
+    "Curve",
+    "KnownGears",
+    "answerable",
+    "curves",
+    "figures_of",
+    "has_roots",
+    "roots",
+    "solve_gears",
+    "solved",
+]
 
 PAIRS = 4
 """Pairs whose compliance is kept."""
@@ -151,6 +162,45 @@ def figures_of(cycle: coupling.MeshCycle, face_width: float, tolerance: float) -
         shown += stiffness_parts.pressure_headlines(cycle.contact, None)
     against = [headline.against(tolerance) for headline in shown]
     return tuple(answers_of("Loaded contact, without film", against))
+
+
+def has_roots(engine: Engine) -> bool:
+    """Whether the stress at the roots follows in parts of a second: of spur gears by finite elements, loaded evenly.
+
+    Parameters
+    ----------
+    engine : Engine
+        Of a scene that has a loaded contact.
+    """
+    pair = engine.scene.pair
+    helical = pair is not None and pair.helical
+    return engine[PLAN].stiffness.choice == "fem" and not helical and not along_the_face(engine.scene)
+
+
+def roots(engine: Engine, cycle: coupling.MeshCycle) -> tuple[Curve, tuple[Answer, ...]]:
+    """Largest principal stress in the fillets of both gears over one base pitch, and its maxima with their errors.
+
+    Parameters
+    ----------
+    engine : Engine
+        That `has_roots`.
+    cycle : coupling.MeshCycle
+        Of `solved`.
+
+    Raises
+    ------
+    SolverError
+        Where the contact has no solution between the positions.
+    """
+    assert cycle.contact is not None
+    stresses = coupling.root_stresses(engine[PAIR], cycle.contact, engine[root_stress.FILLETS])
+    largest = (stresses.stress.pinion, stresses.stress.wheel)
+    lines = tuple(_lines(1e-6 * np.max(gear.tension_Pa, axis=1))[0] for gear in largest)
+    error = f"± {percent(stresses.error)}; pinion and wheel"
+    curve = Curve("root_tension", "maximum root tension, of all teeth", "MPa", lines, error)
+    tolerance = engine.scene.tolerance
+    headlines = [headline.against(tolerance) for headline in root_stress.headlines(stresses)]
+    return curve, tuple(answers_of("Root stress, without film", headlines))
 
 
 def _curves(cycle: coupling.MeshCycle, face_width: float) -> Iterator[Curve]:

@@ -62,7 +62,7 @@ def answer(
     request : mapping
         Its ``number``, the ``text`` of the scene, ``root`` and ``folder`` of its place.
     tell : callable
-        Takes messages of a ``kind``: "curves", "figures" or "fault".
+        Takes messages of a ``kind``: "curves", "figures", "roots" or "fault".
     newer : callable
         Whether there is a newer request.
     known : KnownGears
@@ -70,7 +70,7 @@ def answer(
     """
     from base import InputError, SolverError
     from flankfilm.app.checking import Place, checked
-    from flankfilm.app.contact import answerable, curves, figures_of, solve_gears, solved
+    from flankfilm.app.contact import answerable, curves, figures_of, has_roots, roots, solve_gears, solved
     from flankfilm.app.document import Document
     from flankfilm.stages.engine import Engine
     from flankfilm.stages.mesh import PAIR, along_the_face
@@ -96,11 +96,15 @@ def answer(
                 return None
             cycle, face_width = solved(engine, known), engine[PAIR].face_width
             drawn = [vars(curve) for curve in curves(cycle, face_width)]
-            say("curves", position=cycle.position.tolist(), curves=drawn)
+            say("curves", position=cycle.position.tolist(), curves=drawn, roots=has_roots(engine))
             if newer():
                 return None
             figures = figures_of(cycle, face_width, judged.scene.tolerance)
             say("figures", figures=[vars(figure) for figure in figures])
+            if newer() or not has_roots(engine):
+                return None
+            curve, maxima = roots(engine, cycle)
+            say("roots", curve=vars(curve), figures=[vars(figure) for figure in maxima])
     except InputError as error:
         say("fault", text="; ".join(map(str, error.faults)))
     except SolverError as error:

@@ -126,11 +126,18 @@
   </v-dialog>
 </div>`;
 
+  // The browser runs the other files before this one, or after it.
+  const loaded = (name) => new Promise((resolve) => {
+    const look = () => { if (window[name]) resolve(window[name]); else setTimeout(look, 20); };
+    look();
+  });
+
   const SETTLED = 1500; // milliseconds after which an answer is what the next ones are compared with
   const page = {
     template: TEMPLATE,
     inject: ["trame"],
-    components: { "flankfilm-results": flankfilmResults, "flankfilm-studies": flankfilmStudies, "flankfilm-rows": flankfilmRows },
+    components: Object.fromEntries([["results", "Results"], ["studies", "Studies"], ["rows", "Rows"]].map(
+      ([tag, name]) => [`flankfilm-${tag}`, Vue.defineAsyncComponent(() => loaded(`flankfilm${name}`))])),
     data: () => ({
       form: [], files: [], examples: [], results: [], comparison: null, studies: [], table: null, folder: "", opened: ["pair", "pair.pinion", "operating"], typing: "", typed: "",
       view: { values: {}, faults: {}, answers: [], sliders: [], heard: [], drawing: null, number: 0, why_no_curves: "" },
@@ -166,7 +173,8 @@
         if (!this.live) return [];
         const old = Object.fromEntries((this.before ? this.before.curves : []).map((curve) => [curve.name, curve]));
         return this.live.curves.map((curve) => (
-          { ...curve, chart: Vue.markRaw(flankfilmCharts.chart(this.live.position, curve, old[curve.name]) || {}) }
+          { ...curve, chart: Vue.markRaw(flankfilmCharts.chart(
+            this.live.position, curve.stale ? { ...curve, lines: [] } : curve, curve.stale ? curve : old[curve.name]) || {}) }
         )).filter((curve) => curve.chart.paths);
       },
       groups() {
@@ -190,6 +198,7 @@
       this.session = this.trame.client.getConnection().getSession();
       this.session.subscribe("flankfilm.told", ([message]) => this.told(message));
       setInterval(() => { this.waited = this.running ? (performance.now() - this.runTold) / 1000 : 0; }, 500);
+      await loaded("flankfilmCharts");
       const answer = await this.call("start");
       if (answer) this.form = Vue.markRaw(answer.form);
     },
@@ -227,8 +236,17 @@
         if (kind === "rows") { this.grown(content); return; }
         if (kind === "run") { this.run = content; this.runTold = performance.now(); this.waited = 0; return; }
         if (content.number !== this.view.number && !this.busy) return;
-        if (content.kind === "curves") { this.live = Vue.markRaw(content); this.seconds = content.seconds; this.fault = ""; }
-        if (content.kind === "figures") this.figures = content.figures;
+        if (content.kind === "curves") {
+          const old = content.roots && this.live ? this.live.curves.find((curve) => curve.name === "root_tension") : null;
+          if (old) content.curves.push({ ...old, stale: true, error: "solving ..." });
+          this.live = Vue.markRaw(content); this.seconds = content.seconds; this.fault = "";
+        }
+        if (content.kind === "figures") this.figures = [...content.figures, ...(this.live && this.live.roots ? this.figures.filter(this.ofRoots) : [])];
+        if (content.kind === "roots" && this.live) {
+          const others = this.live.curves.filter((curve) => curve.name !== content.curve.name);
+          this.live = Vue.markRaw({ ...this.live, curves: [...others, content.curve] });
+          this.figures = [...this.figures.filter((one) => !this.ofRoots(one)), ...content.figures];
+        }
         if (content.kind === "fault" && content.text) { this.fault = content.text; this.live = null; this.figures = []; }
       },
       // Only the newest value of a key waits while the program is at an older one.
@@ -248,6 +266,7 @@
       drag(path, text) { this.send("drag", path, text); },
       dragged(one) { const value = parseFloat(this.view.values[one.path]); return Number.isFinite(value) ? value : one.value; },
       shown(path) { return this.typing === path && this.waiting[path] ? this.waiting[path][1] : this.view.values[path] || ""; },
+      ofRoots(figure) { return figure.group.startsWith("Root stress"); },
       words(key) { try { return JSON.parse(this.view.values[key.path] || "[]"); } catch { return []; } },
       unit(text) { return text.replace(/\bum\b/, "µm").replace("deg", "°"); },
       plain(text) { return text.replace(/^"|"$/g, ""); },

@@ -12,13 +12,15 @@ import pytest
 
 from flankfilm.app import live
 from flankfilm.app.checking import Place, checked
-from flankfilm.app.contact import KnownGears, answerable
+from flankfilm.app.contact import KnownGears, answerable, has_roots
 from flankfilm.app.document import Document
 from flankfilm.app.live import LOST, Live
 from flankfilm.app.live_child import Newest, answer
 from flankfilm.files.cache import Cache
+from flankfilm.products.root_stress import ROOT_STRESS
 from flankfilm.report import stiffness_parts
 from flankfilm.scene import parse_scene
+from flankfilm.scene.reader import read_scene
 from flankfilm.stages.engine import Engine
 from flankfilm.stages.mesh import DRY_CYCLE
 
@@ -68,7 +70,7 @@ def asked(text: str, newer=lambda: False) -> list[dict]:
 
 
 def test_curves_and_figures_are_those_of_a_run_digit_by_digit():
-    drawn, told = asked(SCENE)
+    drawn, told, _ = asked(SCENE)
     engine = Engine(parse_scene(SCENE), Cache(None))
     run = engine[DRY_CYCLE]
     assert drawn["position"] == run.position.tolist()
@@ -98,11 +100,36 @@ def test_gears_that_are_known_change_no_digit():
         text = SCENE.replace("= 200", f"= {torque}")
         request = {"number": torque, "text": text, "root": str(ROOT), "folder": str(ROOT)}
         answer(request, told.append, lambda: False, known)
-    drawn, figures = asked(SCENE)
-    for message in (told[2], told[6]):
+    drawn, figures, rooted = asked(SCENE)
+    for message in (told[3], told[9]):
         assert message["curves"] == drawn["curves"]
-    for message in (told[3], told[7]):
+    for message in (told[4], told[10]):
         assert message["figures"] == figures["figures"]
+    for message in (told[5], told[11]):
+        assert (message["curve"], message["figures"]) == (rooted["curve"], rooted["figures"])
+
+
+def test_root_stress_follows_digit_by_digit_as_of_a_run():
+    drawn, _, rooted = asked(SCENE)
+    engine = Engine(parse_scene(SCENE), Cache(None))
+    stress = engine[ROOT_STRESS].stress
+    assert drawn["roots"]
+    assert rooted["curve"]["lines"] == tuple(
+        tuple((1e-6 * gear.tension_Pa.max(axis=1)).tolist()) for gear in (stress.pinion, stress.wheel)
+    )
+    (maxima,) = rooted["figures"]
+    largest = " and ".join(f"{1e-6 * gear.greatest_tension_Pa:.4g}" for gear in (stress.pinion, stress.wheel))
+    assert (maxima["text"], maxima["unit"]) == (largest, "MPa")
+    assert maxima["error"].startswith("±")
+
+
+def test_root_stress_is_left_out_where_it_is_not_known_at_once():
+    messages = asked(SCENE.replace("200\n", '200\n[stiffness]\nmodel = "weber-banaschek"\n'))
+    assert [message["kind"] for message in messages] == ["curves", "figures"]
+    assert not messages[0]["roots"]
+    for name in ("helical", "face_width"):
+        assert not has_roots(Engine(read_scene(ROOT / "examples" / f"{name}.toml"), Cache(None)))
+    assert has_roots(Engine(read_scene(ROOT / "examples" / "article.toml"), Cache(None)))
 
 
 def test_a_newer_scene_ends_the_older_one_between_two_steps():
