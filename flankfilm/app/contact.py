@@ -14,7 +14,7 @@ import fem
 from base.results import figures
 from fem.influence.memo import Memo
 from flankfilm import coupling
-from flankfilm.app.answers import Answer, answers_of
+from flankfilm.app.answers import GEARS, Answer, answers_of
 from flankfilm.coupling.mesh.loaded_teeth import POSITIONS
 from flankfilm.products import root_stress
 from flankfilm.report import stiffness_parts
@@ -52,6 +52,8 @@ class Curve:
         One for the mesh, or one for each pair; None where a pair does not touch.
     error : str
         How far values may be off.
+    of : tuple of str
+        Names of the lines, where they are not pairs of teeth.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Curve:
     unit: str
     lines: tuple[tuple[float | None, ...], ...]
     error: str
+    of: tuple[str, ...] = ()
 
 
 def answerable(scene: Scene) -> str:
@@ -196,8 +199,8 @@ def roots(engine: Engine, cycle: coupling.MeshCycle) -> tuple[Curve, tuple[Answe
     stresses = coupling.root_stresses(engine[PAIR], cycle.contact, engine[root_stress.FILLETS])
     largest = (stresses.stress.pinion, stresses.stress.wheel)
     lines = tuple(_lines(1e-6 * np.max(gear.tension_Pa, axis=1))[0] for gear in largest)
-    error = f"± {percent(stresses.error)}; pinion and wheel"
-    curve = Curve("root_tension", "maximum root tension, of all teeth", "MPa", lines, error)
+    error = f"± {percent(stresses.error)}"
+    curve = Curve("root_tension", "maximum root tension, of all teeth", "MPa", lines, error, GEARS)
     tolerance = engine.scene.tolerance
     headlines = [headline.against(tolerance) for headline in root_stress.headlines(stresses)]
     return curve, tuple(answers_of("Root stress, without film", headlines))

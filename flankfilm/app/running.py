@@ -15,6 +15,7 @@ from flankfilm.app.messages import Message, heard
 from flankfilm.app.studies import Growing
 from flankfilm.app.time_left import Clock
 from flankfilm.files.folder import PAGE
+from flankfilm.processes.exit_status import PART_FAILED
 from flankfilm.processes.worker_processes import module, python
 from flankfilm.studies.table import ROWS
 
@@ -22,6 +23,9 @@ __all__ = ["Run", "RunState"]
 
 LONGEST = 400
 """Lines of a log that are kept."""
+
+WHOLE = (0, PART_FAILED)
+"""Exit statuses with which a report is written; one that is there after others is of an earlier run."""
 
 END = 3.0
 """Seconds in which a process that is asked to end does so; it is killed then."""
@@ -46,7 +50,7 @@ class RunState:
     folder : str
         Of the results.
     report : bool
-        Whether they have a report.
+        Whether they have a report, of this run.
     left, stage_left : float or None
         Seconds left of the run and of its stage, from now; None where nothing foresees them.
     """
@@ -155,7 +159,7 @@ class Run:
             status,
             self._cancelled,
             str(self._folder),
-            status is not None and (self._folder / PAGE).is_file(),
+            status in WHOLE and (self._folder / PAGE).is_file(),
             *(left or (None, None)),
         )
 

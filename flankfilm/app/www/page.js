@@ -22,7 +22,7 @@
       <v-btn v-if="running" size="small" variant="outlined" @click="call('cancel')">Cancel</v-btn>
       <a v-if="run.report && !running" :href="report" target="_blank" rel="noopener">Open the report</a></div>
     <v-progress-linear :model-value="100 * run.done / run.total" :indeterminate="running && !run.done"
-      height="8" :aria-label="run.what"></v-progress-linear>
+      height="8" color="primary" :aria-label="run.what"></v-progress-linear>
     <details :open="run.status !== null && run.status !== 0"><summary>Log</summary><pre tabindex="0">{{ run.log.join("\\n") }}</pre></details>
     <flankfilm-rows v-if="table" :table="table" :unit="unit"></flankfilm-rows>
   </section>
@@ -79,7 +79,8 @@
             <input type="range" min="0" max="0.99" step="0.01" v-model.number="position" aria-label="position"></label>
         </div>
         <figure v-for="curve in curves" :key="curve.name">
-          <figcaption><b>{{ curve.label }}</b>{{ curve.unit ? " [" + unit(curve.unit) + "]" : "" }} <small>{{ curve.error }}</small></figcaption>
+          <figcaption><b>{{ curve.label }}</b>{{ curve.unit ? " [" + unit(curve.unit) + "]" : "" }} <small>{{ curve.error }}</small>
+            <small v-for="(name, k) in curve.of || []" class="ff-legend"><svg viewBox="0 0 40 10" aria-hidden="true"><path :class="'ff-line ff-line' + k" d="M0 5H40"></path></svg> {{ name }} </small></figcaption>
           <svg v-if="curve.chart" :viewBox="'0 0 ' + curve.chart.wide + ' ' + curve.chart.tall" role="img" :aria-label="curve.label">
             <g v-for="row in curve.chart.rows"><line class="ff-grid" :x1="curve.chart.left" :x2="curve.chart.right" :y1="row.y" :y2="row.y"></line>
               <text text-anchor="end" :x="curve.chart.left - 6" :y="row.y + 4">{{ row.text }}</text></g>

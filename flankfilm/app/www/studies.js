@@ -33,6 +33,6 @@ window.flankfilmRows = {
   methods: {
     // Six digits of a number that has more; the file holds all.
     brief(cell) { return cell === "" || isNaN(cell) || cell.length <= 9 ? cell : String(Number(Number(cell).toPrecision(6))); },
-    short(name) { return name.includes(".") ? name.split(".").slice(-2).join(".") : name; },
+    short(name) { return name.includes(".") ? name.split(".").slice(-3).join(".") : name; },
   },
 };
