@@ -65,6 +65,8 @@ from .rating.motion_factor import MotionFactor as MotionFactor
 from .rating.motion_factor import motion_factor as motion_factor
 from .rating.own_rating import OwnRating as OwnRating
 from .rating.own_rating import own_rating as own_rating
+from .rating.unequal_pitches import UnequalPitches as UnequalPitches
+from .rating.unequal_pitches import unequal_pitches as unequal_pitches
 from .speeds.bearing_sweep import BearingSweep as BearingSweep
 from .speeds.bearing_sweep import bearing_sweep as bearing_sweep
 from .speeds.drive_sweep import DriveSweep as DriveSweep

@@ -72,6 +72,8 @@ def variables(computed: Computed) -> Iterator[xr.Dataset]:
         for name in ("motion", "loaded"):
             if (part := getattr(own, name)) is not None:
                 yield of_record(f"rating_{name}", part)
+        if own.loaded is not None and own.loaded.worst_share is not None:
+            yield of_record("rating_worst_share", own.loaded.worst_share)
 
 
 def headlines(computed: Computed) -> Iterator[Headline]:

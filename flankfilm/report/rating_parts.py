@@ -106,7 +106,8 @@ def _notes(rating: Rating, own: OwnRating | None) -> Iterator[str]:
         yield said("rating_own")
     if own is not None and own.motion is not None and own.motion.greatest is not None:
         peak, place = read_figure(own.motion, "greatest"), read_figure(own.motion, "greatest_at")
-        yield said("rating_swept", greatest=number(float(peak.values)), speed=number(float(place.values), 5))
+        figures = {"greatest": number(float(peak.values)), "speed": number(float(place.values), 5)}
+        yield said("rating_swept", **figures, error=percent(own.motion.swept_error))
     if own is not None and own.root_ratio is not None:
         yield said("rating_ratio")
     for name, fault in (("ISO 6336-3", rating.bending_fault), ("Scuffing", rating.scuffing_fault)):

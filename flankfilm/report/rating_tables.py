@@ -61,7 +61,8 @@ def _of_motion(own: OwnRating | None) -> Ours:
         return "", "", "" if own is None else "none: no wanted motion"
     motion = own.motion
     pitch = f"f_pb = {number(1e6 * motion.deviation, 3)} µm"
-    how = f"settled motion at the speed with {pitch} in the excitation; {motion.even:.4f} without"
+    load = ", rounded by the load" if motion.rounded else " of unloaded teeth: an upper estimate"
+    how = f"settled motion at the speed with {pitch} in the excitation{load}; {motion.even:.4f} without"
     return factor(motion.K_v), f"± {percent(motion.error)}", how
 
 
@@ -82,6 +83,11 @@ def _of_share(own: OwnRating | None) -> Ours:
     if loaded.K_Halpha is None:
         return "", "", f"none: {loaded.no_share}"
     how = "largest share of a pair of teeth over the mesh cycle, whose contacts may reach beyond A to E"
+    if (worst := loaded.worst_share) is not None:
+        side = "shorter" if worst.early else "longer"
+        pitch, place = number(1e6 * loaded.deviation, 3), number(1e3 * worst.place, 2)
+        most = f"a pair carries {number(worst.ratio, 3)} times its share {place} mm after A"
+        how = f"square of the maximum pressure with f_pb = {pitch} µm over that without; {most}, pitch {side}"
     return factor(loaded.K_Halpha), f"± {percent(loaded.share_error)}", how
 
 

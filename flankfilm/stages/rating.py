@@ -15,7 +15,17 @@ from flankfilm.scene import Scene
 from flankfilm.scene.wants import BY_FINITE_ELEMENTS, FILMS, MESHED, MOTIONS
 from flankfilm.stages.drives import DRIVE, moving
 from flankfilm.stages.engine import Engine, stage
-from flankfilm.stages.mesh import DRY_CYCLE, PAIR, PLAN
+from flankfilm.stages.mesh import (
+    COMPLIANCE,
+    DRY_CYCLE,
+    FACE_GEARS,
+    PAIR,
+    PLAN,
+    TEETH,
+    TEETH_DECIDED,
+    loaded_teeth,
+    measured,
+)
 from flankfilm.stages.motion import SCALING
 
 LOADED = MESHED | BY_FINITE_ELEMENTS | {*FILMS}
@@ -32,13 +42,30 @@ def RATING(run: Engine) -> gears.rating.Rating:
 
 
 @stage(
+    "unequal pitches",
+    "loaded contact with base pitches that differ",
+    TEETH,
+    RATING,
+    COMPLIANCE,
+    FACE_GEARS,
+    DRY_CYCLE,
+    settings=TEETH_DECIDED,
+)
+def UNEQUAL_PITCHES(run: Engine) -> coupling.UnequalPitches:
+    """Mesh cycles without film, of base pitches that differ by the deviation of the rating, both ways."""
+    deviation = run[RATING].factors.effective.f_pb_eff
+    return coupling.unequal_pitches(loaded_teeth(run), measured(run, run[DRY_CYCLE]), deviation)
+
+
+@stage(
     "motion factor",
     "dynamic factor of the motion",
     "operating dynamics wants",
     RATING,
     SCALING,
     DRIVE,
-    kept="dynamics flankfilm gears",
+    UNEQUAL_PITCHES,
+    kept="gears meshes fem dynamics flankfilm",
 )
 def MOTION_FACTOR(run: Engine) -> coupling.MotionFactor:
     """Dynamic factor of the motion with the base pitch deviation of the rating; also over a wanted sweep."""
@@ -52,13 +79,14 @@ def MOTION_FACTOR(run: Engine) -> coupling.MotionFactor:
         by_frequency = asked.frequency is not None
         unit = motion.scales.speed(1.0) if by_frequency else math.pi / 30.0
         speeds = unit * values
-    return coupling.motion_factor(motion, pinion_speed(run.scene), deviation, speeds)
+    pitches = run[UNEQUAL_PITCHES] if has_contact(run) else None
+    return coupling.motion_factor(motion, pinion_speed(run.scene), deviation, speeds, pitches)
 
 
-@stage("loaded factors", "load factors of the loaded contact", "", DRY_CYCLE)
+@stage("loaded factors", "load factors of the loaded contact", "", DRY_CYCLE, UNEQUAL_PITCHES)
 def LOADED_FACTORS(run: Engine) -> coupling.LoadedFactors:
-    """Face-load and transverse load factors of the mesh cycle without film."""
-    return coupling.loaded_factors(run[DRY_CYCLE])
+    """Face-load and transverse load factors of the mesh cycles without film, with the base pitch deviation."""
+    return coupling.loaded_factors(run[DRY_CYCLE], run[UNEQUAL_PITCHES])
 
 
 def has_motion(scene: Scene) -> bool:

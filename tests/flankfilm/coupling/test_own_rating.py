@@ -20,7 +20,7 @@ from flankfilm.coupling import (
     own_rating,
     pair_oscillator,
 )
-from flankfilm.coupling.rating.motion_factor import pitch_errors
+from flankfilm.coupling.rating.pitch_excitation import pitch_errors
 from gears import Gear, GearPair
 from gears.rating import RatedSteel, RatingData, rate
 from tests.flankfilm.pictured import face, helical
