@@ -82,6 +82,11 @@ def rating_data(scene: Scene, pair: GearPair) -> RatingData:
     )
 
 
+def mean_roughness(data: RatingData) -> float:
+    """Ra of the flanks [m], the mean of both gears: that of scuffing, or Rz/6."""
+    return data.flank_roughness / PEAKS if data.scuffing is None else data.scuffing.roughness
+
+
 def _relief(pair: GearPair) -> float | None:
     """Tip relief of the gear that has less; None where one has none."""
     first, second = pair.pinion.tip_relief, pair.wheel.tip_relief

@@ -63,6 +63,8 @@ from .rating.loaded_factors import LoadedFactors as LoadedFactors
 from .rating.loaded_factors import loaded_factors as loaded_factors
 from .rating.motion_factor import MotionFactor as MotionFactor
 from .rating.motion_factor import motion_factor as motion_factor
+from .rating.own_contact import OwnContact as OwnContact
+from .rating.own_contact import own_contact as own_contact
 from .rating.own_rating import OwnRating as OwnRating
 from .rating.own_rating import own_rating as own_rating
 from .rating.unequal_pitches import UnequalPitches as UnequalPitches

@@ -22,7 +22,7 @@ from flankfilm.scene import Scene
 from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine, Stage, stage
 from flankfilm.stages.mesh import PAIR
-from flankfilm.stages.rating import LOADED_FACTORS, MOTION_FACTOR, RATING, own_factors
+from flankfilm.stages.rating import LOADED_FACTORS, MOTION_FACTOR, OWN_CONTACT, RATING, own_factors
 from gears.closed_form.record import STANDARD
 
 if TYPE_CHECKING:
@@ -39,6 +39,7 @@ PARTS = ("tolerances", "misalignment", "factors", "pitting", "bending", "scuffin
     RATING,
     MOTION_FACTOR,
     LOADED_FACTORS,
+    OWN_CONTACT,
     ROOT_STRESS,
 )
 def OWN_RATING(run: Engine) -> coupling.OwnRating | None:
@@ -69,7 +70,7 @@ def variables(computed: Computed) -> Iterator[xr.Dataset]:
     yield of_record("rating_run_in", rating.factors.effective)
     if own is not None:
         yield of_record("rating_own", own)
-        for name in ("motion", "loaded"):
+        for name in ("motion", "loaded", "flanks"):
             if (part := getattr(own, name)) is not None:
                 yield of_record(f"rating_{name}", part)
         if own.loaded is not None and own.loaded.worst_share is not None:

@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING
 
 from flankfilm.figures.reading import GEARS, Pictures, read_figure
 from flankfilm.report.page import Headline, Part, Table, pictures, said
-from flankfilm.report.rating_tables import deviations, load_factors, scuffing, spectrum, strength_factors
+from flankfilm.report.rating_tables import (
+    deviations,
+    flanks,
+    load_factors,
+    scuffing,
+    spectrum,
+    strength_factors,
+)
 from flankfilm.report.text import counted, number, percent
 from flankfilm.scene.sections.key import ZERO_CELSIUS
 
@@ -82,6 +89,8 @@ def section(rating: Rating, own: OwnRating | None, results: xr.Dataset) -> Part:
     tables = [_safeties(rating, own), load_factors(rating, own), strength_factors(rating), deviations(rating)]
     if (thermal := scuffing(rating)) is not None:
         tables.append(thermal)
+    if own is not None and own.flanks is not None:
+        tables.append(flanks(rating, own.flanks))
     if rating.spectrum is not None:
         tables.append(spectrum(rating.spectrum))
         paragraphs.append(_of_spectrum(rating))
@@ -108,6 +117,8 @@ def _notes(rating: Rating, own: OwnRating | None) -> Iterator[str]:
         peak, place = read_figure(own.motion, "greatest"), read_figure(own.motion, "greatest_at")
         figures = {"greatest": number(float(peak.values)), "speed": number(float(place.values), 5)}
         yield said("rating_swept", **figures, error=percent(own.motion.swept_error))
+    if own is not None and own.flanks is not None:
+        yield said("rating_flanks")
     if own is not None and own.root_ratio is not None:
         yield said("rating_ratio")
     for name, fault in (("ISO 6336-3", rating.bending_fault), ("Scuffing", rating.scuffing_fault)):

@@ -12,7 +12,7 @@ from flankfilm.report.text import number, percent
 from flankfilm.scene.sections.key import ZERO_CELSIUS
 
 if TYPE_CHECKING:
-    from flankfilm.coupling import OwnRating
+    from flankfilm.coupling import OwnContact, OwnRating
     from gears.rating import Rating, SpectrumRating
 
 GIVEN = "given"
@@ -97,6 +97,8 @@ def _of_both(own: OwnRating | None) -> Ours:
     how = "product of those of ours that there are, and of the standard's"
     if own.loaded.helical:
         how = "maximum line load on all lines of contact over the mean one, at the nominal torque"
+        if own.loaded.K_H_unequal is not None:
+            how += f"; {factor(own.loaded.K_H_unequal)} with f_pb at a corner of the face, in no safety"
     return factor(own.K_H), f"± {percent(own.K_H_error)}", how
 
 
@@ -183,6 +185,57 @@ def scuffing(rating: Rating) -> Table | None:
         *((name, f"{kelvin - ZERO_CELSIUS:.2f}") for name, kelvin in temperatures),
     )
     return Table(("scuffing, ISO/TR 13989-2", "value"), rows)
+
+
+def flanks(rating: Rating, own: OwnContact) -> Table:
+    """Temperature, friction and film of the flanks: by the scuffing method of the standard and by our own films."""
+    thermal = rating.scuffing
+    bulk = own.bulk_temperatures
+    ours = "" if bulk is None else " and ".join(dict.fromkeys(_celsius(kelvin) for kelvin in bulk))
+    film = None if own.least_film is None else 1e6 * own.least_film
+    rows: list[Row] = [
+        (
+            "bulk temperature [°C]",
+            _celsius(None if thermal is None else thermal.theta_M),
+            ours,
+            _off(own.bulk_error),
+        ),
+        (
+            "maximum flash temperature [K]",
+            "" if thermal is None or own.theta_B is None else f"{own.theta_B - thermal.theta_M:.2f}",
+            "" if own.flash is None else f"{own.flash:.2f}",
+            _off(own.flash_error),
+        ),
+        (
+            "maximum contact temperature theta_B [°C]",
+            _celsius(own.theta_B),
+            _celsius(own.contact_temperature),
+            _off(own.temperature_error),
+        ),
+        (
+            "mean coefficient of friction",
+            "" if thermal is None else factor(thermal.mu),
+            "" if own.friction is None else factor(own.friction),
+            _off(own.friction_error),
+        ),
+        ("minimum film [µm]", "left out", "" if film is None else f"{film:.3f}", _off(own.film_error)),
+        (
+            f"minimum film over Ra = {number(1e6 * own.roughness, 3)} µm",
+            "left out",
+            "" if own.film_ratio is None else f"{own.film_ratio:.3f}",
+            _off(own.film_error),
+        ),
+    ]
+    heads = ("flanks", "ISO/TR 13989", "our own films", "its numerical error")
+    return Table(heads, tuple(rows)).filled
+
+
+def _celsius(kelvin: float | None) -> str:
+    return "" if kelvin is None else f"{kelvin - ZERO_CELSIUS:.2f}"
+
+
+def _off(error: float | None) -> str:
+    return "" if error is None else f"± {percent(error)}"
 
 
 def spectrum(steps: SpectrumRating) -> Table:

@@ -10,15 +10,17 @@ import numpy as np
 import gears.rating
 from flankfilm import coupling
 from flankfilm.building.pair import pinion_speed, pinion_torque
-from flankfilm.building.rating import rating_data, under_rating
+from flankfilm.building.rating import mean_roughness, rating_data, under_rating
 from flankfilm.scene import Scene
 from flankfilm.scene.wants import BY_FINITE_ELEMENTS, FILMS, MESHED, MOTIONS
 from flankfilm.stages.drives import DRIVE, moving
 from flankfilm.stages.engine import Engine, stage
+from flankfilm.stages.losses import LOSSES
 from flankfilm.stages.mesh import (
     COMPLIANCE,
     DRY_CYCLE,
     FACE_GEARS,
+    FILM,
     PAIR,
     PLAN,
     TEETH,
@@ -30,6 +32,10 @@ from flankfilm.stages.motion import SCALING
 
 LOADED = MESHED | BY_FINITE_ELEMENTS | {*FILMS}
 """Wants whose runs have the loaded contact."""
+
+
+FLANKS = frozenset({"film", "losses"})
+"""Wants whose runs have our own films."""
 
 
 @stage("rating", "rating by ISO 6336", "operating rating lubricant roughness", PAIR)
@@ -89,6 +95,24 @@ def LOADED_FACTORS(run: Engine) -> coupling.LoadedFactors:
     return coupling.loaded_factors(run[DRY_CYCLE], run[UNEQUAL_PITCHES])
 
 
+@stage(
+    "own contact",
+    "temperature and film of the flanks beside the standard's",
+    "rating roughness wants",
+    RATING,
+    LOSSES,
+    FILM,
+)
+def OWN_CONTACT(run: Engine) -> coupling.OwnContact:
+    """Flanks by the films that are wanted."""
+    scene = run.scene
+    losses = run[LOSSES] if "losses" in scene.wants else None
+    film = run[FILM] if losses is None else None
+    return coupling.own_contact(
+        run[RATING], mean_roughness(rating_data(scene, run[PAIR])), losses=losses, film=film
+    )
+
+
 def has_motion(scene: Scene) -> bool:
     """Whether a run of a scene has a motion in physical units, of a driving pinion."""
     moves = (
@@ -116,4 +140,6 @@ def own_factors(run: Engine) -> dict[str, Any]:
         factors["motion"] = run[MOTION_FACTOR]
     if has_contact(run):
         factors["loaded"] = run[LOADED_FACTORS]
+    if not FLANKS.isdisjoint(run.scene.wants):
+        factors["flanks"] = run[OWN_CONTACT]
     return factors

@@ -64,6 +64,12 @@ class LoadedFactors:
     deviation: float = quantity(
         "m", "base pitch deviation of the loaded contact", shown="um", no_error=EXACT, default=0.0
     )
+    K_H_unequal: float | None = quantity(
+        "1",
+        "maximum line load over the mean one with the base pitch deviation, of lines of contact; in no safety",
+        default=None,
+        error="error",
+    )
     worst_share: WorstShare | None = part(
         "where the deviation makes a pair carry more; None without one", default=None
     )
@@ -82,9 +88,10 @@ def loaded_factors(cycle: MeshCycle, pitches: UnequalPitches | None = None) -> L
 
     the square of the ratio of maximum Hertz pressures, the larger one of both signs of the deviation.
 
-    Of a helical pair the maximum line load over the mean of all lines of contact is both together, the largest one with
-    and without the deviation; the nominal stress is of that mean (Z_eps = 1/sqrt(eps_alpha) from an overlap ratio of 1
-    on).
+    Of a helical pair the maximum line load over the mean of all lines of contact is both together; the nominal stress
+    is
+    of that mean (Z_eps = 1/sqrt(eps_alpha) from an overlap ratio of 1 on). With the deviation it stands beside: it is
+    that of a corner of the face where a line begins at A or ends at E, which end relief takes away.
 
     Parameters
     ----------
@@ -118,9 +125,18 @@ def loaded_factors(cycle: MeshCycle, pitches: UnequalPitches | None = None) -> L
         raise InputError.at("cycle", "", allowed, 'take model = "fem" with pairs = "coupled"')
     deviation = 0.0 if pitches is None else pitches.deviation
     if contact.lines is not None:
-        factor, error = _of_lines(cycle, pitches)
+        lines, unequal = contact.lines, None if pitches is None else _of_lines(pitches)
         return LoadedFactors(
-            None, None, factor, None, TOGETHER, TOGETHER, error, helical=True, deviation=deviation
+            None,
+            None,
+            lines.greatest_line_load_factor,
+            None,
+            TOGETHER,
+            TOGETHER,
+            lines.error,
+            helical=True,
+            deviation=deviation,
+            K_H_unequal=unequal,
         )
     share, share_error, no_share = None, None, SHARED
     if contact.pair.contact_ratio < 2.0:
@@ -139,11 +155,10 @@ def loaded_factors(cycle: MeshCycle, pitches: UnequalPitches | None = None) -> L
     return LoadedFactors(beta, share, product, share_error, "", no_share, error, **added)
 
 
-def _of_lines(cycle: MeshCycle, pitches: UnequalPitches | None) -> tuple[float, float]:
-    """Largest maximum line load over the mean one with and without the deviation, and its error."""
-    cycles = (cycle,) if pitches is None else (cycle, *pitches.unequal)
-    lines = [contact.lines for contact in (each.contact for each in cycles) if contact is not None]
-    return max((each.greatest_line_load_factor, each.error) for each in lines if each is not None)
+def _of_lines(pitches: UnequalPitches) -> float:
+    """Maximum line load over the mean one with the deviation, of both signs the larger."""
+    lines = [cycle.contact.lines for cycle in pitches.unequal if cycle.contact is not None]
+    return max(each.greatest_line_load_factor for each in lines if each is not None)
 
 
 def _of_shares(cycle: MeshCycle, pitches: UnequalPitches | None) -> tuple[float, float | None]:

@@ -12,6 +12,7 @@ from gears.closed_form.face_load import iso6336_face_load
 if TYPE_CHECKING:
     from flankfilm.coupling.rating.loaded_factors import LoadedFactors
     from flankfilm.coupling.rating.motion_factor import MotionFactor
+    from flankfilm.coupling.rating.own_contact import OwnContact
     from gears.rating import Rating
 
 STRENGTH = "not known: strengths and nominal stresses are the standard's"
@@ -49,6 +50,7 @@ class OwnRating:
         error="root_error",
     )
     root_error: float | None = quantity("1", "estimated relative error of the fillets' stress")
+    flanks: OwnContact | None = part("flanks by our own films; None without a wanted film", default=None)
 
     @property
     def error(self) -> float:
@@ -64,6 +66,7 @@ def own_rating(
     loaded: LoadedFactors | None = None,
     tensions: tuple[float, float] | None = None,
     tension_error: float | None = None,
+    flanks: OwnContact | None = None,
 ) -> OwnRating:
     """Put our own load factors into a rating in place of the standard's.
 
@@ -80,6 +83,8 @@ def own_rating(
         Maximum tension of the fillets of both gears at the nominal load [Pa]: compared, and in no safety, since the
         strengths belong to the standard's stresses.
     tension_error : float, optional
+    flanks : OwnContact, optional
+        Compared as well, and in no safety.
 
     Examples
     --------
@@ -122,6 +127,7 @@ def own_rating(
         loaded,
         root_ratio,
         None if root_ratio is None else tension_error,
+        flanks,
     )
 
 
