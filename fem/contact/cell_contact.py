@@ -137,8 +137,7 @@ class CellContact:
         """
         cells = face.cells
         apart, film = self._apart(face), self.films(face)
-        ahead, reach = np.repeat(self.sides.sign > 0.0, cells), np.repeat(self.sides.reach, cells, axis=-1)
-        levers = np.repeat(self.sides.sign * self.sides.tilted_lever_ratios, cells, axis=-1)
+        ahead, (reach, levers) = np.repeat(self.sides.sign > 0.0, cells), self.levers(face)
         start, laws = _flat(self.spread(face, near)), self.laws(face)
         shafts = self.shafts(face)
 
@@ -207,6 +206,12 @@ class CellContact:
             reached,
             responses,
         )
+
+    def levers(self, face: FaceSetting) -> tuple[Array, Array]:
+        """By how much D closes gaps of cells, below 0 where it opens them, and levers of forces (positions, n)."""
+        cells = face.cells
+        reach = np.repeat(self.sides.reach, cells, axis=-1)
+        return reach, np.repeat(self.sides.sign * self.sides.tilted_lever_ratios, cells, axis=-1)
 
     def shafts(self, face: FaceSetting) -> UnderShafts | None:
         """Shafts under the cells of a face; None where both are rigid."""
@@ -326,7 +331,7 @@ class CellContact:
         approach : (torques, pitches, positions) array
             D, with what shafts give way [m].
         """
-        loads, reach = _flat(forces), np.repeat(self.sides.reach, face.cells, axis=-1)
+        loads, (reach, _) = _flat(forces), self.levers(face)
         wanted, shafts = np.ones(loads.shape[:-1], dtype=bool), self.shafts(face)
         coupling = self._on_shafts(self.coupling(face), shafts)
         bends = coupling.applied(loads, wanted, np.zeros_like(loads))

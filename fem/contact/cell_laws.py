@@ -27,7 +27,7 @@ __all__ = [
     "FEW_CELLS",
     "WITHIN",
     "CellLaws",
-    "LineFilmLaw",
+    "LawOnLines",
     "PartialCells",
     "between_middles",
     "drops_within",
@@ -79,13 +79,13 @@ class CellLaws(JointLaw):
 
 
 @record
-class LineFilmLaw(JointLaw):
-    """Films on cells of lines of contact: (..., positions, lines cells).
+class LawOnLines(JointLaw):
+    """Law of cells of lines of contact, of films or flanks: (..., positions, lines cells).
 
     Attributes
     ----------
     whole : JointLaw
-        Films at the places of the cells, under forces of whole faces at their line loads.
+        At the places of the cells, under forces of whole faces at their line loads.
     faces : (positions, lines cells) array
         Force of a whole face at a cell's line load over that of the cell.
     """

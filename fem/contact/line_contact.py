@@ -16,7 +16,7 @@ import numpy as np
 from base import Array, Integers, record
 from fem.contact.cell_contact import CellContact, CellShare
 from fem.contact.cell_coupling import CellCoupling
-from fem.contact.cell_laws import WITHIN, LineFilmLaw, drops_within
+from fem.contact.cell_laws import WITHIN, LawOnLines, drops_within
 from fem.contact.cell_matrix import coupled_by, kept_unless_large
 from fem.elasticity.flamant import hertz_half_width
 from fem.influence.helix_ends import OF_ENDS, OFF_BY
@@ -24,7 +24,7 @@ from fem.laws.contact_candidates import SEEN_ALONG, line_gaps
 from fem.laws.local_law import FilmLaw, PairLaws
 from fem.pair.line_compliance import FeltLine, GearLines, gear_lines
 from fem.pair.line_shafts import PlacesOnLines, ShaftsUnderLines, shafts_under_lines
-from fem.pair.wide_contact import NARROW, shares_together
+from fem.pair.wide_contact import shared_by_width
 
 if TYPE_CHECKING:
     from fem.laws.line_candidates import ContactLines, LineCells
@@ -115,11 +115,14 @@ class LineContact(CellContact):
         }
 
     def laws(self, face: FaceSetting) -> JointLaw:
-        """Hertz's law of each cell."""
+        """Hertz's law of each cell; beside tip corners and at their edges that of their line loads in the section."""
         cells, cosine = self.lines.divided(face.cells), self.pair.helix.base_cosine
+        flanks, positions = self.sides.flanks[0], len(cells.z)
+        if self.lines.edges is not None and flanks.corner_laws is not None:
+            whole, _ = flanks.corner_laws.at(flanks.candidates.on_cells(cells, cosine), tooth_apart=True)
+            return LawOnLines(whole, cells.faces(self.pair.face_width, cosine).reshape(positions, -1))
         length = np.broadcast_to(cells.length[..., None], cells.z.shape) / cosine
-        law = self.bodies.hertz(cells.rho[0], cosine, length)
-        positions = len(cells.z)
+        law = self.bodies.hertz(np.clip(self.lines.places(cells), *self.setup.ends), cosine, length)
         return PairLaws(
             replace(
                 law,
@@ -127,6 +130,19 @@ class LineContact(CellContact):
                 per_log=np.reshape(law.per_log, (positions, -1)),
             )
         )
+
+    def levers(self, face: FaceSetting) -> tuple[Array, Array]:
+        """As of ``CellContact``: forces at edges of the pinion stand on the wheel's flank, which shortens its lever."""
+        reach, levers = super().levers(face)
+        if self.lines.edges is None:
+            return reach, levers
+        edge = self._edge_levers(self.lines.places(self.lines.divided(face.cells)))
+        return reach * edge.reshape(reach.shape), levers * edge.reshape(levers.shape)
+
+    def _edge_levers(self, place: Array) -> Array:
+        """Levers of forces about the pinion's axis over those on flanks, at places of the line of action."""
+        edges = self.lines.edges
+        return np.ones_like(place) if edges is None else edges.levers(place)
 
     def tilts(self, face: FaceSetting) -> Array:
         """Places z of cells, moved along their lines to the pitch point (positions, n) [m]."""
@@ -136,7 +152,8 @@ class LineContact(CellContact):
 
     def approach_and_tilt(self, face: FaceSetting, slopes: Array) -> Array:
         """Stiffness of the mesh between two bodies (..., 2, 2) of slopes of cells (2, ..., n), as of ``LineLoads``."""
-        moved = self.pair.helix.base_cosine * np.stack([slopes, self.tilts(face) * slopes])
+        reach, _ = self.levers(face)
+        moved = reach * np.stack([slopes, self.tilts(face) * slopes])
         matrix = np.moveaxis(moved.sum(axis=-1), (0, 1), (-2, -1))
         return np.asarray(0.5 * (matrix + np.swapaxes(matrix, -1, -2)))
 
@@ -149,7 +166,7 @@ class LineContact(CellContact):
 
     def _places(self, cells: LineCells) -> PlacesOnLines:
         """Middles of cells, line after line, and the gaps there without load."""
-        gaps, flat = self._gaps_at(cells.z, cells.rho), (len(cells.z), -1)
+        gaps, flat = self._gaps_at(cells.z, self.lines.places(cells)), (len(cells.z), -1)
         length = np.where(cells.used, cells.length[..., None], 0.0)
         return PlacesOnLines(
             cells.z.reshape(flat),
@@ -166,8 +183,11 @@ class LineContact(CellContact):
             return None
         cells, pair, positions = self.lines.divided(face.cells), self.pair, len(self.lines.middle)
         shape = (positions, -1)
-        return LineFilmLaw(
-            FilmLaw(oil.film, cells.film_places.reshape(shape)),
+        places, edges = cells.film_places, self.lines.edges
+        if edges is not None:  # which are dry
+            places = np.where(edges.beyond(self.lines.places(cells)), np.nan, places)
+        return LawOnLines(
+            FilmLaw(oil.film, places.reshape(shape)),
             cells.faces(pair.face_width, pair.helix.base_cosine).reshape(shape),
         )
 
@@ -188,7 +208,10 @@ class LineContact(CellContact):
     def by_width(
         self, face: FaceSetting, near: Array, share: Callable[[float, Integers], LoadShare]
     ) -> tuple[LoadShare, Array]:
-        """Share all torques: lines as narrow as usual serve all of them, wider ones get strips by powers of two."""
+        """Share all torques: lines as narrow as usual serve all of them, wider ones get strips by powers of two.
+
+        Still wider ones where short waves of load beside a tip corner are not definite.
+        """
         lines, unit = self.lines, self.pair.face_width / face.cells
         length = np.where(lines.touches, lines.length, 0.0).sum(axis=-1)
         load = (self.whole / length).reshape(len(self.whole), -1).mean(axis=-1)
@@ -196,15 +219,7 @@ class LineContact(CellContact):
         cosine = self.pair.helix.base_cosine
         radius = np.full_like(load, np.median(self.sides.radius[lines.touches]) / cosine)
         width = PEAK * hertz_half_width(load, radius, modulus)
-        level = np.ceil(np.log2(np.maximum(NARROW * width / unit, 1e-3)))
-        return self._by_strips(np.where(level > 0.0, 2.0**level / NARROW, 0.0), share)
-
-    def _by_strips(
-        self, strips: Array, share: Callable[[float, Integers], LoadShare]
-    ) -> tuple[LoadShare, Array]:
-        groups = [np.flatnonzero(strips == strip) for strip in np.unique(strips)]
-        shares = [share(float(strips[group[0]]), group) for group in groups]
-        return shares_together(shares, np.argsort(np.concatenate(groups))), strips
+        return shared_by_width(share, lambda load_share: np.zeros(len(load_share.forces)), unit, width)
 
     def line_loads(self, forces: Array) -> Array:
         """Line loads times the face width (..., lines, cells) [N] of forces on cells."""
@@ -250,23 +265,24 @@ class LineContact(CellContact):
         gaps = self._gaps_within(cells, np.array([-0.5, 0.0, 0.5])) @ np.array([1.0, 4.0, 1.0]) / 6.0
         nearest = self.sides.flanks[0].candidates.gap.min(axis=-1)
         apart = self.pair.helix.base_cosine * np.maximum(gaps - nearest[..., None, None], 0.0)
+        apart = apart * self._edge_levers(self.lines.places(cells))
         return np.where(cells.used, apart, np.inf).reshape(*apart.shape[:-2], -1)
 
     def _gaps_within(self, cells: LineCells, within: Array) -> Array:
         """Gaps in the section at places of every cell (pitches, positions, lines, cells, places) [m], -1/2 to 1/2."""
         along = cells.length[..., None, None] * within
-        rho1 = cells.rho[0][..., None] + self.lines.slope * along
-        rho = np.stack([rho1, self.lines.line_of_action - rho1])
+        place = self.lines.places(cells)[..., None] + self.lines.slope * along
         flat = (*cells.z.shape[:2], -1)
-        gaps = self._gaps_at((cells.z[..., None] + along).reshape(flat), rho.reshape(2, *flat))
-        return gaps.reshape(-1, *rho1.shape)
+        gaps = self._gaps_at((cells.z[..., None] + along).reshape(flat), place.reshape(flat))
+        return gaps.reshape(-1, *place.shape)
 
-    def _gaps_at(self, z: Array, rho: Array) -> Array:
+    def _gaps_at(self, z: Array, place: Array) -> Array:
         """Gaps in the section at places of each line, by its teeth (pitches, positions, lines, places) [m]."""
         candidates = self.sides.flanks[0].candidates
         teeth = candidates.teeth.reshape(2, -1, *z.shape[:2])
         rolling = self.setup.rolling_gap(self.lines.middle)
-        return line_gaps(self.setup, z, rho, teeth) + rolling[..., None]
+        gaps = line_gaps(self.setup, z, self.lines.rho(place), teeth) + rolling[..., None]
+        return gaps if self.lines.edges is None else gaps + self.lines.edge_gaps(place)
 
     def at(self, torque: int, pitch: int, position: int) -> Self:
         """The same at a single torque and position, with the teeth that meet there."""

@@ -57,11 +57,14 @@ class LoadedFlanks(FlanksInPlace):
     laws : PairLaws
     largest : (edges,) array
         Forces that the tip edges' laws cover [N].
+    corner_laws : CornerLaws or None
+        What cells of lines of contact have their laws from, beside tip corners.
     """
 
     matrix: Array
     laws: PairLaws
     largest: Array
+    corner_laws: CornerLaws | None = None
 
     def at(self, position: int) -> LoadedFlanks:
         """Flanks of a single position, but for their gaps."""
@@ -74,6 +77,7 @@ class LoadedFlanks(FlanksInPlace):
             self.matrix[row],
             self.laws.at(position),
             self.largest,
+            self.corner_laws,
         )
 
 
@@ -116,7 +120,14 @@ def loaded_flanks(
     else:  # between cells of the lines alone (``fem.contact.line_contact``)
         matrix = np.zeros((*rho1.shape, rho1.shape[-1]))
     return LoadedFlanks(
-        candidates, placed.lever_ratios, placed.oil, placed.tilted_lever_ratios, matrix, laws, largest
+        candidates,
+        placed.lever_ratios,
+        placed.oil,
+        placed.tilted_lever_ratios,
+        matrix,
+        laws,
+        largest,
+        corner_laws if candidates.lines is not None else None,
     )
 
 

@@ -35,6 +35,7 @@ __all__ = [
     "ContactMoves",
     "contact_moves",
     "contacts_move",
+    "left_out",
     "model_error",
     "moved_places",
 ]
@@ -200,6 +201,16 @@ def model_error(
 ) -> float:
     """Estimate what the model of the contacts leaves out, relative to the deflection, largest over the positions.
 
+    Arguments as of ``left_out``.
+    """
+    return float(np.max(left_out(moves, force, approach, moving, changed)))
+
+
+def left_out(
+    moves: ContactMoves, force: Array, approach: Array, moving: bool, changed: Array | float = 0.0
+) -> Array:
+    """Estimate what the model of the contacts leaves out, relative to the deflection (...).
+
     What Hencky's law would change, and what the width of contacts leaves out of Hertz's law, plus the square of what
     the moving contact changes to the first order; plus that itself where contacts stay, or what a resolved pressure
     takes from D by sliding, if that is more.
@@ -225,5 +236,4 @@ def model_error(
         np.sum(part * coefficient * force**2, axis=axes) / approach
         for coefficient in (moves.slide, moves.spread)
     )
-    whole = np.abs(law) + wide + change**2 + (0.0 if moving else np.maximum(change, slide))
-    return float(np.max(whole))
+    return np.asarray(np.abs(law) + wide + change**2 + (0.0 if moving else np.maximum(change, slide)))

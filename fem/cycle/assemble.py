@@ -15,6 +15,7 @@ from fem.contact.opposite_flanks import OppositeFlanks
 from fem.cycle.events import ContactProblem
 from fem.cycle.face_loads import face_loads
 from fem.cycle.fit_errors import fit_error
+from fem.cycle.line_edges import LoadedLines
 from fem.cycle.line_loads import line_loads
 from fem.cycle.model_error import LoadedContacts
 from fem.cycle.result import MeshCycle
@@ -107,7 +108,9 @@ def cycle_of(
         face=None if refusal else face_loads(setup, contact, number, bodies.plane),
         lines=None if refusal else line_loads(setup, contact, number, bodies.plane),
         loaded=None
-        if refusal or setup.helical
+        if refusal
+        else LoadedLines(setup, bodies, candidates, contact.cell_forces(number), approach, force)
+        if setup.helical
         else LoadedContacts(setup, bodies, candidates, on_faces, approach, force, behind),
         problem=None
         if refusal

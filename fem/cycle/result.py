@@ -24,6 +24,7 @@ from base.results import EXACT, ITSELF
 from fem.contact.opposite_flanks import OppositeFlanks
 from fem.cycle.events import ContactProblem, measured_less
 from fem.cycle.face_loads import FaceLoads
+from fem.cycle.line_edges import BeyondPath, LoadedLines
 from fem.cycle.line_loads import LineLoads
 from fem.cycle.model_error import LoadedContacts
 from fem.cycle.pair_figures import PairFigures
@@ -164,7 +165,7 @@ class MeshCycle(PairFigures, MeshFigures):
     bore_inertia: tuple[float, float] = quantity(
         "kg m2", 'inertia on the bores, for "body"', "gear", default=(0.0, 0.0), no_error=EXACT
     )
-    loaded: LoadedContacts | None = part(
+    loaded: LoadedContacts | LoadedLines | None = part(
         "what `model_error` is found from; None where the contact has no solution", default=None
     )
     problem: ContactProblem | None = part(
@@ -287,9 +288,20 @@ class MeshCycle(PairFigures, MeshFigures):
         """Estimated relative error by the model of the contacts, apart from `error`.
 
         Of transmission error and secant stiffness, against `reference`: large strain, second order, the width of
-        contacts in Hertz's law, and the motion of contacts that stay.
+        contacts in Hertz's law, and the motion of contacts that stay; of a helical pair, whose lines end with the path,
+        also all that contact of tip edges and corners beyond it changes.
         Of the tangent about twice that. Found when it is first asked for.
         """
+        if self.loaded is None:
+            return float("nan")
+        beyond = self.beyond_path_change
+        if beyond is None:
+            return self.flank_error
+        return self.flank_error + beyond.of_deflection(abs(self.force), self.secant_stiffness)
+
+    @property
+    def flank_error(self) -> float:
+        """The part of `model_error` by contacts on flanks, and on tip edges where these are in the model."""
         if self.loaded is None:
             return float("nan")
         error, held = self.loaded.model_error(), self.loaded.reference
@@ -297,6 +309,11 @@ class MeshCycle(PairFigures, MeshFigures):
             return error
         # of a smaller D the same error is a larger part
         return error * float(np.max(self.secant_stiffness / self.against(held).secant_stiffness))
+
+    @property
+    def beyond_path_change(self) -> BeyondPath | None:
+        """What contact beyond the path changes of a helical pair; None of spur pairs, whose model may have it."""
+        return self.loaded.beyond_path if isinstance(self.loaded, LoadedLines) else None
 
     @described("m", "position", shown="um", no_error=EXACT)
     def unloaded_transmission_error(self) -> Array:

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Booleans, Faults, Integers, record
-from fem.laws.line_candidates import ContactLines, contact_lines, line_offsets
+from fem.laws.line_candidates import ContactLines, LineCells, contact_lines, line_offsets
 from fem.laws.mesh_setup import Deviations, MeshSetup
 from fem.laws.relieved_flanks import gentle, touch
-from fem.laws.tip_contact import nearest_gap
-from fem.laws.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_gap
+from fem.laws.tip_edges import edges_at, edges_of_lines
 from fem.pair.face_setting import EVEN, FREE_ENDS, face_setting
 
 if TYPE_CHECKING:
@@ -26,6 +25,9 @@ __all__ = [
     "line_gaps",
     "unloaded_transmission_error",
 ]
+
+LINES_REACH = 0.4
+"""Base pitches beyond which lines of contact do not go on: farther ones need waves to more teeth than are solved."""
 
 REACHES = (0.6, 1.0)
 """Base pitches outside the path within which tip edges are looked for; the second if the first is not enough."""
@@ -107,6 +109,29 @@ class ContactCandidates:
             lines=None if self.lines is None else self.lines.at(rows),
         )
 
+    def on_cells(self, cells: LineCells, curvature: float) -> ContactCandidates:
+        """Cells of all lines of a helical pair as pairs of a section, one after the other (n_1, pairs cells).
+
+        Parameters
+        ----------
+        cells : LineCells
+        curvature : float
+            Of the flanks across the line, over that of the section: cos(beta_b).
+        """
+        lines = self.lines
+        assert lines is not None
+        shape, place = (len(self.place), -1), lines.places(cells)
+        edge = cells.used & (lines.edges.beyond(place) if lines.edges is not None else False)
+        return replace(
+            self,
+            place=place.reshape(shape),
+            rho=cells.rho.reshape(2, *shape),
+            touchable=cells.used.reshape(shape),
+            edge=edge.reshape(shape),
+            curvature=np.full(place.shape, curvature).reshape(shape),
+            lines=None,
+        )
+
     def corners(self) -> tuple[tuple[int, Booleans], ...]:
         """Which gear's tip edge touches where: the wheel's (1) before A, the pinion's (0) after E."""
         before = self.edge & (self.place < 0.5 * (self.place.min() + self.place.max()))
@@ -121,7 +146,7 @@ def contact_candidates(setup: MeshSetup, reach: float = REACHES[0]) -> ContactCa
     last = ceil(pair.contact_ratio)
     offset = np.arange(-1, last + 1) if setup.beyond_path else np.arange(last)
     if setup.helical:
-        return _lines(setup)
+        return _lines(setup, reach)
     stations = setup.stations
     position, within, turned = _standing(setup)
     place = pair.points.A + (within[:, None] + offset) * pitch
@@ -149,7 +174,7 @@ def contact_candidates(setup: MeshSetup, reach: float = REACHES[0]) -> ContactCa
     other_place = pair.points.A + setup.mirror * pitch - (place - pair.points.A)
     for corner, chosen in ((1, edge & (place < middle)), (0, edge & (place > middle))):
         if chosen.any():
-            at = _edges(setup, corner, place[chosen])
+            at = edges_at(setup, corner, place[chosen])
             rho[1 - corner][chosen], rho[corner][chosen] = at.touched_rho, setup.rounds[corner].rho
             lever[corner][chosen], lever[1 - corner][chosen] = at.lever, 1.0
             arm[corner][chosen], arm[1 - corner][chosen] = at.arm, at.touched_rho
@@ -205,15 +230,18 @@ def _standing(setup: MeshSetup) -> tuple[Array, Array, Integers]:
     return position, within, turned
 
 
-def _lines(setup: MeshSetup) -> ContactCandidates:
+def _lines(setup: MeshSetup, reach: float) -> ContactCandidates:
     """Candidates of a helical pair: lines of contact, each with its smallest gap."""
-    pair, offset = setup.pair, line_offsets(setup.pair)
+    pair, edges = setup.pair, None
+    if setup.beyond_path:
+        edges = edges_of_lines(setup, min(reach, LINES_REACH))
+    offset = line_offsets(pair, 0.0 if edges is None else float(edges.distance.max()))
     position, within, turned = _standing(setup)
     middle = pair.points.A + (within[:, None] + offset) * pair.base_pitch
-    lines = contact_lines(pair, setup.line_slope, setup.ends, middle)
+    lines = contact_lines(pair, setup.line_slope, setup.ends, middle, edges)
     touchable = lines.touches
     place = np.where(touchable, lines.place, 0.5 * (pair.points.A + pair.points.E))
-    rho = np.stack([place, pair.line_of_action - place])
+    rho = lines.rho(place)
     number = np.arange(setup.pitches)[:, None, None]
     if setup.stations is not None:
         number = setup.stations.pitch[:, None]
@@ -222,6 +250,7 @@ def _lines(setup: MeshSetup) -> ContactCandidates:
     teeth, other = setup.teeth(steps), setup.opposite
     cells = lines.divided(SEEN_ALONG)
     seen = line_gaps(setup, cells.z, cells.rho, teeth) + setup.rolling_gap(middle)[..., None]
+    seen = seen + lines.edge_gaps(lines.places(cells))
     gap = np.where(cells.used, seen, np.inf).min(axis=-1)
     numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
     none, tiles = np.zeros_like(touchable), (1, setup.pitches, 1)
@@ -278,40 +307,8 @@ def _reach_gap(setup: MeshSetup, reach: float) -> float:
     """Smaller gap of the two contacts at the ends of the reach; farther out gaps are larger."""
     start, end = setup.ends
     apart = reach * setup.pair.base_pitch
-    before, after = _edges(setup, 1, np.array([start - apart])), _edges(setup, 0, np.array([end + apart]))
+    before, after = edges_at(setup, 1, np.array([start - apart])), edges_at(setup, 0, np.array([end + apart]))
     return float(min(before.gap[0], after.gap[0]))
-
-
-@record
-class _Edges:
-    """Contacts of one gear's tip: where the other flank is touched; lever, arm and leaning of the force, gap."""
-
-    touched_rho: Array
-    lever: Array
-    arm: Array
-    leaning: Array
-    gap: Array
-    chamfered: Booleans
-
-
-def _edges(setup: MeshSetup, corner: int, place: Array) -> _Edges:
-    pair, rounding = setup.pair, setup.rounds[corner]
-    radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
-    touched = place if corner == 1 else pair.line_of_action - place
-    _, touched_rho = unloaded_gap(radii, pair.line_of_action, touched, np.array([rounding.rho]))
-    place_of_tip = touched_rho[:, 0]
-    lever = lever_ratio(pair, place_of_tip, place, corner)
-    arm = np.sqrt(np.maximum(radii[1] ** 2 * (1 - lever**2) + rounding.rho**2, 0.0))
-    angle = opening(radii, pair.line_of_action, touched, touched_rho, np.array([rounding.rho]))[:, 0]
-    plain = nearest_gap(pair, corner, place, rounding)
-    removed = setup.removed
-    gap = plain if removed is None else nearest_gap(pair, corner, place, rounding, removed)
-    # turns of the pinion close the gap by the pinion's lever: r_b1 for its own flank
-    gap = gap / lever if corner == 0 else gap
-    reaches = (place_of_tip <= setup.rounds[1 - corner].rho) & (lever > 0)
-    beyond = chamfer_gap(pair, corner, touched, rounding.start)
-    chamfered = np.isfinite(beyond) & (beyond < plain)
-    return _Edges(place_of_tip, lever, arm, angle, np.where(reaches, gap, np.inf), chamfered)
 
 
 def unloaded_transmission_error(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from base import Array
+from base import Array, Booleans
 from fem.influence.memo import Memo
 from fem.laws.contact_candidates import REACHES
 from fem.laws.corner_law import CornerSurface
@@ -46,10 +46,13 @@ class CornerLaws:
             self._other = CornerLaws(self.setup, bodies)
         return self._other
 
-    def at(self, candidates: ContactCandidates, moving: bool = False) -> tuple[PairLaws, Array]:
+    def at(
+        self, candidates: ContactCandidates, moving: bool = False, tooth_apart: bool = False
+    ) -> tuple[PairLaws, Array]:
         """Laws of all contacts, and the largest forces that they cover at tip edges [N].
 
-        What strips slide is given back to contacts that are ``moving`` (``fem.laws.cut_off``).
+        What strips slide is given back to contacts that are ``moving`` (``fem.laws.cut_off``). Laws of tip edges hold
+        their tooth, unless that is ``tooth_apart``: on lines of contact the bodies' compliance has it.
         """
         edge, pair, bodies = candidates.edge, self.setup.pair, self.bodies
         middle = 0.5 * float(pair.points.A + pair.points.E)
@@ -58,7 +61,7 @@ class CornerLaws:
             np.full(edge.shape, np.inf),
             [],
         )
-        for corner, edges in candidates.corners() if self.setup.beyond_path else ():
+        for corner, edges in self._corners(candidates):
             gear, line = (bodies.pinion, bodies.wheel)[corner], pair.line_of_action
             end = self.setup.rounds[corner].rho
             nominal = candidates.place if corner == 0 else line - candidates.place
@@ -66,7 +69,8 @@ class CornerLaws:
             near = candidates.touchable & ~edge & (nominal - end > inside.first)
             rounded = up_to(candidates.rho[corner][near], gear.rho_range[1], pair.module)[0]
             more = gear.own(rounded) - gear.own(candidates.rho[corner][near])
-            held = gear.own(up_to(nominal[edges], gear.rho_range[1], pair.module)[0]) - gear.hub_windup
+            apart = gear.own(candidates.rho[corner][edges]) if tooth_apart else gear.hub_windup
+            held = gear.own(up_to(nominal[edges], gear.rho_range[1], pair.module)[0]) - apart
             corners += [
                 inside.held(near, nominal[near] - end, more / pair.face_width),
                 outside.held(edges, nominal[edges] - end, held / pair.face_width),
@@ -74,6 +78,10 @@ class CornerLaws:
             largest[edges] = outside.covered(nominal[edges] - end)
             place[edges] = end if corner == 0 else line - end
         return PairLaws(bodies.hertz(place, candidates.curvature), tuple(corners)), largest[edge]
+
+    def _corners(self, candidates: ContactCandidates) -> tuple[tuple[int, Booleans], ...]:
+        """Tip edges in the model; lines of contact have theirs by cells (``ContactCandidates.on_cells``)."""
+        return candidates.corners() if self.setup.beyond_path and candidates.lines is None else ()
 
     @cached_property
     def slid(self) -> tuple[float, float]:

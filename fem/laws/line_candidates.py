@@ -17,6 +17,7 @@ import numpy as np
 from base import Array, Booleans, Integers, record
 
 if TYPE_CHECKING:
+    from fem.laws.edges_of_lines import EdgesOfLines
     from gears import GearPair
 
 __all__ = ["ContactLines", "LineCells", "contact_lines", "line_offsets"]
@@ -117,6 +118,8 @@ class ContactLines:
         rho1 + rho2 [m].
     face_width : float
         [m]
+    edges : EdgesOfLines or None
+        Tip edges beyond the path, up to which lines go on; None where they end at its ends.
     """
 
     start: Array
@@ -125,6 +128,7 @@ class ContactLines:
     slope: float
     line_of_action: float
     face_width: float
+    edges: EdgesOfLines | None = None
 
     def at(self, rows: slice) -> ContactLines:
         """Lines at some positions."""
@@ -152,21 +156,47 @@ class ContactLines:
         each = length / np.maximum(count, 1)
         number = np.arange(cells)
         z = np.where(touches, self.start, 0.0)[..., None] + each[..., None] * (number + 0.5)
-        rho1 = self.middle[..., None] + self.slope * z
         used = number < count[..., None]
-        # cells that there are not have places, which are never used
-        rho1 = np.where(used, rho1, np.where(touches, self.place, 0.5 * self.line_of_action)[..., None])
         felt = np.where(count == 1, np.maximum(each, SHORT_CELL * self.face_width / cells), each)
-        return LineCells(z, np.stack([rho1, self.line_of_action - rho1]), each, felt, used)
+        return LineCells(z, self.rho(self._places(z, used)), each, felt, used)
+
+    def places(self, cells: LineCells) -> Array:
+        """rho1 of the unlimited involutes at cells [m], beyond the path at tip edges (positions, pairs, cells)."""
+        return self._places(cells.z, cells.used)
+
+    def _places(self, z: Array, used: Booleans) -> Array:
+        rho1 = self.middle[..., None] + self.slope * z
+        # cells that there are not have places, which are never used
+        other = np.where(self.touches, self.place, 0.5 * self.line_of_action)
+        return np.where(used, rho1, other[..., None])
+
+    def rho(self, place: Array) -> Array:
+        """Curvature radii where pinion and wheel touch at places of the line of action (2, ...) [m]."""
+        if self.edges is None:
+            return np.stack([place, self.line_of_action - place])
+        return self.edges.rho(place, self.line_of_action)
+
+    def edge_gaps(self, place: Array) -> Array:
+        """Gaps of tip edges at places of the line of action [m]; 0 on the path."""
+        return np.zeros_like(place) if self.edges is None else self.edges.gaps(place)
 
 
-def line_offsets(pair: GearPair) -> Integers:
-    """Base pitches by which each line of a pair is ahead of the one that entered last at mid-face."""
-    beyond = 0.5 * pair.overlap_ratio
+def line_offsets(pair: GearPair, farther: float = 0.0) -> Integers:
+    """Base pitches by which each line of a pair is ahead of the one that entered last at mid-face.
+
+    Parameters
+    ----------
+    pair : GearPair
+    farther : float
+        Beyond the path, as far as lines may touch there [m].
+    """
+    beyond = 0.5 * pair.overlap_ratio + farther / pair.base_pitch
     return np.arange(-ceil(beyond), ceil(pair.contact_ratio + beyond))
 
 
-def contact_lines(pair: GearPair, slope: float, ends: tuple[float, float], middle: Array) -> ContactLines:
+def contact_lines(
+    pair: GearPair, slope: float, ends: tuple[float, float], middle: Array, edges: EdgesOfLines | None = None
+) -> ContactLines:
     """Lines of contact whose middles stand at some places.
 
     Parameters
@@ -179,8 +209,10 @@ def contact_lines(pair: GearPair, slope: float, ends: tuple[float, float], middl
         rho1 at which contact starts and ends [m].
     middle : (n, pairs) array
         rho1 of each line at mid-face [m].
+    edges : EdgesOfLines, optional
+        Tip edges beyond the path, up to which lines go on.
     """
-    (start, end), half = ends, 0.5 * pair.face_width
+    (start, end), half = ends if edges is None else edges.reached, 0.5 * pair.face_width
     along = np.sort(np.stack([(start - middle) / slope, (end - middle) / slope]), axis=0)
     first, last = np.clip(along, -half, half)
-    return ContactLines(first, last, middle, slope, pair.line_of_action, pair.face_width)
+    return ContactLines(first, last, middle, slope, pair.line_of_action, pair.face_width, edges)

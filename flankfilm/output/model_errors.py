@@ -13,6 +13,13 @@ from typing import Any
 
 import numpy as np
 
+from flankfilm.output.line_model_errors import (
+    deflection_of_lines,
+    mean_of_lines,
+    over_mean_of_lines,
+    range_of_lines,
+)
+
 __all__ = ["MODEL_ERRORS", "ModelError", "entry", "first_harmonic"]
 
 DISC, WEB = 0.021, 0.057
@@ -89,9 +96,7 @@ def _teeth(contact: Any) -> float:
 def _contact(cycle: Any) -> Any:
     """Loaded contact of a mesh cycle by finite elements of coupled pairs; None of other models."""
     contact = getattr(cycle, "contact", cycle)
-    if contact is None or not hasattr(contact, "beyond_path"):
-        return None
-    return contact if contact.lines is None else None
+    return contact if hasattr(contact, "beyond_path") else None
 
 
 def _stiffness(law: float) -> Callable[[Any], float | None]:
@@ -99,7 +104,11 @@ def _stiffness(law: float) -> Callable[[Any], float | None]:
 
     def of(cycle: Any) -> float | None:
         contact = _contact(cycle)
-        return None if contact is None else law * contact.model_error + _plane(contact) + _teeth(contact)
+        if contact is None:
+            return None
+        if contact.lines is not None:
+            return mean_of_lines(contact, law) + _teeth(contact)
+        return float(law * contact.model_error + _plane(contact) + _teeth(contact))
 
     return of
 
@@ -109,12 +118,17 @@ def _deflection(cycle: Any) -> float | None:
     contact = _contact(cycle)
     if contact is None:
         return None
+    if contact.lines is not None:
+        return 0.5 * deflection_of_lines(contact)
     return float(contact.model_error * abs(contact.force) / np.min(cycle.secant_stiffness))
 
 
 def _range(cycle: Any) -> float | None:
     """Of the peak-to-peak transmission error: the law's part at one position, not at another; the plane's at all."""
-    moved, whole = _deflection(cycle), cycle.transmission_error_range
+    contact, whole = _contact(cycle), cycle.transmission_error_range
+    if contact is not None and contact.lines is not None:
+        return range_of_lines(contact, float(whole)) if whole else None
+    moved = _deflection(cycle)
     return None if moved is None or not whole else moved / whole + _plane(_contact(cycle))
 
 
@@ -123,6 +137,8 @@ def _over_mean(law: float) -> Callable[[Any], float | None]:
 
     def of(cycle: Any) -> float | None:
         contact = _contact(cycle)
+        if contact is not None and contact.lines is not None:
+            return over_mean_of_lines(contact, law)
         return None if contact is None else law * contact.model_error
 
     return of

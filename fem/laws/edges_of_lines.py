@@ -1,0 +1,91 @@
+"""Tip edges of a helical pair beyond the path, which lines of contact reach under load.
+
+A line of contact leaves the path where undeformed involutes end. Beyond that, in each section, a tip edge stands before
+the other flank as that of a spur pair does, at the place of the line there: tables over the distance from the path.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from base import Array, Booleans, record
+
+__all__ = ["EdgesOfLines"]
+
+
+@record
+class EdgesOfLines:
+    """Tip edges of a helical pair beyond the path: of the wheel before A first, then of the pinion after E.
+
+    Attributes
+    ----------
+    ends : (float, float)
+        rho1 at which contact of the involutes starts and ends [m].
+    distance : (2, k) array
+        Beyond either end [m], from 0 on.
+    gap : (2, k) array
+        By which a turn closes the gap there, less what both flanks lack at the places that touch [m].
+    touched : (2, k) array
+        Curvature radii of the flank that is touched: of the pinion before A, of the wheel after E [m].
+    lever : (2, k) array
+        Of the force about the pinion's axis, over its base radius.
+    """
+
+    ends: tuple[float, float]
+    distance: Array
+    gap: Array
+    touched: Array
+    lever: Array
+
+    @property
+    def reached(self) -> tuple[float, float]:
+        """rho1 up to which there are edges [m]."""
+        return self.ends[0] - float(self.distance[0, -1]), self.ends[1] + float(self.distance[1, -1])
+
+    def closed_by(self, deflection: float) -> float:
+        """How far beyond the path a turn closes the gaps of flanks that lack nothing [m]."""
+        pairs = zip(self.gap, self.distance, strict=True)
+        return max(float(np.interp(deflection, gap, distance)) for gap, distance in pairs)
+
+    def beyond(self, place: Array) -> Booleans:
+        """Which places are beyond the path; ``place`` as of ``rho``."""
+        return np.asarray((place < self.ends[0]) | (place > self.ends[1]))
+
+    def rho(self, place: Array, line_of_action: float) -> Array:
+        """Curvature radii of pinion and wheel where they touch (2, ...) [m].
+
+        Parameters
+        ----------
+        place : (...) array
+            rho1 of the unlimited involutes [m].
+        line_of_action : float
+            rho1 + rho2 on the line of action [m].
+        """
+        start, end = self.ends
+        before, after = (
+            np.interp(away, distance, touched)
+            for away, distance, touched in zip(self._away(place), self.distance, self.touched, strict=True)
+        )
+        first = np.where(place < start, before, np.minimum(place, end))
+        second = np.where(place > end, after, line_of_action - np.maximum(place, start))
+        return np.stack([first, second])
+
+    def gaps(self, place: Array) -> Array:
+        """Gaps beyond what the flanks lack (...) [m], 0 on the path; ``place`` as of ``rho``."""
+        before, after = (
+            np.where(away > 0.0, np.interp(away, distance, gap), 0.0)
+            for away, distance, gap in zip(self._away(place), self.distance, self.gap, strict=True)
+        )
+        return np.asarray(before + after)
+
+    def levers(self, place: Array) -> Array:
+        """Levers about the pinion's axis over its base radius (...), 1 on the path; ``place`` as of ``rho``."""
+        before, after = (
+            np.interp(away, distance, lever)
+            for away, distance, lever in zip(self._away(place), self.distance, self.lever, strict=True)
+        )
+        return np.asarray(before * after)
+
+    def _away(self, place: Array) -> tuple[Array, Array]:
+        start, end = self.ends
+        return start - place, place - end

@@ -1,0 +1,90 @@
+"""Contacts of tip edges beyond the path, in a section: where, with which gap and lever; tables for lines of contact."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from base import Array, Booleans, record
+from fem.laws.edges_of_lines import EdgesOfLines
+from fem.laws.tip_contact import nearest_gap
+from fem.laws.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_gap
+
+if TYPE_CHECKING:
+    from fem.laws.mesh_setup import MeshSetup
+
+__all__ = ["EdgesAt", "edges_at", "edges_of_lines"]
+
+STEPS = 256
+"""Steps of the tables beyond either end: gaps grow as squares, so that straight lines err by 4e-6 of the last one."""
+
+
+@record
+class EdgesAt:
+    """Contacts of one gear's tip: where the other flank is touched; lever, arm and leaning of the force, gap."""
+
+    touched_rho: Array
+    lever: Array
+    arm: Array
+    leaning: Array
+    gap: Array
+    chamfered: Booleans
+
+
+def edges_at(setup: MeshSetup, corner: int, place: Array) -> EdgesAt:
+    """Contacts of a gear's tip edge, without load.
+
+    Parameters
+    ----------
+    setup : MeshSetup
+    corner : {0, 1}
+        The gear with the edge: the wheel (1) before A, the pinion (0) after E.
+    place : (n,) array
+        rho1 of the unlimited involutes [m].
+    """
+    pair, rounding = setup.pair, setup.rounds[corner]
+    radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
+    touched = place if corner == 1 else pair.line_of_action - place
+    _, touched_rho = unloaded_gap(radii, pair.line_of_action, touched, np.array([rounding.rho]))
+    place_of_tip = touched_rho[:, 0]
+    lever = lever_ratio(pair, place_of_tip, place, corner)
+    arm = np.sqrt(np.maximum(radii[1] ** 2 * (1 - lever**2) + rounding.rho**2, 0.0))
+    angle = opening(radii, pair.line_of_action, touched, touched_rho, np.array([rounding.rho]))[:, 0]
+    plain = nearest_gap(pair, corner, place, rounding)
+    removed = setup.removed
+    gap = plain if removed is None else nearest_gap(pair, corner, place, rounding, removed)
+    # turns of the pinion close the gap by the pinion's lever: r_b1 for its own flank
+    gap = gap / lever if corner == 0 else gap
+    reaches = (place_of_tip <= setup.rounds[1 - corner].rho) & (lever > 0)
+    beyond = chamfer_gap(pair, corner, touched, rounding.start)
+    chamfered = np.isfinite(beyond) & (beyond < plain)
+    return EdgesAt(place_of_tip, lever, arm, angle, np.where(reaches, gap, np.inf), chamfered)
+
+
+def edges_of_lines(setup: MeshSetup, reach: float) -> EdgesOfLines:
+    """Tip edges of a helical pair as far beyond the path as lines are looked for.
+
+    Parameters
+    ----------
+    setup : MeshSetup
+        Of a helical pair with sharp tips.
+    reach : float
+        Base pitches.
+    """
+    pair, (start, end) = setup.pair, setup.ends
+    away = np.linspace(0.0, reach * pair.base_pitch, STEPS + 1)
+    tables = []
+    for corner, place in ((1, start - away), (0, end + away)):
+        at = edges_at(setup, corner, place)
+        # the flank of the pinion itself is touched before A
+        gap, lever = at.gap, at.lever if corner == 0 else np.ones_like(away)
+        if setup.removed is not None:
+            gap = gap - setup.removed[corner](np.array([setup.rounds[corner].rho]))
+            gap = gap - setup.removed[1 - corner](at.touched_rho)
+        # where the tip passes over the other one, nothing is touched
+        last = int(np.argmin(np.append(np.isfinite(gap), False))) - 1
+        known, number = np.linspace(0.0, last, STEPS + 1), np.arange(STEPS + 1.0)
+        columns = away, np.where(np.isfinite(gap), gap, 0.0), at.touched_rho, lever
+        tables.append([np.interp(known, number, values) for values in columns])
+    return EdgesOfLines(setup.ends, *(np.stack(values) for values in zip(*tables, strict=True)))

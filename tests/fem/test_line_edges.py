@@ -1,0 +1,127 @@
+"""Contact of helical pairs beyond the path: tip edges, corners of tip and end face, against sections and limits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+
+from base import Array
+from fem import MeshCycle, PairCompliance, compliance, mesh_cycle
+from fem.laws.contact_candidates import contact_candidates
+from fem.laws.mesh_setup import MeshSetup
+from fem.laws.tip_edges import edges_at, edges_of_lines
+from gears import Gear, GearPair, TipRelief
+
+SMALL = GearPair(Gear(18), Gear(23), module=1e-3, face_width=5e-3, helix_angle=radians(18.0))
+SETUP = MeshSetup(SMALL, 5, beyond_path=True)
+
+
+def test_lines_go_on_beyond_the_path_as_far_as_tip_edges_are_looked_for():
+    """At each end by the same rho, clipped by the face; corners of tip and end face touch before any line does."""
+    held, further = (
+        contact_candidates(replace(SETUP, beyond_path=False)).lines,
+        contact_candidates(SETUP, 0.1).lines,
+    )
+    assert held is not None
+    assert further is not None
+    assert further.edges is not None
+    away, half = 0.1 * SMALL.base_pitch / SMALL.helix.base_tangent, 0.5 * SMALL.face_width
+    both = held.touches
+    columns = [int(np.argmin(np.abs(further.middle[0] - middle))) for middle in held.middle[0]]
+    start, stop = further.start[:, columns], further.stop[:, columns]
+    assert start[both] == pytest.approx(np.maximum(held.start - away, -half)[both], abs=1e-12)
+    assert stop[both] == pytest.approx(np.minimum(held.stop + away, half)[both], abs=1e-12)
+    assert further.touches.sum() >= both.sum()
+    places = further.places(further.divided(40))
+    assert places.min() >= SMALL.points.A - 0.1 * SMALL.base_pitch - 1e-12
+    assert places.max() <= SMALL.points.E + 0.1 * SMALL.base_pitch + 1e-12
+
+
+def test_tables_of_edges_are_the_edges_of_the_section():
+    """Gap, touched radius and lever at places between those of the tables; on the path nothing changes."""
+    edges, pitch = edges_of_lines(SETUP, 0.3), SMALL.base_pitch
+    away = pitch * np.array([0.0, 0.0123, 0.0777, 0.211, 0.3])
+    for corner, place in ((1, SMALL.points.A - away), (0, SMALL.points.E + away)):
+        at = edges_at(SETUP, corner, place)
+        largest = at.gap.max()
+        assert edges.gaps(place) == pytest.approx(at.gap, abs=1e-5 * largest)
+        rho = edges.rho(place, SMALL.line_of_action)
+        assert rho[1 - corner] == pytest.approx(at.touched_rho, abs=2e-5 * SMALL.module)
+        tip = SMALL.points.E if corner == 0 else SMALL.line_of_action - SMALL.points.A
+        assert rho[corner] == pytest.approx(tip, rel=1e-12)
+        assert edges.levers(place) == pytest.approx(at.lever if corner == 0 else 1.0, rel=1e-6)
+        assert edges.closed_by(0.5 * largest) < away.max()
+    inside = np.linspace(SMALL.points.A, SMALL.points.E, 7)
+    assert not edges.gaps(inside).any()
+    assert edges.levers(inside) == pytest.approx(1.0, abs=0.0)
+    assert edges.rho(inside, SMALL.line_of_action)[0] == pytest.approx(inside, abs=0.0)
+    assert not edges.beyond(inside).any()
+
+
+@pytest.fixture(scope="module")
+def bodies() -> PairCompliance:
+    return compliance(SMALL, tolerance=0.02)
+
+
+def _of(bodies: PairCompliance, torque: float) -> MeshCycle:
+    return mesh_cycle(bodies.pair, torque, 6, bodies, cells=24)
+
+
+def _relative(cycle: MeshCycle) -> Array:
+    beyond = cycle.beyond_path_change
+    assert beyond is not None
+    return np.asarray(beyond.deflection * cycle.secant_stiffness / cycle.force)
+
+
+@pytest.mark.slow
+def test_more_load_reaches_farther_and_no_load_nowhere(bodies: PairCompliance) -> None:
+    cycles = [_of(bodies, torque) for torque in (1e-4, 0.5, 2.0, 8.0, 32.0)]
+    changes = [float(_relative(cycle).max()) for cycle in cycles]
+    print(changes, [cycle.model_error for cycle in cycles])
+    assert changes[0] < 1e-4
+    assert np.all(np.diff(changes) > 0.0)
+    assert np.all(np.diff([cycle.model_error for cycle in cycles]) > 0.0)
+    beyond = cycles[-1].beyond_path_change
+    assert beyond is not None
+    assert 0.0 < beyond.share.mean() < 0.3
+    for cycle in cycles:
+        assert cycle.model_error == pytest.approx(cycle.flank_error + _relative(cycle).max(), rel=1e-12)
+
+
+@pytest.mark.slow
+def test_long_tip_relief_leaves_nothing_beyond_the_path(bodies: PairCompliance) -> None:
+    """Both tips relieved by more than the deflection: no edge touches, and the model error is that of flanks."""
+    relief = TipRelief(amount=30e-6, length=0.6e-3)
+    pinion, wheel = (replace(gear, tip_relief=relief) for gear in (SMALL.pinion, SMALL.wheel))
+    relieved = replace(SMALL, pinion=pinion, wheel=wheel)
+    cycle = _of(replace(bodies, pair=relieved), 8.0)
+    beyond = cycle.beyond_path_change
+    assert beyond is not None
+    assert cycle.transmission_error.max() < 30e-6
+    assert not beyond.share.any()
+    assert _relative(cycle).max() < 2e-3  # by other cells alone
+    assert _relative(_of(bodies, 8.0)).max() > 1e-2
+
+
+@pytest.mark.slow
+@pytest.mark.long
+@pytest.mark.parametrize("angle", [1e-6, 1e-3])
+def test_a_small_helix_has_what_tip_edges_of_the_spur_pair_change(angle: float) -> None:
+    """Position by position, and the errors of flanks are those of the spur pair with cells.
+
+    Left apart are the lean of forces at edges and the last modules of the face, where a helix solves free ends anew.
+    """
+    spur = replace(SMALL, helix_angle=0.0)
+    known, helical = compliance(spur, tolerance=0.02), replace(SMALL, helix_angle=radians(angle))
+    held, free = (mesh_cycle(spur, 8.0, 12, known, beyond_path=edges, cells=24) for edges in (False, True))
+    cycle = mesh_cycle(helical, 8.0, 12, compliance(helical, tolerance=0.02), cells=24)
+    beyond = cycle.beyond_path_change
+    assert beyond is not None
+    change = held.transmission_error - free.transmission_error
+    print(np.c_[change, beyond.deflection] * 1e6, held.model_error, cycle.flank_error)
+    assert change.max() > 0.1 * held.transmission_error.max()
+    assert beyond.deflection == pytest.approx(change, rel=0.03, abs=2e-3 * held.transmission_error.max())
+    assert cycle.flank_error == pytest.approx(held.model_error, rel=0.2)
