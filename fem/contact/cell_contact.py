@@ -208,7 +208,10 @@ class CellContact:
         )
 
     def levers(self, face: FaceSetting) -> tuple[Array, Array]:
-        """By how much D closes gaps of cells, below 0 where it opens them, and levers of forces (positions, n)."""
+        """By how much D closes gaps of cells, below 0 where it opens them, and levers of forces (positions, n).
+
+        Friction tilts the forces.
+        """
         cells = face.cells
         reach = np.repeat(self.sides.reach, cells, axis=-1)
         return reach, np.repeat(self.sides.sign * self.sides.tilted_lever_ratios, cells, axis=-1)

@@ -12,6 +12,7 @@ from fem.contact.loaded_flanks import FlanksInPlace, LoadedFlanks
 from fem.contact.moved_side import MovedSide
 from fem.contact.moving_corners import DEEPEST
 from fem.contact.shared_contacts import SharedContacts
+from fem.laws.line_friction import further_levers
 from fem.laws.mesh_setup import MeshSetup
 
 if TYPE_CHECKING:
@@ -153,7 +154,14 @@ class ContactState:
     def torques(self, number: int) -> Array:
         """Torque of each pair over the pinion's base radius (pitches, positions, pairs) [N]."""
         levers = self.flanks.tilted_lever_ratios - self.lever_loss(number)[0, 0]
-        return np.asarray(self.share.forces[number] * levers)
+        return np.asarray(self.share.forces[number] * levers + self.rubbed(number))
+
+    def rubbed(self, number: int) -> Array:
+        """What friction that differs from cell to cell adds to these (pitches, positions, pairs) [N]."""
+        lines, forces = self.candidates.lines, self.cell_forces(number)
+        if lines is None:
+            return np.zeros(forces.shape[:-1])
+        return np.asarray((forces * further_levers(self.setup, lines, forces.shape[-1])).sum(axis=-1))
 
     def flank_rho(self, number: int) -> Array:
         """Curvature radii where pinion and wheel are touched (2, pitches, positions, pairs) [m], untouched ones too."""

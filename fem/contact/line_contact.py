@@ -21,6 +21,7 @@ from fem.contact.cell_matrix import coupled_by, kept_unless_large
 from fem.elasticity.flamant import hertz_half_width
 from fem.influence.helix_ends import OF_ENDS, OFF_BY
 from fem.laws.contact_candidates import SEEN_ALONG, line_gaps
+from fem.laws.line_friction import further_levers
 from fem.laws.local_law import FilmLaw, PairLaws
 from fem.pair.line_compliance import FeltLine, GearLines, gear_lines
 from fem.pair.line_shafts import PlacesOnLines, ShaftsUnderLines, shafts_under_lines
@@ -132,12 +133,14 @@ class LineContact(CellContact):
         )
 
     def levers(self, face: FaceSetting) -> tuple[Array, Array]:
-        """As of ``CellContact``: forces at edges of the pinion stand on the wheel's flank, which shortens its lever."""
+        """As of ``CellContact``, and what friction adds in every cell.
+
+        Forces at edges of the pinion stand on the wheel's flank, which shortens their lever.
+        """
         reach, levers = super().levers(face)
-        if self.lines.edges is None:
-            return reach, levers
-        edge = self._edge_levers(self.lines.places(self.lines.divided(face.cells)))
-        return reach * edge.reshape(reach.shape), levers * edge.reshape(levers.shape)
+        edge = self._edge_levers(self.lines.places(self.lines.divided(face.cells))).reshape(reach.shape)
+        rubbing = further_levers(self.setup, self.lines, face.cells).reshape(levers.shape)
+        return reach * edge, levers * edge + np.repeat(self.sides.sign, face.cells) * rubbing
 
     def _edge_levers(self, place: Array) -> Array:
         """Levers of forces about the pinion's axis over those on flanks, at places of the line of action."""

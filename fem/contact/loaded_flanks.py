@@ -31,7 +31,8 @@ class FlanksInPlace:
         them.
     oil : FilmLaw or None
     tilted_lever_ratios : (positions, pairs) array
-        The same of forces that friction tilts.
+        The same of forces that friction tilts; of lines of contact without what differs from cell to cell
+        (``fem.laws.line_friction``).
     """
 
     candidates: ContactCandidates
@@ -133,6 +134,8 @@ def loaded_flanks(
 
 def _tilted_lever_ratios(setup: MeshSetup, candidates: ContactCandidates) -> Array:
     """Levers about the pinion's axis of forces tilted by friction, over r_b1 (positions, pairs); 1 if none can act."""
+    if candidates.lines is not None:
+        return np.where(candidates.touchable, candidates.lever[0, : setup.positions], 1.0)
     lever, arm = candidates.lever[:, : setup.positions], candidates.tangent_arm[:, : setup.positions]
     first, second = setup.pair.base_radii
     arm = np.where(candidates.touchable, arm, 0.0)

@@ -14,6 +14,7 @@ from fem.cycle.face_cells import HERTZ, of_cells
 from fem.cycle.line_cells import IN_SINGLE_CELLS, CellsOfLines
 from fem.cycle.shaft_figures import shaft_figures
 from fem.elasticity.plane_elasticity import reduced_modulus
+from fem.laws.line_friction import rubbed_arms
 from fem.pair.face_setting import FaceSetting
 from gears.pair.hertz import half_width, peak_pressure
 from gears.pair.tilting_shaft import bearing_forces
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 __all__ = ["LineLoads", "line_loads"]
 
 BY_CENTRE = "off by centre_error: it passes through zero"
+
+ALONG_AXES = "exact without friction; with it, as the forces before and after C share the torque"
 
 BY_LEVER = "off by the force times centre_error: it passes through zero"
 
@@ -157,10 +160,27 @@ class LineLoads(CellsOfLines):
         """Maximum line load of all positions."""
         return float(self.most_loaded.max())
 
-    @described("N", no_error=EXACT)
+    @property
+    def across(self) -> Array:
+        """Sum of the normal forces in the section (positions,) [N]: the same at all positions without friction."""
+        return np.asarray(self.force.sum(axis=(1, 2)) * self.pair.helix.base_cosine)
+
+    @property
+    def rubbed(self) -> Array:
+        """Sums of the forces by their arms about both gears across the lines (2, positions) [N m].
+
+        Times the coefficient of friction they are the torques of an even friction; above 0 after C.
+        """
+        pair, forces = self.pair, self.force
+        rho1 = np.where(forces > 0.0, np.nan_to_num(self.travel) + pair.points.A, pair.points.C)
+        width = np.where(self.length > 0.0, self.length, pair.face_width) * abs(pair.helix.base_sine)
+        arms = rubbed_arms(pair, rho1, width[..., None])
+        return np.asarray((forces * arms).sum(axis=(-2, -1)))
+
+    @described("N", no_error=ALONG_AXES)
     def axial_force(self) -> float:
-        """Axial force on the pinion, positive along z; the wheel has the opposite."""
-        return float(self.force[0].sum() * self.pair.helix.base_cosine * self.slope)
+        """Axial force on the pinion, positive along z, mean over the positions; the wheel has the opposite."""
+        return float(self.across.mean() * self.slope)
 
     @described("m", "position", shown="mm", no_error=BY_CENTRE)
     def load_centre(self) -> Array:
@@ -168,7 +188,7 @@ class LineLoads(CellsOfLines):
         force = self.force
         return np.asarray((force * np.nan_to_num(self.z)).sum(axis=(1, 2)) / force.sum(axis=(1, 2)))
 
-    @described("N m", "gear", no_error=EXACT)
+    @described("N m", "gear", no_error=ALONG_AXES)
     def axial_moment(self) -> tuple[float, float]:
         """Moment of the axial force on pinion and wheel about the transverse line of action, F_a r_b."""
         first, second = (self.axial_force * radius for radius in self.pair.base_radii)
@@ -187,8 +207,8 @@ class LineLoads(CellsOfLines):
     def bearing_forces(self, gear: int) -> Array:
         """Radial forces that the bearings of a shaft carry under the mesh (bearings, positions, 2) [N].
 
-        Along the transverse line of action and across it; weights and what couplings add are left out. Axially one
-        bearing carries `axial_force`.
+        Along the transverse line of action and across it; weights, friction and what couplings add are left out.
+        Axially one bearing carries `axial_force`.
 
         Parameters
         ----------
@@ -205,8 +225,8 @@ class LineLoads(CellsOfLines):
             raise InputError.at(
                 "shafts", "None", "must be given where bearings are asked for", "give a Shaft"
             )
-        force = self.force[0].sum() * self.pair.helix.base_cosine
-        loads = np.full(len(self.position), force), self.tilting_moment[gear], self.axial_moment[gear]
+        axial = self.across * self.slope * self.pair.base_radii[gear]
+        loads = self.across, self.tilting_moment[gear], axial
         return bearing_forces(shaft, *loads, self.pair.face_offsets[gear])
 
     def less(self, slope: Array) -> Self:

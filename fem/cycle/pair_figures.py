@@ -132,12 +132,20 @@ class PairFigures:
         """
         slip = np.sign(self.sliding())
         arm = self.candidates.lever[1] * self.pair.base_radii[1]
-        arm = arm + self.friction * slip * self.candidates.tangent_arm[1]
+        if self.lines is None:
+            arm = arm + self.friction * slip * self.candidates.tangent_arm[1]
         total = np.sum(self.forces * arm, axis=1, where=np.isfinite(arm))
+        if self.lines is not None:
+            turning = self.friction if self.flank == "front" else -self.friction
+            total = total + turning * self.lines.rubbed[1]
         return np.asarray(total if self.flank == "front" else -total)
 
     def friction_loss(self, speed: float) -> Array:
         """Power lost by sliding (n,) [W], sum of ``mu F_i |u1 - u2|``; speed of the pinion [rad/s]."""
+        if self.lines is not None:
+            first, second = self.pair.base_radii
+            rubbed = self.lines.rubbed
+            return np.asarray(self.friction * abs(speed) * (rubbed[0] - rubbed[1] * first / second))
         slip = np.abs(self.sliding(speed))
         return np.asarray(np.sum(self.friction * self.forces * slip, axis=1, where=np.isfinite(slip)))
 

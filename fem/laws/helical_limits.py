@@ -32,10 +32,6 @@ class Setting(Protocol):
         """Of rounded tip edges [m]."""
 
     @property
-    def friction(self) -> float:
-        """Coefficient of friction."""
-
-    @property
     def moving_contact(self) -> bool:
         """Whether contacts move."""
 
@@ -54,8 +50,6 @@ def check_helical(faults: Faults, setup: Setting) -> None:
         faults.add("beyond_path", True, allowed, "leave it out")
     if any(radius != 0.0 for radius in setup.radii):
         faults.add("tip_rounding", setup.radii, "must be 0 with a helix", SPUR)
-    if setup.friction:
-        faults.add("friction", setup.friction, "must be 0 with a helix", SPUR)
     if setup.moving_contact:
         allowed = "must be False with a helix: contacts stay where undeformed teeth touch"
         faults.add("moving_contact", True, allowed, "give moving_contact=False")

@@ -270,7 +270,8 @@ class MeshSetup:
         half = 0.5 * self.pair.face_width * abs(self.line_slope)
         short = SHORT_CELL / self.face.cells * 2.0 * half
         bends = np.array([-half, half, -half + short, half - short])
-        middles = np.concatenate([start + bends, end + bends])
+        turns = self.pair.points.C + bends[:2] if self.friction else bends[:0]  # where a line's end crosses C
+        middles = np.concatenate([start + bends, end + bends, turns])
         return np.unique((middles - self.pair.points.A) / self.pair.base_pitch % 1.0)
 
     @property

@@ -87,7 +87,12 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
     ),
     SpurKey("stiffness.moving_contact", "contacts that the deflection moves", "must be false", beside=ANY),
     # what loaded teeth on oblique lines do not know
-    SpurKey("operating.friction", "friction on oblique lines", "must be 0"),
+    SpurKey(
+        "operating.friction",
+        "friction that moves gears of six freedoms",
+        "must be 0",
+        beside=frozenset({"bearing-forces"}),
+    ),
     SpurKey(
         "stiffness.plane",
         "plane stress of twisted teeth",

@@ -89,7 +89,9 @@ def tilting_shaft(shaft: Shaft, z: Array, offset: float = 0.0, face_width: float
     )
 
 
-def bearing_forces(shaft: Shaft, along: Array, tilting: Array, across: float, offset: float = 0.0) -> Array:
+def bearing_forces(
+    shaft: Shaft, along: Array, tilting: Array, across: Array | float, offset: float = 0.0
+) -> Array:
     """Radial forces that bearings carry under the loads of a mesh (bearings, n, 2) [N].
 
     Along a force and across it; weights and what couplings add are left out.
@@ -101,7 +103,7 @@ def bearing_forces(shaft: Shaft, along: Array, tilting: Array, across: float, of
         Force [N].
     tilting : (n,) array
         Moment of the loads about mid-face in its plane [N m].
-    across : float
+    across : (n,) array or float
         Moment in the plane at right angles to it [N m].
     offset : float
         Of mid-face, as of `tilting_shaft` [m].

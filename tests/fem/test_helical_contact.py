@@ -187,13 +187,12 @@ def test_what_helices_do_not_have_is_refused_at_once(bodies: PairCompliance) -> 
             bodies,
             beyond_path=True,
             tip_rounding=1e-5,
-            friction=0.1,
             moving_contact=True,
             face_model="walls",
         )
     named = str(raised.value)
     for key in (
-        "beyond_path", "tip_rounding", "friction", "moving_contact", "face_model",
+        "beyond_path", "tip_rounding", "moving_contact", "face_model",
     ):  # fmt: skip
         assert key in named
 

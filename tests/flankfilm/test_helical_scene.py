@@ -212,7 +212,7 @@ class TestTable:
         ("stiffness.model", "potential-energy", True),
         ("stiffness.pairs", "independent", True),
         ("stiffness.moving_contact", True, True),
-        ("operating.friction", 0.05, False),
+        ("operating.friction", 0.05, "space"),
         ("stiffness.plane", "stress", False),
         ("stiffness.contact_beyond_path", True, False),
         ("shafts.wheel.segments", [{"length_mm": 200.0, "diameter_mm": 40.0}], "motion"),
@@ -224,8 +224,9 @@ class TestTable:
     @pytest.mark.parametrize(("path", "value", "always"), GIVEN)
     def test_each_key_is_refused_beside_loaded_teeth(self, path, value, always):
         beside = (
-            (["stiffness"], always != "motion"),
-            (["sweep"], True),
+            (["stiffness"], always not in ("motion", "space")),
+            (["sweep"], always != "space"),
+            (["bearing-forces"], True),
             (["geometry", "closed-forms"], always is True),
         )
         for wants, refused in beside:
