@@ -91,7 +91,7 @@ class LossRounds:
         return abs(self.teeth.torque) * self.speed
 
     def cycle(self, friction: float, positions: int) -> MeshCycle:
-        """Dry mesh cycle whose forces a mean friction tilts; those on lines of contact are left (`untilted`)."""
+        """Dry mesh cycle whose forces a mean friction tilts; those on lines of contact have none (`untilted`)."""
         if self.teeth.pair.helix_angle:
             return self._untilted(positions)
         flanks = replace(self.teeth.flanks, friction=friction)
@@ -102,7 +102,7 @@ class LossRounds:
         return lru_cache(maxsize=2)(self.teeth.cycle)
 
     def untilted(self, cycle: MeshCycle, friction: float) -> float:
-        """What friction would change of the forces on lines of contact, relative, left as they are; 0 of spur pairs.
+        """What friction would change of the forces on lines of contact, relative; 0 of spur pairs, which have it.
 
         Friction acts in the section, on the pinion by the lever rho1: sum N (cos(beta_b) r_b1 + mu sign(u1 - u2) rho1)
         is the torque.
