@@ -18,8 +18,10 @@ from fem.fields.face_waves import GearPrisms, gear_prisms
 from fem.fields.grids import face_grids, helix_grids, plane_grids, write_grid
 from fem.fields.helix_fields import helix_fields
 from fem.fields.helix_solids import TwistedGear, twisted_gears
+from fem.fields.loaded_gears import frames
 from fem.fields.paraview_state import fillet_stress, write_lines_state, write_paraview_state
 from fem.fields.stress_fields import draw_gears, loaded_fields
+from fem.fields.surface_frames import SurfaceFrame, Surfaces
 from fem.pair.compliance import compliance as _compliance
 from fem.pair.pair_compliance import PairCompliance
 
@@ -47,10 +49,16 @@ class Frames:
         Of each position its place in base pitches from A, and its files by the names of their blocks.
     colours : tuple of float
         Stresses of fillets or pressures that the colours of the series follow [Pa].
+    surfaces : Surfaces or None
+        Of the teeth, where they were wanted.
+    surface_frames : tuple of SurfaceFrame
+        Of each position, where they were wanted.
     """
 
     steps: tuple[tuple[float, dict[str, Path]], ...]
     colours: tuple[float, ...]
+    surfaces: Surfaces | None = None
+    surface_frames: tuple[SurfaceFrame, ...] = ()
 
 
 def field_blocks(
@@ -143,10 +151,12 @@ def write_frames(
     bodies: PairCompliance,
     rows: Sequence[int],
     progress: Callable[[int, int], None] | None = None,
+    surfaces: bool = False,
 ) -> Frames:
     """Write the files of some positions of a series; arguments as of `write_vtk_series`.
 
-    Positions do not depend on each other, so that several processes can share a series.
+    Positions do not depend on each other, so that several processes can share a series. With `surfaces` what is
+    written is kept as surfaces too, light enough for a page.
     """
     frame: Callable[..., Frame]
     if cycle.lines is not None:
@@ -158,6 +168,8 @@ def write_frames(
         frame = partial(_face_frame, prisms=gear_prisms(bodies))
     colours: list[float] = []
     steps: list[tuple[float, dict[str, Path]]] = []
+    teeth: Surfaces | None = None
+    kept: list[SurfaceFrame] = []
     for done, row in enumerate(rows):
         files = {}
         grids, largest = frame(pair, cycle, row, bodies)
@@ -166,9 +178,12 @@ def write_frames(
             files[name] = folder / "vtk" / f"{name}_{row:04d}.vtu"
             write_grid(files[name], grid)
         steps.append((float(cycle.position[row]), files))
+        if surfaces:
+            teeth = teeth or Surfaces.of(grids, frames(pair, pair.points.C)[1][1], pair.face_width)
+            kept.append(teeth.frame(grids))
         if progress is not None:
             progress(done + 1, len(rows))
-    return Frames(tuple(steps), tuple(colours))
+    return Frames(tuple(steps), tuple(colours), teeth, tuple(kept))
 
 
 def write_series(

@@ -16,6 +16,7 @@ from fem.fields.face_waves import gear_prisms
 from fem.fields.stress_fields import draw_gears, loaded_fields
 from fem.fields.vtk import write_vtk_series
 from gears import Alignment, Gear, GearPair
+from tests.tooth_surfaces import blocks_of, check_closed, check_loads, check_values
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
 TORQUE = 100.0
@@ -171,3 +172,14 @@ def test_what_cannot_be_drawn_is_refused(bodies, prisms, cycle):
         face_fields(PAIR, replace(cycle, forces=np.nan * cycle.forces), 0, bodies, prisms)
     with pytest.raises(InputError, match="must be even along the face"):
         loaded_fields(PAIR, cycle, 0, bodies)
+
+
+@pytest.mark.slow
+def test_surfaces_for_a_page_hold_the_teeth_and_the_loads(bodies, cycle):
+    held = [blocks_of(PAIR, cycle, row, bodies) for row in (0, ROWS // 2)]
+    check_closed(PAIR, held[0])
+    for row, blocks in zip((0, ROWS // 2), held, strict=True):
+        check_values(PAIR, blocks)
+        loads = check_loads(PAIR, blocks, TORQUE)
+        # the largest line load of the cycle, at its cell
+        assert np.linalg.norm(loads.load, axis=1).max() == pytest.approx(cycle.line_load[row].max(), rel=1e-2)

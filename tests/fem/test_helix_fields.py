@@ -24,6 +24,7 @@ from fem.influence.gear_face import section_of
 from fem.pair.line_compliance import gear_lines
 from gears import Gear, GearPair
 from meshes import Sizes
+from tests.tooth_surfaces import blocks_of, check_closed, check_loads, check_values
 
 PAIR = GearPair(Gear(18), Gear(23), module=1e-3, face_width=5e-3, helix_angle=radians(18.0))
 WIDER = replace(PAIR, pinion=replace(PAIR.pinion, face_width=6e-3))
@@ -243,3 +244,14 @@ def test_what_cannot_be_drawn_is_refused(bodies, cycle, solids):
     flat = compliance(spur, tolerance=0.05)
     with pytest.raises(InputError, match="must have lines of contact"):
         helix_fields(spur, mesh_cycle(spur, TORQUE, 2, flat), 0, flat)
+
+
+@pytest.mark.slow
+def test_surfaces_for_a_page_hold_the_teeth_and_the_lines_of_contact(bodies, cycle):
+    for row in (0, ROWS // 2):
+        blocks = blocks_of(PAIR, cycle, row, bodies)
+        check_closed(PAIR, blocks)
+        check_values(PAIR, blocks)
+        loads = check_loads(PAIR, blocks, TORQUE)
+        length = np.linalg.norm(np.diff(loads.ends, axis=1)[:, 0], axis=1)
+        assert -(length @ loads.load)[2] == pytest.approx(cycle.axial_force[row], rel=1e-6)
