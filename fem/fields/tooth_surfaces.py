@@ -178,8 +178,8 @@ def conforming(points: Array, cells: Integers) -> Integers:
         # an edge beside a cell that was divided twice has a point half-way, which no cell names as its middle
         if unknown := list({edge for corners in waiting for edge in _edges(corners)} - middle.keys()):
             half_way = points[[tuple(edge) for edge in unknown]].mean(axis=1)
-            away, nearest = tree.query(half_way)
-            at = [i if there else None for i, there in zip(nearest.tolist(), away < tolerance, strict=True)]
+            away, nearest = map(np.asarray, tree.query(half_way))
+            at = [int(i) if distance < tolerance else None for i, distance in zip(nearest, away, strict=True)]
             middle.update(zip(unknown, at, strict=True))
         divided: list[Corners] = []
         for corners in waiting:

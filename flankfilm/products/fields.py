@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Set
+from collections.abc import Iterator, Mapping, Set
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from flankfilm.stages.mesh import FIELDS, MESH, PAIR, along_the_face
 if TYPE_CHECKING:
     import xarray as xr
 
+    from fem.fields.surface_frames import SurfaceFrame, Surfaces
     from flankfilm.coupling import LoadedFields
 
 PICTURES: Pictures = {"tooth_stress": "field_von_mises"}
@@ -45,6 +46,20 @@ def section(stage: LoadedFields, results: xr.Dataset) -> Part:
     note = said("peak", peak=number(1e-6 * peak))
     drawn = pictures(results, PICTURES)
     return Part("fields", "Loaded teeth", figures=drawn, notes=(note,))
+
+
+def in_space(
+    surfaces: tuple[Surfaces, Mapping[float, SurfaceFrame]] | None, results: xr.Dataset
+) -> Iterator[Part]:
+    """Section with the pair that turns, of surfaces that were kept while the files for ParaView were written."""
+    if surfaces is None:
+        return
+    from flankfilm.figures.rendering.turning import turning
+    from flankfilm.figures.rendering.turning_page import inset
+
+    teeth, frames = surfaces
+    shown = turning(list(frames), list(frames.values()), teeth, results)
+    yield Part("turning", "Loaded teeth in three dimensions", (said("turning"),), inset=inset(shown))
 
 
 PRODUCT = Product(

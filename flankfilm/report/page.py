@@ -128,6 +128,8 @@ class Part:
         Figures that are seen at once.
     unfolded : bool
         Whether all of it is seen at once.
+    inset : str
+        HTML of a view that begins when it is unfolded.
     """
 
     anchor: str
@@ -139,6 +141,7 @@ class Part:
     code: str = ""
     seen: int = 1
     unfolded: bool = False
+    inset: str = ""
 
     def drawn(self) -> Part:
         """Draw what is seen at once for a phone too; of the rest there is the wide picture alone."""

@@ -17,6 +17,7 @@ from flankfilm.outcome.results import Results
 from flankfilm.processes.assistant import Assistant, assistant
 from flankfilm.processes.exit_status import PART_FAILED
 from flankfilm.processes.progress import Progress, silent
+from flankfilm.products.fields import in_space
 from flankfilm.runs.begin import begin
 from flankfilm.runs.dataset import not_computed, results_dataset, write_data
 from flankfilm.scene import Scene
@@ -107,6 +108,8 @@ class RunOutcome(Outcome[Results]):
         files = engine.timed("data files", "netCDF and CSV files", lambda: self.helper.result(data))
         if fields is not None:
             files += self._fields(fields)
+            if "report" in wants and len(engine.failures) == len(results.failures):
+                shown = (*shown, *in_space(fields.surfaces(self.helper), self.dataset))
         if len(engine.failures) > len(results.failures):
             results = replace(results, failures=tuple(engine.failures.values()))
             results = replace(results, dataset=results.dataset.assign_attrs(not_computed(results.failures)))
@@ -130,8 +133,9 @@ class RunOutcome(Outcome[Results]):
         """Begin with the files for ParaView; None where fields failed, which the engine notes."""
         if FIELDS.name in self.engine.failures:
             return None
+        kept = "report" in self.result.scene.wants
         with suppress(InputError, SolverError):
-            return self.engine.timed(*FILES, lambda: begin_fields(folder, self.engine, self.helper))
+            return self.engine.timed(*FILES, lambda: begin_fields(folder, self.engine, self.helper, kept))
         return None
 
     def _fields(self, begun: FieldFiles) -> list[Path]:

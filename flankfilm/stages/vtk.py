@@ -14,6 +14,7 @@ from flankfilm.stages.mesh import COMPLIANCE, PAIR, loaded_contact
 
 if TYPE_CHECKING:
     from fem.cycle.result import MeshCycle
+    from fem.fields.surface_frames import SurfaceFrame, Surfaces
     from fem.fields.vtk import Frames
     from gears import GearPair
 
@@ -82,11 +83,24 @@ class FieldFiles:
         series = write_series(self.folder, self.pair, self.cycle, self.rows, frames)
         return [series, series.with_name(STATE)] if self.cycle.face is None else [series]
 
+    def surfaces(self, helper: Assistant) -> tuple[Surfaces, dict[float, SurfaceFrame]] | None:
+        """Surfaces of the teeth and their frames by position [base pitches from A], once the files are written.
 
-def begin_fields(folder: Path, run: Engine, helper: Assistant) -> FieldFiles:
+        None where they were not wanted.
+        """
+        parts = [helper.result(part) for part in self.parts]
+        if not parts or parts[0].surfaces is None:
+            return None
+        places = [place for part in parts for place, _ in part.steps]
+        frames = [frame for part in parts for frame in part.surface_frames]
+        return parts[0].surfaces, dict(zip(places, frames, strict=True))
+
+
+def begin_fields(folder: Path, run: Engine, helper: Assistant, surfaces: bool = False) -> FieldFiles:
     """Give the mesh cycle to be written for ParaView, in parts that two processes can share.
 
-    Solids of gears over the face are factorised for all rows, so that one process writes them.
+    Solids of gears over the face are factorised for all rows, so that one process writes them. With `surfaces` the
+    teeth are kept for a page besides.
     """
     from fem.fields.vtk import write_frames
 
@@ -95,7 +109,9 @@ def begin_fields(folder: Path, run: Engine, helper: Assistant) -> FieldFiles:
     plane = cycle.face is None and cycle.lines is None
     size = PART if plane else len(rows)
     parts = [rows[start : start + size] for start in range(0, len(rows), size)]
-    tasks = tuple(helper.submit(write_frames, folder, pair, cycle, bodies, part) for part in parts)
+    tasks = tuple(
+        helper.submit(write_frames, folder, pair, cycle, bodies, part, None, surfaces) for part in parts
+    )
     return FieldFiles(folder, pair, cycle, rows, tasks)
 
 

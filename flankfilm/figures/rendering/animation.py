@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-import math
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +17,7 @@ from base.files import replacing
 from flankfilm.figures.gear import stress_of_nearly_all
 from flankfilm.figures.reading import need
 from flankfilm.figures.rendering.teeth import UNREADABLE, draw, plotter_of
-from flankfilm.figures.rendering.view import View, steps
+from flankfilm.figures.rendering.view import View, colour_steps, round_number, steps
 from flankfilm.files.folder import readable
 from flankfilm.files.manifest import changed
 from flankfilm.processes.worker_processes import module, python
@@ -160,8 +160,8 @@ def _render(
     return target
 
 
-def _check(folder: Path, target: Path | None, suffixes: tuple[str, ...]) -> None:
-    """Refuse, all at once, what cannot lead to a picture."""
+def check_files(folder: Path, target: Path | None, suffixes: tuple[str, ...]) -> None:
+    """Refuse, all at once, what cannot lead to a picture: a folder without the files, a target of another suffix."""
     faults = Faults()
     if target is not None and target.suffix not in suffixes:
         faults.add(str(target), "", f"must end in {' or '.join(suffixes)}", "The suffix is the format")
@@ -178,16 +178,23 @@ def _check(folder: Path, target: Path | None, suffixes: tuple[str, ...]) -> None
 
 def _view(folder: Path, frame: Frame, target: Path | None = None, suffixes: tuple[str, ...] = ()) -> View:
     """Check what is asked for, and read what the pictures of a run have in common."""
+    check_files(folder, target, suffixes)
+    with results_of(folder) as results:
+        return _view_of(results, folder, frame)
+
+
+@contextmanager
+def results_of(folder: Path) -> Iterator[xr.Dataset]:
+    """Open the results of a run; what libraries raise on damaged files becomes a fault of the folder."""
     import h5py
     import xarray as xr
 
-    _check(folder, target, suffixes)
     file = folder / "results.nc"
     with readable(folder):
         with h5py.File(file, "r") as whole:
             dict(whole.attrs)  # where this fails, h5netcdf's object would fail again as it is thrown away
         with xr.open_dataset(file, engine="h5netcdf") as results:
-            return _view_of(results, folder, frame)
+            yield results
 
 
 def _view_of(results: xr.Dataset, folder: Path, frame: Frame) -> View:
@@ -199,7 +206,7 @@ def _view_of(results: xr.Dataset, folder: Path, frame: Frame) -> View:
     error = results[f"{prefix}_transmission_error"].values
     scale, position = frame.scale, frame.position
     if scale is None:
-        scale = _round(SHOWN * float(results["pair_module"]) / float(error.max()))
+        scale = round_number(SHOWN * float(results["pair_module"]) / float(error.max()))
     if position is None:
         at_pitch = float(results["path_point_rho1"][2] - results["path_point_rho1"][0])
         position = at_pitch / float(results["pair_base_pitch"]) % 1.0
@@ -250,8 +257,7 @@ def _scale_of_colours(results: xr.Dataset, folder: Path, field: str, *, over_fac
             values = [pressure[grid["tip_edge"] == 0] for pressure, grid in zip(values, grids, strict=True)]
         sizes = np.abs(np.concatenate([v if v.ndim == 1 else np.linalg.norm(v, axis=1) for v in values]))
         top = float(np.nanquantile(sizes, 1.0 if over_face else 0.997)) or 1.0
-    step = _round(top / 3)
-    return step, math.ceil(top / step)
+    return colour_steps(top)
 
 
 def _in_fillets(results: xr.Dataset, folder: Path) -> float:
@@ -282,12 +288,6 @@ def _stress_where(wanted: Callable[[str, Array], Booleans], folder: Path) -> flo
             at = wanted(gear, np.asarray(grid.points)[:, :2])
             largest = max(largest, float(np.max(np.asarray(grid[STRESS])[at], initial=0.0)))
     return largest
-
-
-def _round(value: float) -> float:
-    """Largest of ..., 1, 2, 5, 10, ... that is not above a value."""
-    ten = 10.0 ** math.floor(math.log10(value))
-    return max(ten * n for n in (1, 2, 5) if ten * n <= value)
 
 
 def _in_a_process(view: View, patience: float | None = PATIENCE) -> None:

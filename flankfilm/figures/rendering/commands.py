@@ -7,6 +7,8 @@ from typing import Annotated
 
 from cyclopts import Parameter, validators
 
+from base import Faults
+
 
 def view(
     results: Path,
@@ -16,13 +18,14 @@ def view(
     position: float | None = None,
     scale: float | None = None,
     out: Path | None = None,
+    html: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
     """Show the fields in the folder RESULTS on the deformed teeth, in a window with a slider over the mesh cycle.
 
     Parameters
     ----------
     results : Path
-        Folder of a run that wants vtk.
+        Folder of a run that wants vtk, or its scene file, whose run is in the folder of its name.
     field : str
         Field of the files for ParaView, such as displacement_m; the von Mises stress if left out. Where the load varies
         along the face: the pressure on the flanks if left out, line_load_N_per_m, gap_m.
@@ -32,7 +35,13 @@ def view(
         Factor of the displacements; so that they show if left out.
     out : Path
         Write a picture, .png, .jpg or .webp, instead of opening a window.
+    html : bool
+        Write a page that turns the pair in any browser without a network: to the file of --out, mesh_cycle.html in
+        RESULTS if left out.
     """
+    results = Path(f"{results.stem}-results") if results.suffix == ".toml" else results
+    if html or (out is not None and out.suffix == ".html"):
+        return _page(results, out, field=field, position=position, scale=scale)
     from flankfilm.figures.rendering.animation import Frame, tooth_picture, view_cycle
 
     frame = Frame(field=field, position=position, scale=scale)
@@ -40,6 +49,22 @@ def view(
         view_cycle(results, frame=frame)
     else:
         print(f"{tooth_picture(results, out, frame=frame)} is written.")
+    return 0
+
+
+def _page(
+    results: Path, out: Path | None, *, field: str | None, position: float | None, scale: float | None
+) -> int:
+    """Write the pair that turns as a page."""
+    from flankfilm.figures.rendering.turning_page import write_turning
+
+    faults = Faults()
+    for name, value in (("--field", field), ("--position", position)):
+        if value is not None:
+            faults.add(name, f"{value}", "does not go with a page", "Leave it out; the page has a slider")
+    faults.raise_if_any()
+    target = write_turning(results, results / "mesh_cycle.html" if out is None else out, scale=scale)
+    print(f"{target} is written: {target.stat().st_size / 1e3:.0f} kB")
     return 0
 
 

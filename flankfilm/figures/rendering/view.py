@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-__all__ = ["INK", "PAPER", "View", "bar_of", "nearest", "note_scale", "steps", "titled"]
+__all__ = [
+    "INK",
+    "PAPER",
+    "View",
+    "bar_of",
+    "colour_steps",
+    "nearest",
+    "note_scale",
+    "round_number",
+    "steps",
+    "titled",
+]
 
 INK, PAPER = "#1c2126", "#ffffff"
 
@@ -82,6 +94,18 @@ def steps(folder: Path) -> dict[float, dict[str, Path]]:
 def nearest(places: Iterable[float], at: float) -> float:
     """Position that lies nearest to `at`."""
     return min(places, key=lambda place: abs(place - at))
+
+
+def round_number(value: float) -> float:
+    """Largest of ..., 1, 2, 5, 10, ... that is not above a value."""
+    ten = 10.0 ** math.floor(math.log10(value))
+    return max(ten * n for n in (1, 2, 5) if ten * n <= value)
+
+
+def colour_steps(top: float) -> tuple[float, int]:
+    """Step between the ticks of a scale of colours that ends at `top` or a little above, and their number."""
+    step = round_number(top / 3)
+    return step, math.ceil(top / step)
 
 
 def titled(field: str) -> tuple[str, str, float]:
