@@ -254,4 +254,4 @@ def test_surfaces_for_a_page_hold_the_teeth_and_the_lines_of_contact(bodies, cyc
         check_values(PAIR, blocks)
         loads = check_loads(PAIR, blocks, TORQUE)
         length = np.linalg.norm(np.diff(loads.ends, axis=1)[:, 0], axis=1)
-        assert -(length @ loads.load)[2] == pytest.approx(cycle.axial_force[row], rel=1e-6)
+        assert -(length @ loads.load)[2] == pytest.approx(cycle.lines.axial_force, rel=1e-6)

@@ -216,15 +216,23 @@ def test_the_browser_decodes_the_same_numbers(run, page, browser):
     until(browser, READY)
     head, numbers = held(page)
     gear = head["gears"][0]
-    n, first = gear["values"], 4 * gear["points"] + 3 * gear["triangles"]
+    n, start = gear["values"], 4 * gear["points"] + 3 * gear["triangles"]
     found = browser.run("""(() => { const gear = document.querySelector('.turning').turning.gears[0];
-      return [[...gear.values.slice(0, 4 * gear.each)], [...gear.points]]; })()""")
-    values = np.array(found[0]).reshape(n, 4)
-    np.testing.assert_array_equal(values[:, :3].ravel(), numbers[first : first + 3 * n])
-    np.testing.assert_array_equal(values[:, 3], numbers[first + 3 * n : first + 4 * n])
+      return { values: gear.starts.map((at) => [...gear.values.slice(4 * at, 4 * (at + gear.each))]),
+               points: [...gear.points] }; })()""")
+    before: dict[int, np.ndarray] = {}
+    for frame, (first, angles) in enumerate(zip(gear["first"], gear["angles"], strict=True)):
+        known = {}
+        for tooth in range(first, first + len(angles)):
+            own = numbers[start : start + 4 * n]
+            known[tooth], start = own + before.get(tooth, np.zeros(4 * n, np.uint16)), start + 4 * n
+        before = known
+        values = np.array(found["values"][frame]).reshape(n, 4)
+        np.testing.assert_array_equal(values[:, :3].ravel(), known[first][: 3 * n])
+        np.testing.assert_array_equal(values[:, 3], known[first][3 * n :])
     low, high = np.array(gear["low"]), np.array(gear["high"])
     points = low + numbers[: 3 * gear["points"]].reshape(-1, 3) / 65535 * (high - low)
-    np.testing.assert_allclose(np.array(found[1]).reshape(-1, 3), points, atol=1e-8)
+    np.testing.assert_allclose(np.array(found["points"]).reshape(-1, 3), points, atol=1e-8)
 
 
 @pytest.mark.slow
