@@ -17,10 +17,19 @@ LIMITS = {
 }
 """What an oil of a data sheet may be."""
 
+WALTHER = 0.8
+"""Added to viscosities in mm2/s, whose logarithm's logarithm is then straight; ASTM D341 has 0.7."""
+
+EXPANSION = 0.7
+"""By how much the density of mineral oils falls with the temperature [kg/(m3 K)]."""
+
 
 @dataclass(frozen=True)
 class GearOil:
     """Mineral oil by its data sheet.
+
+    A published listing has the temperatures of this law to their last digit, and its mesh loss with the density at 15
+    degC: 16.25 K, 115.75 degC and 15.635 kW; ASTM D341 and a density that falls by 0.0007 give 16.246, 115.74, 15.637.
 
     Parameters
     ----------
@@ -35,7 +44,7 @@ class GearOil:
     --------
     >>> oil = GearOil(220e-6, 19e-6, 890.0, 353.15)
     >>> f"{1e6 * oil.kinematic_viscosity:.1f} mm2/s, {1e3 * oil.dynamic_viscosity:.1f} mPa s"
-    '35.6 mm2/s, 30.2 mPa s'
+    '35.7 mm2/s, 30.1 mPa s'
     """
 
     viscosity_40: float  # nu_40, m2/s
@@ -52,15 +61,17 @@ class GearOil:
 
     @property
     def kinematic_viscosity(self) -> float:
-        """Nu at the temperature [m2/s], straight in log log (nu + 0.7 mm2/s) over log T (ISO 2909, ASTM D341)."""
-        low, high = (math.log10(math.log10(1e6 * nu + 0.7)) for nu in (self.viscosity_40, self.viscosity_100))
+        """Nu at the temperature [m2/s], straight in log log (nu + 0.8 mm2/s) over log T (DIN 51563)."""
+        low, high = (
+            math.log10(math.log10(1e6 * nu + WALTHER)) for nu in (self.viscosity_40, self.viscosity_100)
+        )
         share = math.log(self.temperature / 313.15) / math.log(373.15 / 313.15)
-        return float(1e-6 * (10.0 ** (10.0 ** (low + (high - low) * share)) - 0.7))
+        return float(1e-6 * (10.0 ** (10.0 ** (low + (high - low) * share)) - WALTHER))
 
     @property
     def dynamic_viscosity(self) -> float:
-        """Eta at the temperature [Pa s], with a density that falls by 0.0007 per kelvin."""
-        return self.kinematic_viscosity * self.density_15 * (1.0 - 0.0007 * (self.temperature - 288.15))
+        """Eta at the temperature [Pa s], with a density that falls by 0.7 kg/m3 per kelvin (DIN 51757)."""
+        return self.kinematic_viscosity * (self.density_15 - EXPANSION * (self.temperature - 288.15))
 
 
 def check_oil(oil: GearOil) -> None:
