@@ -17,6 +17,7 @@ from flankfilm.report.rating_tables import (
 )
 from flankfilm.report.text import counted, number, percent
 from flankfilm.scene.sections.key import ZERO_CELSIUS
+from gears.rating.load_factors import RESONANCE
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,6 +43,12 @@ def headlines(rating: Rating, own: OwnRating | None) -> list[Headline]:
         shown.append(_least("breakage", rating.S_F, asked.S_F, *_ours(own, "S_F")))
     if rating.S_S is not None:
         shown.append(_least("scuffing", (rating.S_S,), asked.S_S))
+    faults = (("breakage", rating.bending_fault), ("scuffing", rating.scuffing_fault))
+    shown += [Headline(f"safety against {name}", "none", fault) for name, fault in faults if fault]
+    low, high = RESONANCE
+    if low <= rating.factors.N <= high:
+        advice = f"within {low:g} to {high:g}, which ISO 6336-1 advises against: change the speed"
+        shown.append(Headline("resonance ratio N", number(rating.factors.N, 3), advice))
     if rating.spectrum is not None:
         worst = max(*rating.spectrum.damage_H, *(rating.spectrum.damage_F or ()))
         said_of_it = f"Miner's sum at the required safeties, 1 is failure; {BY_STANDARD}"

@@ -73,3 +73,19 @@ def test_what_has_no_result_is_said():
     part = page(back)
     assert any(note.startswith("Scuffing gives no result: ") for note in part.notes)
     assert "scuffing, theta_int" not in cells(part)
+
+
+def test_a_pair_at_resonance_says_so_in_its_head():
+    fast = engine(put(WHOLE, operating__pinion_speed_rpm=12000.0))[RATING]
+    shown = {headline.name: headline for headline in headlines(fast, None)}
+    assert shown["resonance ratio N"].text == f"{fast.factors.N:.3f}"
+    assert "advises against" in shown["resonance ratio N"].note
+    assert "resonance ratio N" not in {headline.name for headline in headlines(rating(), None)}
+
+
+def test_a_safety_without_a_result_says_why_in_the_head():
+    back = engine(put(WHOLE, operating__pinion_torque_Nm=-300.0))[RATING]
+    shown = {headline.name: headline for headline in headlines(back, None)}
+    assert (shown["safety against scuffing"].text, "driving pinion" in shown["safety against scuffing"].note) == (
+        "none", True,
+    )  # fmt: skip

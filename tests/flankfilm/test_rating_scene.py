@@ -186,3 +186,25 @@ def test_outputs_of_studies():
     assert value["damage_flanks"] == max(rating.spectrum.damage_H)
     assert value["spectrum_life_h"] == pytest.approx(rating.spectrum.life / 3600.0)
     assert all(math.isfinite(number) for number in value.values())
+
+
+@pytest.mark.parametrize(
+    ("change", "where", "said"),
+    [
+        ({"rating__accuracy_grade": 13}, "rating.accuracy_grade", "ISO 1328-1:1995 has these grades"),
+        (
+            {"rating__pinion": {**GEAR, "steel": "GGG"}},
+            "rating.pinion.steel",
+            "irons, and plastics, are not rated",
+        ),
+        (
+            {"rating__spectrum": [{"torque_Nm": -100.0, "speed_rpm": 1000.0, "duration_h": 10.0}]},
+            "rating.spectrum.0.torque_Nm",
+            "load the other flanks",
+        ),
+    ],
+)
+def test_what_no_rating_takes_says_what_to_do(change, where, said):
+    with pytest.raises(InputError, match=said) as caught:
+        validated(put(WHOLE, **change))
+    assert [fault.where for fault in caught.value.faults] == [where]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from base import Limit
 from flankfilm.scene.sections.key import key
@@ -20,6 +20,7 @@ from gears.rating.pitting import LIMITS as FLANKS
 from gears.rating.rating_data import REQUIRED, SHARE
 from gears.rating.scuffing import LIMITS as SCUFFING
 from gears.rating.spectrum import LIMITS as STEP
+from gears.rating.steels import KINDS
 from gears.rating.steels import LIMITS as STRENGTHS
 
 MOST_STEPS = 1000
@@ -56,6 +57,15 @@ class RatedGearSection(Section):
     )
     root_Rz_um: float = key("roughness Rz of the fillets", of="root_roughness", example=20.0)
     Z_W: float = key("work hardening factor; 1 unless a ground hard pinion runs with a soft wheel", 1.0)
+
+    @field_validator("steel", mode="before")
+    @classmethod
+    def _a_steel(cls, symbol: object) -> object:
+        if isinstance(symbol, str) and symbol not in KINDS:
+            allowed = f"must be one of {', '.join(map(repr, KINDS))}"
+            remedy = "These are the steels of ISO 6336-5; its irons, and plastics, are not rated"
+            raise refused(allowed, remedy, value=repr(symbol))
+        return symbol
 
 
 class RatedOilSection(Section):
@@ -115,6 +125,14 @@ class StepSection(Section):
     speed_rpm: float = key("speed of the pinion", example=2000)
     duration_h: float | None = key("time of the step in the life of the gears", None, example=5000)
     cycles: float | None = key("load cycles of the pinion, instead of the time", None, such_as=6e8)
+
+    @field_validator("torque_Nm", mode="before")
+    @classmethod
+    def _one_direction(cls, torque: object) -> object:
+        if isinstance(torque, int | float) and torque < 0.0:
+            remedy = "Reversed torques load the other flanks: rate these by a second scene with their moduli"
+            raise refused("must be at least 0", remedy, value=f"{torque:g}")
+        return torque
 
     @model_validator(mode="after")
     def _time_or_cycles(self) -> StepSection:
@@ -235,6 +253,17 @@ class RatingSection(Section):
     def each(self) -> tuple[RatedGearSection, RatedGearSection]:
         """Of pinion and wheel."""
         return self.pinion, self.pinion if self.wheel is None else self.wheel
+
+    @field_validator("accuracy_grade", mode="before")
+    @classmethod
+    def _a_grade(cls, grade: object) -> object:
+        least, most = GRADES
+        if isinstance(grade, int) and not least <= grade <= most:
+            allowed = f"must be a whole number, at least {least} and at most {most}"
+            raise refused(
+                allowed, "ISO 1328-1:1995 has these grades; 6 is usual for ground gears", value=f"{grade}"
+            )
+        return grade
 
     @model_validator(mode="after")
     def _a_life(self) -> RatingSection:
