@@ -101,11 +101,11 @@ def spectrum_damage(results: xr.Dataset, *, style: Style | None = None) -> Figur
     style : mapping, optional
         rcParams that overrule the house's.
     """
-    from matplotlib.ticker import MaxNLocator
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
 
     need(results, 'run a scene that wants "rating" with rating.spectrum', "rating_spectrum_parts_H")
     parts = {
-        f"{what} of the {gear}": results[f"rating_spectrum_parts_{name}"].values[place]
+        f"{what}, {gear}": results[f"rating_spectrum_parts_{name}"].values[place]
         for name, what in (("H", "flanks"), ("F", "roots"))
         if f"rating_spectrum_parts_{name}" in results
         for place, gear in enumerate(GEARS)
@@ -114,14 +114,15 @@ def spectrum_damage(results: xr.Dataset, *, style: Style | None = None) -> Figur
     shown = [curve[np.isfinite(curve) & (curve > 0.0)] for curve in parts.values()]
     known = np.concatenate([np.ones(1), *shown])
     low, high = 0.3 * float(known.min()), 3.0 * float(known.max())
-    with sheet(style, height=3.0, legend=1 if is_narrow() else 4) as (drawn, (axes,)):
+    with sheet(style, height=3.0, legend=1 if is_narrow() else 5) as (drawn, (axes,)):
         width = 0.8 / len(parts)
         for place, ((label, curve), look) in enumerate(zip(parts.items(), looks(len(parts)), strict=True)):
             heights = np.minimum(np.where(curve > 0.0, curve, 0.0), high)
             shift = (place - 0.5 * (len(parts) - 1)) * width
             axes.bar(steps + shift, heights, width, color=look["color"], label=label)
-        axes.axhline(1.0, color=REQUIRED, linestyle="-", linewidth=1.2)
+        axes.axhline(1.0, color=REQUIRED, linestyle="-", linewidth=1.2, label="failure")
         axes.set_yscale("log")
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda damage, _: f"{damage:g}"))
         axes.set_ylim(low, high)
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         axes.set(xlabel="step of the spectrum [-]", ylabel="damage at the required\nsafety [-]")

@@ -89,6 +89,7 @@ def section(rating: Rating, own: OwnRating | None, results: xr.Dataset) -> Part:
             hours=number(float(life.values), 6),
             cycles=both_gears(rating.pitting.cycles),
             grade=rating.tolerances.grade,
+            own=_verdict(rating, own),
             ratio=number(rating.factors.N, 3),
             regime=rating.factors.regime,
         )
@@ -113,6 +114,21 @@ def section(rating: Rating, own: OwnRating | None, results: xr.Dataset) -> Part:
         seen=len(PICTURES),
         unfolded=True,
     )
+
+
+def _verdict(rating: Rating, own: OwnRating | None) -> str:
+    """Whether the safeties with our own load factors are enough too; nothing where there are none."""
+    if own is None or (own.motion is None and own.loaded is None):
+        return ""
+    asked = rating.required
+    names = [
+        f"{min(safeties):.3f} against {name}, below {required:g}"
+        for name, safeties, required in (("pitting", own.S_H, asked.S_H), ("breakage", own.S_F, asked.S_F))
+        if safeties is not None and min(safeties) < required
+    ]
+    if not names:
+        return " With our own load factors pitting and breakage have enough safety too."
+    return f" With our own load factors the safety is {' and '.join(names)}."
 
 
 def _notes(rating: Rating, own: OwnRating | None) -> Iterator[str]:

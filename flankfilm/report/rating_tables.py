@@ -84,10 +84,10 @@ def _of_share(own: OwnRating | None) -> Ours:
         return "", "", f"none: {loaded.no_share}"
     how = "largest share of a pair of teeth over the mesh cycle, whose contacts may reach beyond A to E"
     if (worst := loaded.worst_share) is not None:
-        side = "shorter" if worst.early else "longer"
+        side = "too short" if worst.early else "too long"
         pitch, place = number(1e6 * loaded.deviation, 3), number(1e3 * worst.place, 2)
         most = f"a pair carries {number(worst.ratio, 3)} times its share {place} mm after A"
-        how = f"square of the maximum pressure with f_pb = {pitch} µm over that without; {most}, pitch {side}"
+        how = f"square of the maximum pressure with f_pb = {pitch} µm over that without; {most}, pinion's pitch {side}"
     return factor(loaded.K_Halpha), f"± {percent(loaded.share_error)}", how
 
 
@@ -263,7 +263,9 @@ def _steps(steps: SpectrumRating) -> Iterator[Row]:
             number(torque, 5),
             number(30.0 / np.pi * float(steps.speed[place]), 5),
             f"{steps.cycles[place]:.3e}",
-            number(float(steps.K_v[place])),
-            number(float(steps.K_Hbeta[place])),
+            *(
+                number(value) if np.isnan(value) else f"{value:.3f}"
+                for value in (steps.K_v[place], steps.K_Hbeta[place])
+            ),
             *(number(float(part), 3) for part in (*steps.parts_H[:, place], *roots[:, place])),
         )

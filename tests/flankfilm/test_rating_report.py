@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -89,3 +90,15 @@ def test_a_safety_without_a_result_says_why_in_the_head():
     assert (shown["safety against scuffing"].text, "driving pinion" in shown["safety against scuffing"].note) == (
         "none", True,
     )  # fmt: skip
+
+
+def test_the_verdict_of_our_own_factors_is_said():
+    rated = rating()
+    loaded = LoadedFactors(None, 1.0, 1.0, 1e-3, EVEN, "", 0.01, helical=False)
+    fewer, more = (
+        own_rating(rated, PAIR, loaded=replace(loaded, K_Halpha=share))
+        for share in (1.0, 2.0 * min(rated.S_H) ** 2)
+    )
+    assert "against pitting, below 1" in page(rated, more).paragraphs[0]
+    assert ("below" in page(rated, fewer).paragraphs[0]) == (min(fewer.S_H) < 1.0 or min(fewer.S_F) < 1.4)
+    assert "our own" not in page(rated).paragraphs[0]
