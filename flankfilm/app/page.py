@@ -36,7 +36,10 @@ WWW = Path(__file__).with_name("www")
 
 FILES = {"scripts": ("charts.js", "results.js", "studies.js", "page.js"), "styles": ("page.css",)}
 
-LOST = "<p class='lost'>The connection to flankfilm is lost. Start it again, and open the address that it prints.</p>"
+LOST = (
+    "<p class='lost'>The connection to flankfilm is lost, and what this window started has ended. Load the page again; "
+    "if nothing comes, start flankfilm again, and open the address that it prints.</p>"
+)
 
 THEME = {
     "defaultTheme": "system",

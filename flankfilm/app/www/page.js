@@ -133,6 +133,7 @@
     look();
   });
 
+  const STALLED = 3000; // milliseconds without an answer after which the page says so
   const SETTLED = 1500; // milliseconds after which an answer is what the next ones are compared with
   const page = {
     template: TEMPLATE,
@@ -142,7 +143,7 @@
     data: () => ({
       form: [], files: [], examples: [], results: [], comparison: null, studies: [], table: null, folder: "", opened: ["pair", "pair.pinion", "operating"], typing: "", typed: "",
       view: { values: {}, faults: {}, answers: [], sliders: [], heard: [], drawing: null, number: 0, why_no_curves: "" },
-      problem: "", dialog: "", saveName: "", shownText: "", run: null, waited: 0, position: 0.25,
+      problem: "", dialog: "", saveName: "", shownText: "", run: null, waited: 0, stalled: false, position: 0.25,
       live: null, before: null, figures: [], figuresBefore: [], fault: "", arrived: 0, waiting: {}, busy: false, seconds: 0,
     }),
     computed: {
@@ -188,6 +189,7 @@
         return [...groups].map(([name, answers]) => ({ name, answers }));
       },
       status() {
+        if (this.stalled) return "flankfilm does not answer: the connection is interrupted, or the program is busy. What you change is kept until it does.";
         if (this.faulty) return "The scene has faults: they stand beside their keys. Curves and figures are the last ones without.";
         if (this.view.why_no_curves) return this.view.why_no_curves;
         if (this.fault) return this.fault;
@@ -198,6 +200,7 @@
     async mounted() {
       this.session = this.trame.client.getConnection().getSession();
       this.session.subscribe("flankfilm.told", ([message]) => this.told(message));
+      setInterval(() => { this.stalled = !!this.asked && performance.now() - this.asked > STALLED; }, 500);
       setInterval(() => { this.waited = this.running ? (performance.now() - this.runTold) / 1000 : 0; }, 500);
       await loaded("flankfilmCharts");
       const answer = await this.call("start");
@@ -206,10 +209,12 @@
     methods: {
       async call(method, ...texts) {
         let answer;
+        this.asked = this.asked || performance.now();
         try { answer = await this.session.call("flankfilm.call", [method, ...texts]); } catch (error) {
           this.problem = `no answer: ${error && error.message || "the connection is lost"}`;
           return null;
         }
+        this.asked = 0;
         if (answer.problem || !["edit", "drag"].includes(method)) this.problem = answer.problem || "";
         this.take(answer);
         return answer;

@@ -271,6 +271,33 @@ def test_two_windows_do_not_disturb_each_other_and_one_that_is_closed_ends_what_
     wait(browser, f"!!document.querySelector('.ff-sliders input') && {SOLVED}")  # by the cookie
 
 
+def test_a_connection_that_stalls_is_said_and_continues_and_a_browser_that_comes_back_has_a_window(
+    served, browser
+):
+    opened(browser, served)
+    network = {"latency": 0, "downloadThroughput": -1, "uploadThroughput": -1}
+    browser.call("Network.emulateNetworkConditions", offline=True, **network)
+    try:
+        browser.run(dragged(0, 450))
+        wait(browser, "document.querySelector('.ff-state').innerText.includes('does not answer')")
+    finally:
+        browser.call("Network.emulateNetworkConditions", offline=False, **network)
+    wait(
+        browser, "document.querySelector('.ff-main').innerText.includes('7.09 µm')"
+    )  # what was dragged meanwhile
+    assert "does not answer" not in browser.run("document.querySelector('.ff-state').innerText")
+    before = served.children
+    browser.call("Page.navigate", url="about:blank")
+    until = time.monotonic() + 15.0
+    while served.children and time.monotonic() < until:
+        time.sleep(0.1)
+    assert len(before) == 1
+    assert served.children == []  # what the window started has ended with it
+    opened(browser, served)
+    assert browser.run("document.querySelector('.ff-sliders output').innerText").startswith("600")
+    assert browser.logged == []
+
+
 @pytest.mark.long
 def test_200_random_drags_leave_no_error_and_no_memory(served, browser):
     opened(browser, served)
