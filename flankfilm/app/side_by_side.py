@@ -225,9 +225,7 @@ def _difference(runs: Sequence[_Run], name: str, same: bool) -> Difference:
     for figure in figures:
         error = 0.0 if figure is None else _counted(figure, same)
         change = 0.0 if figure is None else figure[0] - base[0]
-        values.append(
-            "" if figure is None else number(figure[0], 7) + (f" ± {plain(error)}" if error else "")
-        )
+        values.append("" if figure is None else _with_error(figure[0], error))
         differences.append(f"{'+' if change > 0.0 else '-'}{number(abs(change), 3)}" if change else "")
         real.append(abs(change) > error + _counted(base, same))
     prefix, _, _ = name.partition("_")
@@ -243,6 +241,14 @@ def _counted(figure: tuple[float, float | None, float | None], same: bool) -> fl
     """Error of a figure that counts, absolute."""
     _, numerical, model = figure
     return (numerical or 0.0) + (0.0 if same else model or 0.0)
+
+
+def _with_error(value: float, error: float) -> str:
+    """Value with the decimals that two digits of its error have; with seven digits where it is exact."""
+    if not 0.0 < error < abs(value):
+        return number(value, 7) + (f" ± {plain(error)}" if error else "")
+    decimals = max(0, 1 - math.floor(math.log10(error)))
+    return f"{value:.{decimals}f} ± {error:.{decimals}f}"
 
 
 def _overlaid(runs: Sequence[_Run], name: str) -> Overlaid | None:

@@ -63,8 +63,7 @@ def test_a_difference_is_real_where_it_is_larger_than_both_numerical_errors_of_t
     results(tmp_path, "c", 8.1e8, 0.005)  # 0.25 apart, and 0.1 + 0.10125 off
     row = rows(tmp_path, "a", "b", "c")["dry_mean_tangent_stiffness"]
     assert row.unit == "N/(mm um)"
-    assert [value.partition(" ")[0] for value in row.values] == ["20", "20.175", "20.25"]
-    assert row.values[0] == "20 ± 0.1"
+    assert row.values == ("20.00 ± 0.10", "20.18 ± 0.10", "20.25 ± 0.10")
     assert row.differences == ("", "+0.175", "+0.25")
     assert row.real == (False, False, True)
 
@@ -75,7 +74,7 @@ def test_errors_of_models_count_where_the_models_differ(tmp_path):
     found = compared(Place(tmp_path, tmp_path), ["a", "b"])
     (row,) = (row for row in found.rows if row.name == "dry_mean_tangent_stiffness")
     assert row.real == (False, False)  # 2.5 apart, and 2.1 + 2.3625 off
-    assert row.values[0] == "20 ± 2.1"
+    assert row.values[0] == "20.0 ± 2.1"
     assert "different models" in found.about
 
 
@@ -84,7 +83,7 @@ def test_what_is_exact_is_told_apart_at_any_difference_and_equal_figures_are_cou
     results(tmp_path, "b", 8.0e8, 0.005, ratio=1.7 + 1e-6)
     found = compared(Place(tmp_path, tmp_path), ["a", "b"])
     (row,) = found.rows
-    assert (row.name, row.real) == ("pair_contact_ratio", (False, True))
+    assert (row.name, row.values, row.real) == ("pair_contact_ratio", ("1.7", "1.700001"), (False, True))
     assert found.equal == 2  # the face width, and the stiffness
 
 
