@@ -12,6 +12,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from base import Array, Integers, record
+from fem.fields.paraview_state import FILLET
 from fem.fields.tooth_surfaces import ToothSurface, lean, tooth_surface, turned_to
 
 if TYPE_CHECKING:
@@ -23,9 +24,6 @@ BESIDE = 2
 """Teeth of plane gears that are shown on either side of those in contact; solids have fewer."""
 
 GEARS = ("pinion", "wheel")
-
-FILLET = 1
-"""Number of the cells between the root and the form circle, as in `fem.fields.stress_fields.REGIONS`."""
 
 
 @record

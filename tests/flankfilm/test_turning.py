@@ -189,7 +189,7 @@ def complaints(browser) -> list[str]:
 def test_a_browser_draws_the_pair_and_the_slider_moves_it(page, browser, width, dark):
     browser.open(page, width, 900, dark)
     until(browser, READY)
-    assert browser.run(STOPPED) == "Run"
+    assert browser.run(STOPPED) == "Play"
     pictures = []
     for frame in (0, 2, 0):
         browser.run(moved_to(frame))

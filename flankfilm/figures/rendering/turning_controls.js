@@ -44,7 +44,7 @@ function shown(host, pair) {
   function toggle(to) {
     if (running === to) return;
     running = to;
-    run.textContent = running ? "Stop" : "Run";
+    run.textContent = running ? "Stop" : "Play";
     run.setAttribute("aria-pressed", String(running));
     if (running) {
       let last = performance.now();
