@@ -123,7 +123,7 @@ def opened(
 def test_a_drag_changes_curves_and_figures_and_shows_the_old_ones(served, browser):
     opened(browser, served)
     assert served.secret not in browser.run("location.href")
-    wait(browser, f"document.querySelectorAll('.ff-curves svg').length === 7 && {ROOTS}")
+    wait(browser, f"document.querySelectorAll('.ff-curves svg[role=img]').length === 7 && {ROOTS}")
     assert browser.run("document.querySelectorAll('.ff-faint').length") == 0
     time.sleep(1.6)
     browser.run(dragged(0, 450))
@@ -170,7 +170,9 @@ def test_a_half_typed_number_is_a_fault_beside_its_key_until_it_is_whole(served,
         "document.querySelector('.ff-form .v-messages').innerText.includes('must be a finite number')",
     )
     assert browser.run("document.querySelector('.ff-state').innerText").startswith("The scene has faults")
-    assert browser.run("document.querySelectorAll('.ff-curves svg').length") >= 6  # the last ones stay
+    assert (
+        browser.run("document.querySelectorAll('.ff-curves svg[role=img]').length") >= 6
+    )  # the last ones stay
     browser.run(typed("module_mm", "2.5"))
     wait(browser, "!document.querySelector('.ff-form').innerText.includes('must be')")
     wait(browser, SOLVED)
