@@ -6,7 +6,10 @@ import base64
 import json
 import re
 import zlib
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 
 import numpy as np
 import pytest
@@ -268,3 +271,46 @@ def test_a_report_has_the_view_folded_and_small(browser, tmp_path):
     assert len(numbers) == len(again)
     assert np.mean(numbers == again) > 0.999
     assert head["ticks"] == other["ticks"]
+
+
+@pytest.mark.slow
+def test_loads_over_the_face_come_with_displacement_and_say_that_stress_is_missing(browser, tmp_path):
+    over_face = SCENE.replace('"vtk"]', '"vtk", "report"]') + "[alignment]\nin_plane_um = 20\ncells = 8\n"
+    run_scene(parse_scene(over_face), tmp_path)
+    head, _ = held(tmp_path / "report.html")
+    assert (head["field"], head["stress"]) == ("displacement", 0.0)
+    assert min(head["loads"]["counts"]) > 4
+    assert "stress is not found where the load varies along the face" in (tmp_path / "report.html").read_text(
+        "utf-8"
+    )
+    browser.open(write_turning(tmp_path, tmp_path / "turning.html"), 1280)
+    until(browser, READY)
+    browser.run(STOPPED)
+    browser.run(DRAWN)
+    solid = "document.querySelector('.turning-glass').click()"
+    pictures = [browser.run(PICTURE), browser.run(solid), browser.run(DRAWN), browser.run(PICTURE)]
+    assert pictures[0]["part"] > 0.15
+    assert pictures[0] != pictures[3]  # the wheel is no longer of glass
+    assert complaints(browser) == []
+
+
+@pytest.mark.slow
+def test_the_view_begins_under_the_policy_of_the_app(page, browser, tmp_path):
+    """Reports have no rights of the page that serves them; a view needs none."""
+    policy = pytest.importorskip("flankfilm.app.page").SANDBOX
+
+    class Served(SimpleHTTPRequestHandler):
+        def end_headers(self) -> None:
+            self.send_header("Content-Security-Policy", policy)
+            super().end_headers()
+
+        def log_message(self, *_: object) -> None:
+            """Nothing on the terminal."""
+
+    (tmp_path / "report.html").write_bytes(page.read_bytes())
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Served, directory=str(tmp_path))) as server:
+        Thread(target=server.serve_forever, daemon=True).start()
+        browser.open(f"http://127.0.0.1:{server.server_port}/report.html", 1000)
+        until(browser, READY)
+        assert [text for text in complaints(browser) if "404" not in text] == []  # no icon is served
+        server.shutdown()
