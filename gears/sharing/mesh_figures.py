@@ -6,9 +6,9 @@ All follow from the smooth arcs between the cycle's events (`gears.sharing.mesh_
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
-from functools import cached_property
-from types import MappingProxyType
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cached_property, partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from base import Array, described
 from gears.sharing.mesh_arcs import Estimate, MeshArcs
 
 __all__ = ["MeshFigures"]
+
+T = TypeVar("T")
 
 HARMONICS = 50
 """Harmonics of the mesh frequency that are figures of a cycle."""
@@ -27,6 +29,30 @@ _OF_HARMONICS = ("stiffness", "secant_stiffness", "transmission_error")
 """Curves whose harmonics are figures of a cycle."""
 
 IN_SINGLE_POSITIONS = "not estimated in single positions; means and extremes have errors"
+
+
+class _WhenAsked(Mapping[str, T]):
+    """Values by names, each found when it is first asked for: a study of one figure needs no other."""
+
+    def __init__(self, names: Iterable[str], find: Callable[[str], T]) -> None:
+        """Take the names, and what finds the value of one."""
+        self._names, self._find, self._known = tuple(names), find, dict[str, T]()
+
+    def __getitem__(self, name: str) -> T:
+        """Value of a name."""
+        if name not in self._names:
+            raise KeyError(name)
+        if name not in self._known:
+            self._known[name] = self._find(name)
+        return self._known[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """All names."""
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        """Count the names."""
+        return len(self._names)
 
 
 class MeshFigures(ABC):
@@ -49,16 +75,14 @@ class MeshFigures(ABC):
         """
 
     @cached_property
-    def _estimates(self) -> dict[str, Estimate]:
-        arcs = self.arcs
-        if arcs is None:
-            return dict.fromkeys(_ESTIMATES, Estimate(float("nan"), None))
-        return {name: estimate(arcs) for name, estimate in _ESTIMATES.items()}
+    def _estimates(self) -> Mapping[str, Estimate]:
+        return _WhenAsked(_ESTIMATES, partial(_estimate, self.arcs))
 
     @property
     def errors(self) -> Mapping[str, float | None]:
         """Estimated relative errors of means and extremes by their names; None where they are unknown."""
-        return MappingProxyType({name: estimate.relative for name, estimate in self._estimates.items()})
+        estimates = self._estimates
+        return _WhenAsked(estimates, lambda name: estimates[name].relative)
 
     @described("N/m", error="errors", called="mean_tangent_stiffness")
     def mean_stiffness(self) -> float:
@@ -188,3 +212,8 @@ _ESTIMATES: Mapping[str, Callable[[MeshArcs], Estimate]] = {
     "greatest_secant_stiffness": lambda arcs: arcs.extreme("secant_stiffness", greatest=True),
     "greatest_load_share": lambda arcs: arcs.greatest_share(),
 }
+
+
+def _estimate(arcs: MeshArcs | None, name: str) -> Estimate:
+    """Estimate of a figure; nan without arcs."""
+    return Estimate(float("nan"), None) if arcs is None else _ESTIMATES[name](arcs)

@@ -11,7 +11,7 @@ import dynamics
 import ehl
 import fem
 import gears
-from flankfilm.coupling import FilmAlongPath, LoadedTeeth, MeshLosses, face_load_models, lubricate
+from flankfilm.coupling import FilmAlongPath, LoadedTeeth, MeshLosses, face_load_models, lubricate, mesh_cycle
 from flankfilm.coupling.films import films
 from flankfilm.coupling.films.films import FilmModel
 from flankfilm.coupling.mesh.extreme_errors import of_sampled_greatest
@@ -184,3 +184,13 @@ def test_bulk_temperatures_err_as_the_losses_that_they_balance():
         balanced.bulk_temperatures_error, (0.1 + 0.02 * heat / transfer) / bulk, rtol=1e-12
     )
     assert given.bulk_temperatures_error.tolist() == [0.0, 0.0]
+
+
+def test_a_figure_is_estimated_when_it_is_asked_for():
+    """A study of one figure needs no other; names of all errors are there."""
+    pair = gears.GearPair(gears.Gear(36), gears.Gear(40), module=2e-3, face_width=40e-3)
+    cycle = mesh_cycle(pair, 600.0, model="potential-energy")
+    assert cycle.transmission_error_range > 0.0
+    assert set(cycle._estimates._known) == {"transmission_error_range"}
+    assert "greatest_load_share" in set(cycle.errors)
+    assert len(cycle.errors) == len(cycle._estimates) > 1
