@@ -239,7 +239,7 @@ class LineContact(CellContact):
     def factors(self, loads: Array) -> Array:
         """Load factors (...): that over the mean of all lines."""
         length = self.lines.divided(loads.shape[-1]).length[..., None]
-        touches = np.where(self.lines.touches, self.lines.length, 0.0).sum(axis=-1)
+        touches = self.lines.length_on_path.sum(axis=-1)
         return np.asarray(self.largest(loads) / (np.sum(loads * length, axis=(-2, -1)) / touches))
 
     def largest_error(

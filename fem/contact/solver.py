@@ -16,15 +16,20 @@ from fem.contact.moved_share import moved_share
 from fem.contact.moved_side import moved_side
 from fem.contact.opposite_flanks import share_with_opposite
 from fem.contact.shared_contacts import share_staying
-from fem.laws.contact_candidates import REACHES
+from fem.laws.contact_candidates import LINES_REACH, REACHES
 from fem.laws.corner_laws import CornerLaws
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
+from fem.laws.tip_edges import edges_of_lines
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
 
 __all__ = ["solve_contact", "solve_one_side"]
+
+STIFF = 0.06
+"""Stiffness of a helical mesh per width over the plane modulus, less than which it hardly is: lines go on beyond the
+path as far as a deflection by it closes gaps, and farther where the deflection is more."""
 
 
 def solve_contact(
@@ -52,7 +57,7 @@ def solve_contact(
     corner_laws = corner_laws or CornerLaws(setup, bodies)
     state: ContactState | None = None
     # without a torque overlap alone says how far contacts reach
-    for reach in REACHES if np.all(force) else REACHES[-1:]:
+    for reach in _reaches(setup, bodies, force):
         flanks = loaded_flanks(setup, bodies, film, reach, corner_laws)
         state = solve_one_side(setup, bodies, force, flanks, corner_laws) if np.all(force) else None
         if state is None or np.max(state.closing + state.touch) <= flanks.candidates.reach_gap:
@@ -62,6 +67,21 @@ def solve_contact(
     if state is None or setup.two_sided or _near(setup, flanks, state):
         state = _two_sided(setup, bodies, force, film, flanks, state, reach, corner_laws)
     return state
+
+
+def _reaches(setup: MeshSetup, bodies: PairCompliance, force: Array) -> tuple[float, ...]:
+    """Base pitches outside the path within which tip edges are looked for, one after the other.
+
+    On lines of contact as far as a deflection closes gaps that goes with the force alone, so that all positions of an
+    arc have cells alike.
+    """
+    if not (setup.helical and setup.beyond_path):
+        return REACHES if np.all(force) else REACHES[-1:]
+    softest = min(gear.law.plane_modulus for gear in (bodies.pinion, bodies.wheel))
+    deflection = float(np.max(force)) / (STIFF * softest * setup.pair.face_width)
+    edges = edges_of_lines(setup, LINES_REACH)
+    near = [edges.closed_by(times * deflection) / setup.pair.base_pitch for times in (1.0, 2.0, 4.0)]
+    return (*near, LINES_REACH)
 
 
 def _near(setup: MeshSetup, flanks: LoadedFlanks, state: ContactState) -> bool:

@@ -269,6 +269,9 @@ def _reserve(state: ContactState, force: float, setup: MeshSetup) -> Array:
             float(loads.sum(axis=-1).mean() / np.mean(state.share.stiffness)),
         )
     bears = np.where(loads > 0.0, loads / force, -np.maximum(gaps, 0.0) / size - 1e-300)
+    if setup.helical and setup.beyond_path:
+        # lines are looked for no farther than gaps may close: beyond that they stay as far away, not without bound
+        bears = np.maximum(bears, -1.0)
     if setup.even:
         return np.asarray(bears)
     # flanks that both fit touch together: what is less than rounding is no difference

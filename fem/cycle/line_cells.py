@@ -73,8 +73,24 @@ class CellsOfLines:
     @property
     def rho(self) -> Array:
         """Curvature radii on pinion and wheel (2, positions, pairs, cells) [m]."""
-        rho1 = self.travel + self.pair.points.A
+        points = self.pair.points
+        # tip edges as flanks at the ends of the path
+        rho1 = np.clip(self.travel + points.A, points.A, points.E)
         return np.stack([rho1, self.pair.line_of_action - rho1])
+
+    @property
+    def on_path(self) -> Array:
+        """Part of each cell between the ends of the path (positions, pairs, cells); 0 where there is none."""
+        points, helix = self.pair.points, self.pair.helix
+        across = self.length[..., None] * helix.base_cosine * abs(helix.base_tangent)
+        travel, path = np.nan_to_num(self.travel), points.E - points.A
+        before, after = (
+            np.clip(0.5 + away / np.where(across > 0.0, across, path), 0.0, 1.0)
+            for away in (travel, path - travel)
+        )
+        part = before + after - 1.0
+        # cells that end with the path are whole but for rounding
+        return np.asarray(np.isfinite(self.z) * np.where(part > 1.0 - 1e-9, 1.0, part))
 
     @property
     def inside(self) -> Booleans:

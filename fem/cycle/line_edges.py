@@ -133,7 +133,9 @@ class LoadedLines:
         cells, (positions, pairs) = lines.divided(count), self.candidates.place.shape
         rho = np.moveaxis(cells.rho, -1, 1).reshape(2, -1, pairs)
         used = np.moveaxis(cells.used, -1, 0).reshape(-1, pairs)
-        sections = replace(self.candidates, rho=rho, touchable=used, edge=np.zeros_like(used))
+        edge = np.zeros_like(cells.used) if lines.edges is None else lines.edges.beyond(lines.places(cells))
+        edges = np.moveaxis(edge, -1, 0).reshape(-1, pairs) & used
+        sections = replace(self.candidates, rho=rho, touchable=used, edge=edges)
         moves, shape = contact_moves(self.bodies, sections), (count, 1, positions, pairs)
         return ContactMoves(
             moves.roll.reshape(*shape, pairs),
@@ -144,16 +146,18 @@ class LoadedLines:
     @cached_property
     def beyond_path(self) -> BeyondPath:
         """What contact beyond the path changes, by solutions without and with it, both dry."""
-        pair = self.setup.pair
+        pair, count = self.setup.pair, self.forces.shape[-1]
         edges = edges_of_lines(replace(self.setup, beyond_path=True), LINES_REACH)
-        farthest = edges.closed_by(FARTHER * float(self.approach.max()))
-        # as many cells as part the line beyond the path, but no more than twice the usual number
-        count, face = self.forces.shape[-1], self.setup.face
-        wanted = int(PARTS * FARTHER * pair.face_width * abs(self.setup.line_slope) / farthest) + 1
-        setup = replace(self.setup, face=replace(face, cells=min(max(count, wanted), 2 * count)))
-        on, reach = replace(setup, beyond_path=True), farthest / pair.base_pitch
         try:
-            ends, goes_on = self._solved(setup, 0.0), self._solved(on, reach)
+            ends = self._solved(self.setup, 0.0)
+            farthest = edges.closed_by(FARTHER * float(ends.deflection(0).max()))
+            # as many cells as part the line beyond the path, but no more than twice the usual number
+            wanted = PARTS * FARTHER * pair.face_width * abs(self.setup.line_slope) / farthest
+            cells = int(np.clip(np.ceil(wanted), count, 2 * count))
+            setup = replace(self.setup, face=replace(self.setup.face, cells=cells))
+            if cells != count:
+                ends = self._solved(setup, 0.0)
+            goes_on = self._solved(replace(setup, beyond_path=True), farthest / pair.base_pitch)
         except LoadSharingError:  # nothing is known, not even a bound
             whole = self.approach.ravel()
             return BeyondPath(whole, whole / abs(self.load), np.ones_like(whole), 1.0)

@@ -136,8 +136,8 @@ class LineLoads(CellsOfLines):
 
     @described("m", "position", shown="mm", no_error=EXACT)
     def whole_length(self) -> Array:
-        """Length of all lines of contact together."""
-        return np.asarray((np.isfinite(self.z) * self.length[..., None]).sum(axis=(1, 2)))
+        """Length of all lines of contact together, between the ends of the path."""
+        return np.asarray((self.on_path * self.length[..., None]).sum(axis=(1, 2)))
 
     @described("N/m", "position", shown="N/mm", error="line_load_error")
     def maximum_line_load(self) -> Array:
@@ -241,7 +241,7 @@ class LineLoads(CellsOfLines):
     @described("1")
     def contact_pattern(self) -> float:
         """Part of the length of all lines, over the whole cycle, that is touched."""
-        touched = ((np.nan_to_num(self.line_load) > 0.0) * self.length[..., None]).sum()
+        touched = ((np.nan_to_num(self.line_load) > 0.0) * self.on_path * self.length[..., None]).sum()
         return float(touched / self.whole_length.sum())
 
 
@@ -278,7 +278,7 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
     return LineLoads(
         position=contact.candidates.position,
         z=of_used(cells.z),
-        travel=of_used(cells.rho[0] - pair.points.A),
+        travel=of_used(lines.places(cells) - pair.points.A),
         length=np.tile(length, (pitches, 1)),
         line_load=of_used(per_length),
         gap=of_used(np.maximum(over.remaining_gaps[number], 0.0)),

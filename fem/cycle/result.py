@@ -312,8 +312,10 @@ class MeshCycle(PairFigures, MeshFigures):
 
     @property
     def beyond_path_change(self) -> BeyondPath | None:
-        """What contact beyond the path changes of a helical pair; None of spur pairs, whose model may have it."""
-        return self.loaded.beyond_path if isinstance(self.loaded, LoadedLines) else None
+        """What contact beyond the path changes of a helical pair held to it; None with it, and of spur pairs."""
+        if not isinstance(self.loaded, LoadedLines) or self.beyond_path:
+            return None
+        return self.loaded.beyond_path
 
     @described("m", "position", shown="um", no_error=EXACT)
     def unloaded_transmission_error(self) -> Array:

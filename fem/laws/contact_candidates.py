@@ -266,7 +266,7 @@ def _lines(setup: MeshSetup, reach: float) -> ContactCandidates:
         place=place,
         rho=rho,
         touchable=touchable,
-        edge=none,
+        edge=none if edges is None else touchable & edges.beyond(place),
         curvature=np.ones_like(place),
         lacking=np.where(touchable, 0.0, np.inf),
         lever=np.tile(np.full_like(rho, pair.helix.base_cosine), tiles),
@@ -276,7 +276,7 @@ def _lines(setup: MeshSetup, reach: float) -> ContactCandidates:
         teeth=teeth.reshape(2, -1, len(offset)) % numbers,
         back_gap=(setup.backlash + gap.min(axis=-1) + behind + other.face.least_gap(pair)).ravel(),
         chamfered=none,
-        reach_gap=np.inf,
+        reach_gap=np.inf if edges is None else float(edges.gap[:, -1].min()),
         lines=lines,
     )
 
@@ -347,6 +347,9 @@ def unloaded_transmission_error(
         face = face_setting(pair, alignment, None, FREE_ENDS) or EVEN
     setup = MeshSetup(pair, positions, tip_edges, deviations, pitches, first_teeth, tip_rounding, face=face)
     faults = Faults()
+    if setup.helical and tip_edges:
+        allowed = "must be False with a helix where there is no load: contact is held to the path"
+        faults.add("beyond_path", True, allowed, "leave it out")
     setup.check(faults)
     faults.raise_if_any()
     return np.asarray(contact_candidates(setup, REACHES[-1]).gap.min(axis=-1).ravel())

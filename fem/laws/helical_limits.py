@@ -24,10 +24,6 @@ class Setting(Protocol):
         """Gears in mesh."""
 
     @property
-    def beyond_path(self) -> bool:
-        """Whether tip edges may touch outside the path."""
-
-    @property
     def radii(self) -> tuple[float, ...]:
         """Of rounded tip edges [m]."""
 
@@ -45,9 +41,6 @@ def check_helical(faults: Faults, setup: Setting) -> None:
     if setup.pair.tight:
         allowed = "must be False with a helix: flanks on one side of the teeth carry the load"
         faults.add("pair.tight", True, allowed, "give backlash")
-    if setup.beyond_path:
-        allowed = "must be False with a helix: contact is held to the path, from A to E"
-        faults.add("beyond_path", True, allowed, "leave it out")
     if any(radius != 0.0 for radius in setup.radii):
         faults.add("tip_rounding", setup.radii, "must be 0 with a helix", SPUR)
     if setup.moving_contact:

@@ -149,6 +149,15 @@ class ContactLines:
         """Of what touches along the face (n, pairs) [m]."""
         return np.asarray(self.stop - self.start)
 
+    @property
+    def length_on_path(self) -> Array:
+        """Of what touches along the face between the ends of the path (n, pairs) [m]."""
+        if self.edges is None:
+            return np.where(self.touches, self.length, 0.0)
+        low, high = self.edges.ends
+        ends = self.middle + self.slope * np.stack([self.start, self.stop])
+        return np.asarray(np.ptp(np.clip(ends, low, high), axis=0) / abs(self.slope))
+
     def divided(self, cells: int) -> LineCells:
         """Divide every line into equal cells, of the length of `cells` on the whole face or a little less."""
         touches, length = self.touches, np.where(self.touches, self.length, self.face_width)

@@ -141,7 +141,7 @@ class LineRoots:
         instant = int(np.argmin(np.abs(self.lines.position + tension.tooth - tension.position)))
         then = maxima[LOADED, instant, row]
         length = self.lines.whole_length
-        even = np.isfinite(self.lines.z) * self.lines.length[..., None]
+        even = self.lines.on_path * self.lines.length[..., None]
         even = even * (self.lines.force.sum(axis=(1, 2)) / length)[:, None, None]
         spread = self._clear(_larger(*self._components(even, z)), z)
         most_even = extreme(self.fillets.line.arc, spread[:, :, :, LOADED])[0].max()

@@ -18,19 +18,21 @@ MEAN, SWING = 0.008, 0.05
 
 def mean_of_lines(contact: Any, law: float) -> float:
     """Of a mean stiffness: the secant's for `law` 1, the tangent's for 2, whose flanks count twice."""
-    beyond, force = contact.beyond_path_change, abs(contact.force)
-    if law == 1.0:
-        change = beyond.of_mean_secant(force, contact.secant_stiffness)
-    else:
-        change = beyond.of_mean_tangent(contact.stiffness)
+    beyond, force, change = contact.beyond_path_change, abs(contact.force), 0.0
+    if beyond is not None:
+        change = (
+            beyond.of_mean_secant(force, contact.secant_stiffness)
+            if law == 1.0
+            else beyond.of_mean_tangent(contact.stiffness)
+        )
     return float(law * contact.flank_error + change + MEAN)
 
 
 def deflection_of_lines(contact: Any) -> float:
     """Change of the peak-to-peak transmission error by flanks and by contact beyond the path [m]."""
-    deflection = np.abs(contact.transmission_error)
-    by_flanks = float(np.ptp(contact.loaded.of_flanks * deflection))
-    return by_flanks + float(contact.beyond_path_change.of_range(contact.transmission_error))
+    deflection, beyond = np.abs(contact.transmission_error), contact.beyond_path_change
+    by_edges = 0.0 if beyond is None else beyond.of_range(contact.transmission_error)
+    return float(np.ptp(contact.loaded.of_flanks * deflection) + by_edges)
 
 
 def range_of_lines(contact: Any, whole: float) -> float:
@@ -40,9 +42,9 @@ def range_of_lines(contact: Any, whole: float) -> float:
 
 def over_mean_of_lines(contact: Any, law: float) -> float:
     """Of harmonics of a stiffness over its mean: half the range of its relative change over the positions."""
-    beyond = contact.beyond_path_change
-    if law == 1.0:
-        change = beyond.deflection * contact.secant_stiffness / abs(contact.force)
-    else:
-        change = beyond.compliance * contact.stiffness
-    return 0.5 * float(np.ptp(law * contact.loaded.of_flanks + change))
+    beyond, change = contact.beyond_path_change, law * contact.loaded.of_flanks
+    if beyond is not None and law == 1.0:
+        change = change + beyond.deflection * contact.secant_stiffness / abs(contact.force)
+    elif beyond is not None:
+        change = change + beyond.compliance * contact.stiffness
+    return 0.5 * float(np.ptp(change))

@@ -185,15 +185,12 @@ def test_what_helices_do_not_have_is_refused_at_once(bodies: PairCompliance) -> 
             8.0,
             6,
             bodies,
-            beyond_path=True,
             tip_rounding=1e-5,
             moving_contact=True,
             face_model="walls",
         )
     named = str(raised.value)
-    for key in (
-        "beyond_path", "tip_rounding", "moving_contact", "face_model",
-    ):  # fmt: skip
+    for key in ("tip_rounding", "moving_contact", "face_model"):
         assert key in named
 
 
