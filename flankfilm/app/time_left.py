@@ -45,6 +45,9 @@ MEASURED = {
 }
 """Stages that take nearly the same time for all pairs, measured on one core for the article's scene [s]."""
 
+BESIDE = {"dry cycle": 0.3}
+"""What the plan does not count: events between positions, measured like the stages [s]."""
+
 WITHOUT_FILMS = {"none": 0.0, "dowson": 0.1}
 """Seconds of the film where none is solved, by its model [s]."""
 
@@ -103,7 +106,8 @@ def _cost(stage: Stage[Any], engine: Engine, plan: Plan | None) -> float | None:
         return WITHOUT_FILMS[plan.film.choice]
     if stage.name == BODIES.name and plan.stiffness.choice != "fem":
         return 0.0
-    return plan.costs.get(PLANNED[stage.name])
+    planned = plan.costs.get(PLANNED[stage.name])
+    return None if planned is None else planned + BESIDE.get(stage.name, 0.0)
 
 
 def _gives_damping(engine: Engine) -> bool:
