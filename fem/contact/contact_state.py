@@ -154,10 +154,10 @@ class ContactState:
     def torques(self, number: int) -> Array:
         """Torque of each pair over the pinion's base radius (pitches, positions, pairs) [N]."""
         levers = self.flanks.tilted_lever_ratios - self.lever_loss(number)[0, 0]
-        return np.asarray(self.share.forces[number] * levers + self.rubbed(number))
+        return np.asarray(self.share.forces[number] * levers + self.by_cells(number))
 
-    def rubbed(self, number: int) -> Array:
-        """What friction that differs from cell to cell adds to these (pitches, positions, pairs) [N]."""
+    def by_cells(self, number: int) -> Array:
+        """What friction and tip edges, which differ from cell to cell, add to these (pitches, positions, pairs) [N]."""
         lines, forces = self.candidates.lines, self.cell_forces(number)
         if lines is None:
             return np.zeros(forces.shape[:-1])

@@ -139,13 +139,13 @@ class LineContact(CellContact):
         """
         reach, levers = super().levers(face)
         edge = self._edge_levers(self.lines.places(self.lines.divided(face.cells))).reshape(reach.shape)
-        rubbing = further_levers(self.setup, self.lines, face.cells).reshape(levers.shape)
-        return reach * edge, levers * edge + np.repeat(self.sides.sign, face.cells) * rubbing
+        further = further_levers(self.setup, self.lines, face.cells).reshape(levers.shape)
+        return reach * edge, levers + np.repeat(self.sides.sign, face.cells) * further
 
     def _edge_levers(self, place: Array) -> Array:
         """Levers of forces about the pinion's axis over those on flanks, at places of the line of action."""
         edges = self.lines.edges
-        return np.ones_like(place) if edges is None else edges.levers(place)
+        return np.ones_like(place) if edges is None else edges.levers(place)[0]
 
     def tilts(self, face: FaceSetting) -> Array:
         """Places z of cells, moved along their lines to the pitch point (positions, n) [m]."""

@@ -185,7 +185,7 @@ class ContactProblem:
         moved, tangent = state.turn(0)[0], share.stiffness[0, 0]
         secant = size / deflection if size else tangent
         if self.film is not None and self.film_yields:
-            torques = share.forces[0, 0] * state.flanks.tilted_lever_ratios + state.rubbed(0)[0]
+            torques = share.forces[0, 0] * state.flanks.tilted_lever_ratios + state.by_cells(0)[0]
             shares = torques / (size or torques.sum(axis=-1, keepdims=True))
             added = self._yielding(self.film, state, shares)
             secant = size / (size / secant + added) if size else secant

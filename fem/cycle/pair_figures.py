@@ -137,8 +137,17 @@ class PairFigures:
         total = np.sum(self.forces * arm, axis=1, where=np.isfinite(arm))
         if self.lines is not None:
             turning = self.friction if self.flank == "front" else -self.friction
-            total = total + turning * self.lines.rubbed[1]
+            total = total + turning * self.lines.rubbed[1] + self._on_edges()
         return np.asarray(total if self.flank == "front" else -total)
+
+    def _on_edges(self) -> Array | float:
+        """What levers of tip edges on lines of contact add to the wheel's torque (positions,) [N m]."""
+        lines, cells = self.candidates.lines, self.lines
+        if lines is None or lines.edges is None or cells is None:
+            return 0.0
+        shorter = lines.edges.levers(np.nan_to_num(cells.travel) + self.pair.points.A)[1] - 1.0
+        arm = self.pair.helix.base_cosine * self.pair.base_radii[1]
+        return np.asarray(arm * np.sum(cells.force * shorter, axis=(-2, -1)))
 
     def friction_loss(self, speed: float) -> Array:
         """Power lost by sliding (n,) [W], sum of ``mu F_i |u1 - u2|``; speed of the pinion [rad/s]."""

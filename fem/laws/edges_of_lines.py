@@ -28,7 +28,7 @@ class EdgesOfLines:
     touched : (2, k) array
         Curvature radii of the flank that is touched: of the pinion before A, of the wheel after E [m].
     lever : (2, k) array
-        Of the force about the pinion's axis, over its base radius.
+        Of the force about the axis of the gear whose edge it is, over its base radius; 1 about the other axis.
     """
 
     ends: tuple[float, float]
@@ -79,12 +79,12 @@ class EdgesOfLines:
         return np.asarray(before + after)
 
     def levers(self, place: Array) -> Array:
-        """Levers about the pinion's axis over its base radius (...), 1 on the path; ``place`` as of ``rho``."""
+        """Levers about both axes over base radii (2, ...), 1 on the path; ``place`` as of ``rho``."""
         before, after = (
-            np.interp(away, distance, lever)
+            np.where(away > 0.0, np.interp(away, distance, lever), 1.0)
             for away, distance, lever in zip(self._away(place), self.distance, self.lever, strict=True)
         )
-        return np.asarray(before * after)
+        return np.stack([after, before])
 
     def _away(self, place: Array) -> tuple[Array, Array]:
         start, end = self.ends

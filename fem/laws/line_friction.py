@@ -42,7 +42,7 @@ def rubbed_arms(pair: GearPair, rho1: Array, width: Array) -> Array:
 
 
 def further_levers(setup: MeshSetup, lines: ContactLines, cells: int) -> Array:
-    """What friction adds to levers about the pinion, over r_b1 (positions, pairs, cells).
+    """What friction and tip edges add to levers about the pinion, over r_b1 (positions, pairs, cells).
 
     Parameters
     ----------
@@ -55,4 +55,7 @@ def further_levers(setup: MeshSetup, lines: ContactLines, cells: int) -> Array:
     parts, pair = lines.divided(cells), setup.pair
     first, _ = rubbed_arms(pair, parts.rho[0], abs(lines.slope) * parts.length[..., None])
     turning = -setup.friction if setup.back else setup.friction
-    return np.asarray(turning * first / pair.base_radii[0])
+    rubbing = np.asarray(turning * first / pair.base_radii[0])
+    if lines.edges is None:
+        return rubbing
+    return rubbing + pair.helix.base_cosine * (lines.edges.levers(lines.places(parts))[0] - 1.0)

@@ -77,14 +77,13 @@ def edges_of_lines(setup: MeshSetup, reach: float) -> EdgesOfLines:
     tables = []
     for corner, place in ((1, start - away), (0, end + away)):
         at = edges_at(setup, corner, place)
-        # the flank of the pinion itself is touched before A
-        gap, lever = at.gap, at.lever if corner == 0 else np.ones_like(away)
+        gap = at.gap
         if setup.removed is not None:
             gap = gap - setup.removed[corner](np.array([setup.rounds[corner].rho]))
             gap = gap - setup.removed[1 - corner](at.touched_rho)
         # where the tip passes over the other one, nothing is touched
         last = int(np.argmin(np.append(np.isfinite(gap), False))) - 1
         known, number = np.linspace(0.0, last, STEPS + 1), np.arange(STEPS + 1.0)
-        columns = away, np.where(np.isfinite(gap), gap, 0.0), at.touched_rho, lever
+        columns = away, np.where(np.isfinite(gap), gap, 0.0), at.touched_rho, at.lever
         tables.append([np.interp(known, number, values) for values in columns])
     return EdgesOfLines(setup.ends, *(np.stack(values) for values in zip(*tables, strict=True)))
