@@ -96,9 +96,13 @@ def test_a_small_helix_is_the_warm_spur_face_within_the_errors(angle):
     flanks = {"bulk_temperatures": (HOT.pinion_temperature, HOT.wheel_temperature)}
     face, lines = (lost(each, **flanks) for each in teeth)
     assert lines.mesh_loss == pytest.approx(face.mesh_loss, rel=lines.error + face.error)
-    assert lines.greatest_contact_temperature - 273.15 == pytest.approx(
-        face.greatest_contact_temperature - 273.15, rel=lines.error + face.error
-    )
+    # films at the same places under the same loads; ends of the face count for the one, not for the other
+    warmer = [
+        np.nanmax(cells.contact_temperature[..., 3:-3]) - HOT.pinion_temperature
+        for cells in (face.over_face, lines.over_lines)
+    ]
+    assert warmer[0] > 1.0
+    assert warmer[1] == pytest.approx(warmer[0], rel=lines.error + face.error)
 
 
 @pytest.mark.slow
