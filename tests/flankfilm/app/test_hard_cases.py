@@ -92,3 +92,37 @@ def test_two_apps_on_one_folder_do_not_write_over_each_other(folder):
     assert "module_mm = 3" in (folder / "article.toml").read_text(encoding="utf-8")
     for model in (first, second):
         model.close()
+
+
+@pytest.mark.slow
+@pytest.mark.long
+def test_a_run_cancelled_at_every_stage_leaves_nothing_running_and_the_next_one_is_whole(folder, monkeypatch):
+    mark = new_mark()
+    monkeypatch.setenv(MARK, mark)
+    monkeypatch.setenv("FLANKFILM_CACHE", str(folder / "cache"))
+    operating = (
+        "[operating]\npinion_torque_Nm = 200\n[material]\nyoungs_modulus_GPa = 206\npoisson_ratio = 0.3\n"
+    )
+    text = RUN.replace('"geometry"', '"geometry", "stiffness"') + operating
+    (folder / "pair.toml").write_text(text, encoding="utf-8")
+    stages: list[str] = []
+
+    def told(kind: str, content) -> None:
+        if kind == "run" and content["status"] is None and content["what"] not in (*stages, "starting"):
+            stages.append(content["what"])
+            model.cancel()
+
+    model = Model(SceneFiles(folder), told, "pair.toml")
+    while True:
+        before = len(stages)
+        model.run()
+        state = model._run.wait(120.0)
+        assert left_after(mark) == {}
+        if len(stages) == before:  # all stages have been cancelled once
+            break
+        assert state.cancelled
+        assert state.status != 0 or state.what == "done"
+    assert (state.status, state.report) == (0, True), state.log
+    assert len(stages) >= 6
+    assert {"geometry", "writing the report", "netCDF and CSV files"} <= set(stages)
+    model.close()
