@@ -203,10 +203,11 @@ def test_a_run_has_a_stage_and_a_report_and_is_cancelled(served, browser):
     assert browser.logged == []
 
 
-def test_results_of_runs_are_compared_side_by_side(served, browser):
+@pytest.mark.parametrize(("width", "dark"), [(1280, False), (400, True)])
+def test_results_of_runs_are_compared_side_by_side(served, browser, width, dark):
     for name, stiffness in (("first-results", 8.0e8), ("second-results", 8.8e8)):
         results(served.folder, name, stiffness, 0.005)
-    opened(browser, served)
+    opened(browser, served, width, 720, dark)
     browser.run(PRESS.format("Results"))
     wait(browser, "document.querySelectorAll('.ff-kept input').length === 2")
     for number in (0, 1):
@@ -221,6 +222,8 @@ def test_results_of_runs_are_compared_side_by_side(served, browser):
     assert "mean mesh stiffness (tangent), without film" in table
     assert "+2" in table or "-2" in table
     assert browser.run("document.querySelectorAll('.ff-side td b').length") >= 1
+    read = browser.run(CHECKS)
+    assert (read["faint"], read["tiny"], read["doubled"], read["screen"]) == ([], [], [], width)
     assert browser.logged == []
 
 
