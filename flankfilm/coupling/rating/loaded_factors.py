@@ -89,9 +89,8 @@ def loaded_factors(cycle: MeshCycle, pitches: UnequalPitches | None = None) -> L
     the square of the ratio of maximum Hertz pressures, the larger one of both signs of the deviation.
 
     Of a helical pair the maximum line load over the mean of all lines of contact is both together; the nominal stress
-    is
-    of that mean (Z_eps = 1/sqrt(eps_alpha) from an overlap ratio of 1 on). With the deviation it stands beside: it is
-    that of a corner of the face where a line begins at A or ends at E, which end relief takes away.
+    is of that mean (Z_eps = 1/sqrt(eps_alpha) from an overlap ratio of 1 on). With the deviation it stands beside: it
+    is that of a corner of the face where a line begins at A or ends at E, which end relief takes away.
 
     Parameters
     ----------
