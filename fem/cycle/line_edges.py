@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
+from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -152,8 +153,8 @@ class LoadedLines:
             ends = self._solved(self.setup, 0.0)
             farthest = edges.closed_by(FARTHER * float(ends.deflection(0).max()))
             # as many cells as part the line beyond the path, but no more than twice the usual number
-            wanted = PARTS * FARTHER * pair.face_width * abs(self.setup.line_slope) / farthest
-            cells = int(np.clip(np.ceil(wanted), count, 2 * count))
+            part = farthest / (PARTS * FARTHER * pair.face_width * abs(self.setup.line_slope))
+            cells = 2 * count if 2 * count * part < 1.0 else max(count, ceil(1.0 / part))
             setup = replace(self.setup, face=replace(self.setup.face, cells=cells))
             if cells != count:
                 ends = self._solved(setup, 0.0)
