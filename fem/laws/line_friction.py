@@ -58,4 +58,4 @@ def further_levers(setup: MeshSetup, lines: ContactLines, cells: int) -> Array:
     rubbing = np.asarray(turning * first / pair.base_radii[0])
     if lines.edges is None:
         return rubbing
-    return rubbing + pair.helix.base_cosine * (lines.edges.levers(lines.places(parts))[0] - 1.0)
+    return np.asarray(rubbing + pair.helix.base_cosine * (lines.edges.levers(lines.places(parts))[0] - 1.0))
