@@ -89,6 +89,16 @@ def own_contact(
     ----------
     ISO/TR 13989-1:2000; ISO/TS 6336-22 for the film ratio, film over Ra. Its film h_Y is left out: no source confirms
     its constants here.
+
+    Examples
+    --------
+    >>> from gears import Gear, GearPair
+    >>> from gears.rating import RatedSteel, RatingData, rate
+    >>> pair = GearPair(Gear(36), Gear(40), module=2e-3, face_width=40e-3)
+    >>> data = RatingData(6, (RatedSteel("Eh", 1500e6, 430e6),) * 2, 3.6e7, 220e-6, 4.8e-6, (20e-6, 20e-6))
+    >>> found = own_contact(rate(pair, 300.0, 209.44, data), 0.8e-6)
+    >>> found.film_ratio is None  # neither losses nor films were given
+    True
     """
     if losses is None:
         least, off = (None, None) if film is None else (film.film.least_film, film.film.least_film_error)
