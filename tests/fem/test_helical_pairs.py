@@ -48,10 +48,10 @@ def test_bodies_of_a_spur_pair_do_not_open_the_way():
         fem.single_pair_stiffness(HELICAL, force=1e3, rho1=HELICAL.points.C, compliance=bodies)
 
 
-def test_a_setup_notes_friction_once_beside_other_faults_and_none_of_spur_pairs():
+def test_a_setup_notes_a_fault_once_beside_others_and_none_of_spur_pairs():
     faults = Faults()
-    MeshSetup(HELICAL, positions=0, friction=0.1).check(faults)
-    assert sorted(fault.where for fault in faults.found) == ["friction", "positions"]
+    MeshSetup(HELICAL, positions=0, tip_rounding=1e-5).check(faults)
+    assert sorted(fault.where for fault in faults.found) == ["positions", "tip_rounding"]
     spur = Faults()
     MeshSetup(GearPair(*GEARS, 2e-3, 20e-3, helix_angle=0.0)).check(spur)
     assert not spur.found

@@ -52,7 +52,9 @@ def test_tables_of_edges_are_the_edges_of_the_section():
         assert rho[1 - corner] == pytest.approx(at.touched_rho, abs=2e-5 * SMALL.module)
         tip = SMALL.points.E if corner == 0 else SMALL.line_of_action - SMALL.points.A
         assert rho[corner] == pytest.approx(tip, rel=1e-12)
-        assert edges.levers(place) == pytest.approx(at.lever if corner == 0 else 1.0, rel=1e-6)
+        levers = edges.levers(place)
+        assert levers[corner] == pytest.approx(at.lever, rel=1e-6)
+        assert levers[1 - corner] == pytest.approx(1.0, abs=0.0)
         assert edges.closed_by(0.5 * largest) < away.max()
     inside = np.linspace(SMALL.points.A, SMALL.points.E, 7)
     assert not edges.gaps(inside).any()
@@ -178,3 +180,16 @@ def test_a_small_helix_has_what_tip_edges_of_the_spur_pair_change(angle: float) 
     assert cycle.flank_error == pytest.approx(held.model_error, rel=0.2)
     assert cycle.lines is not None
     assert cycle.lines.whole_length == pytest.approx(contact_lines(helical).length(cycle.position), rel=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_levers_of_edges_balance_torque_and_power(bodies: PairCompliance, friction: float) -> None:
+    """Shares add up to 1 at each position; yielding teeth store energy, which evens out over the cycle."""
+    cycle = mesh_cycle(SMALL, 8.0, 12, bodies, beyond_path=True, cells=24, friction=friction)
+    assert cycle.load_share.sum(axis=1) == pytest.approx(np.ones(12), abs=1e-12)
+    first, second = SMALL.base_radii
+    given = (cycle.wheel_torque * first / second + cycle.friction_loss(1.0)) / 8.0
+    print(given)
+    assert np.ptp(given) > 1e-3
+    assert given.mean() == pytest.approx(1.0, abs=2e-4)
