@@ -124,5 +124,6 @@ def test_a_small_helix_resists_tilt_as_a_spur_pair_on_shafts() -> None:
     spur_matrix = straight.face.mesh_matrix
     assert spur_matrix is not None
     errors = straight.error + twisted.error
-    for i in (0, 1):
-        assert matrix(twisted)[:, i, i] == pytest.approx(spur_matrix[:, i, i], rel=2.0 * errors)
+    # ends of the face, where free ends err, weigh three times as much against tilt: there z^2 is three times its mean
+    for i, weight in ((0, 1.0), (1, 3.0)):
+        assert matrix(twisted)[:, i, i] == pytest.approx(spur_matrix[:, i, i], rel=2.0 * weight * errors)

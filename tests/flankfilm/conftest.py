@@ -70,13 +70,17 @@ class Browser:
         self, page: Path | str, width: int, height: int = 900, dark: bool = False, media: str = "screen"
     ) -> None:
         """Load a file, or what is at an address, as a screen of a given size and scheme shows it."""
+        self._load("about:blank")  # what the page before still says is not this one's
         self.logged.clear()
         phone = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600}
         self.call("Emulation.setDeviceMetricsOverride", **phone)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.call("Emulation.setEmulatedMedia", media=media, features=[scheme])
+        self._load(page if isinstance(page, str) else page.absolute().as_uri())
+
+    def _load(self, address: str) -> None:
         self._events.clear()
-        self.call("Page.navigate", url=page if isinstance(page, str) else page.absolute().as_uri())
+        self.call("Page.navigate", url=address)
         self._until("Page.loadEventFired")
 
     def run(self, script: str) -> Any:

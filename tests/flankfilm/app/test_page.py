@@ -315,7 +315,9 @@ def test_200_random_drags_leave_no_error_and_no_memory(served, browser):
             low, high = browser.run(f"({ends})(document.querySelectorAll('.ff-sliders input')[{which}])")
             browser.run(dragged(which, dice.uniform(low, high)))
             time.sleep(dice.choice([0.0, 0.02, 0.2]))
-        time.sleep(5.0)
+        time.sleep(1.0)
+        wait(browser, "!document.querySelector('.ff-state').innerText.includes('solving')")
+        time.sleep(4.0)
 
     def heap() -> float:
         for _ in range(3):
