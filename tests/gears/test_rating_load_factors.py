@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 
 import pytest
 
@@ -143,15 +142,6 @@ def test_faults_are_listed_together():
 def test_a_helix_beyond_the_standard_is_rated_with_a_warning():
     with pytest.warns(RangeWarning, match="up to 30 deg: at 35 deg"):
         factors_of(pair_of(35.0))
-
-
-def test_factors_cost_milliseconds():
-    pair = pair_of(20.0)
-    factors_of(pair)
-    began = time.process_time()
-    for _ in range(20):
-        factors_of(pair)
-    assert (time.process_time() - began) / 20 < 5e-3
 
 
 def test_relief_of_running_in():
