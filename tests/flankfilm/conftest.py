@@ -39,6 +39,9 @@ os.execv(sys.argv[3], sys.argv[3:])
 """Makes the pipe's ends the file descriptors 3 and 4, where Chromium looks for them."""
 
 
+BLANK = "about:blank"
+
+
 class Browser:
     """One page of a headless Chromium; what it logs is kept in `logged`."""
 
@@ -56,7 +59,7 @@ class Browser:
         os.close(from_browser)
         self._numbers, self._rest, self._events = itertools.count(1), b"", []
         self.logged: list[str] = []
-        target = self._call("Target.createTarget", {"url": "about:blank"}, None)["targetId"]
+        target = self._call("Target.createTarget", {"url": BLANK}, None)["targetId"]
         attach = {"targetId": target, "flatten": True}
         self._session = self._call("Target.attachToTarget", attach, None)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
@@ -70,7 +73,8 @@ class Browser:
         self, page: Path | str, width: int, height: int = 900, dark: bool = False, media: str = "screen"
     ) -> None:
         """Load a file, or what is at an address, as a screen of a given size and scheme shows it."""
-        self._load("about:blank")  # what the page before still says is not this one's
+        if self.run("location.href") != BLANK:  # what the page before still says is not this one's
+            self._load(BLANK)
         self.logged.clear()
         phone = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600}
         self.call("Emulation.setDeviceMetricsOverride", **phone)
