@@ -24,6 +24,7 @@ from fem.influence.helix_waves import helix_harmonics
 from gears import STEEL, Gear, GearPair
 from meshes import Sizes, gear_mesh, mesh_sector
 from tests.even_helices import by_ends, of_half_space, without_ends
+from tests.validation.helical_solid import turned
 from tests.validation.wedges import CCX, REQUIRED, displacements, heights_of, line_forces, wedges
 
 pytestmark = [
@@ -105,9 +106,3 @@ def calculix(sector, node, twist, at, folder):
     forces = line_forces(levels, density)
     moved = displacements(folder, "helix", points, elements, LAW, {"BORE": (bore, "1, 3")}, (on_line, forces))
     return float(np.sum(forces * moved))
-
-
-def turned(points, angle):
-    """Points or vectors (n, 3) turned about z."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    return points @ np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])

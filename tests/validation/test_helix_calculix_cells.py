@@ -12,17 +12,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from base import Array, Integers
 from fem.elasticity.flank_samples import sample_places
-from fem.elasticity.line_load import flank_points
 from fem.influence.gear_shape import MeshedShape, shapes
 from fem.influence.helix_ends import helix_ends
 from fem.influence.helix_lines import ContactLine, along_line, between_lines
 from fem.influence.helix_waves import helix_harmonics
-from meshes import Sizes, gear_mesh, mesh_sector
+from meshes import Sizes
 from tests.even_helices import in_plane
-from tests.validation.test_helix_calculix import LAW, MODULE, PAIR, TEETH, turned
-from tests.validation.wedges import CCX, REQUIRED, displacements, heights_of, wedges
+from tests.validation.helical_solid import HelicalSolid
+from tests.validation.test_helix_calculix import LAW, MODULE, PAIR
+from tests.validation.wedges import CCX, REQUIRED
 
 pytestmark = [
     pytest.mark.slow,
@@ -35,67 +34,6 @@ pytestmark = [
 WIDTH, CELLS, LAYERS = 12e-3, 8, 14
 BASE_RADIUS = PAIR.teeth_profiles[0].base_radius
 SIZES = Sizes(flank=0.35, fillet=0.5, root=0.6, corner=0.5, top=2.0, rim=2.0, layer_growth=2.0)
-
-
-class Solid:
-    """The sector's mesh in space: layers of wedges, each turned by the helix, z from 0 to the face width [m]."""
-
-    def __init__(self, twist: float) -> None:
-        self.twist = twist
-        self.sector = mesh_sector(PAIR.teeth_profiles[0], SIZES)
-        self.mesh = gear_mesh(self.sector, range(-(TEETH // 2), TEETH - TEETH // 2), {})
-        self.levels = np.linspace(0.0, WIDTH, LAYERS + 1)
-
-    def answer(self, folder, forces: Array) -> Array:
-        """Displacements of all nodes by nodal forces (nodes, 3)."""
-        plane, count = self.mesh.points, len(self.mesh.points)
-        elements = wedges(self.mesh.triangles, count, LAYERS)
-        points = np.concatenate(
-            [
-                turned(np.column_stack([plane, np.full(count, z)]), self.twist * z)
-                for z in heights_of(self.levels)
-            ]
-        )
-        used = np.unique(elements)
-        bore = used[np.isin(used % count, np.unique(self.mesh.facets["bore"]))]
-        held = {"BORE": (bore, "1, 3")}
-        moved = np.zeros_like(points)
-        moved[used] = displacements(folder, "cells", points, elements, LAW, held, (used, forces[used]))
-        return moved
-
-    def cell(self, line: ContactLine, number: int) -> Array:
-        """Nodal forces (nodes, 3) of 1 N that is even over a cell of a line, along the common normal."""
-        s, weight = np.polynomial.legendre.leggauss(12)
-        z = MODULE * (line.z[number] + 0.5 * line.length * s) + 0.5 * WIDTH
-        rho = MODULE * line.rho[number] + BASE_RADIUS * self.twist * 0.5 * MODULE * line.length * s
-        at = flank_points(self.sector, rho)
-        count = len(self.mesh.points)
-        forces = np.zeros(((2 * LAYERS + 1) * count, 3))
-        for q, share in enumerate(0.5 * weight):
-            nodes, parts = self.serendipity(self.mesh.nodes[line.tooth][at.nodes[q]], at.weights[q], z[q])
-            lean = -self.twist * (at.points[q, 0] * at.inward[q, 1] - at.points[q, 1] * at.inward[q, 0])
-            normal = np.array([*at.inward[q], lean]) / np.hypot(1.0, lean)
-            angle = self.twist * z[q] + 2.0 * np.pi * line.tooth / TEETH
-            np.add.at(forces, nodes, share * parts[:, None] * turned(normal[None], angle))
-        return forces
-
-    def serendipity(self, edge: Integers, weights: Array, z: float) -> tuple[Integers, Array]:
-        """Nodes of a wedge's side and their shape functions at a place of an edge of the section, and at z."""
-        layer = min(int(np.searchsorted(self.levels, z, side="right")) - 1, LAYERS - 1)
-        low, high = self.levels[layer : layer + 2]
-        xi, eta, count = weights[1] - weights[0], 2.0 * (z - low) / (high - low) - 1.0, len(self.mesh.points)
-        nodes, parts = [], []
-        for k, side in ((layer, -1.0), (layer + 1, 1.0)):
-            up = 1.0 + eta * side
-            for node, end in zip(edge[:2], (-1.0, 1.0), strict=True):
-                nodes.append(node + k * count)
-                parts.append(0.25 * (1.0 + xi * end) * up * (xi * end + eta * side - 1.0))
-            nodes.append(edge[2] + k * count)
-            parts.append(0.5 * (1.0 - xi**2) * up)
-        for node, end in zip(edge[:2], (-1.0, 1.0), strict=True):
-            nodes.append(node + (LAYERS + 1 + layer) * count)
-            parts.append(0.5 * (1.0 + xi * end) * (1.0 - eta**2))
-        return np.array(nodes), np.array(parts)
 
 
 def oblique(twist, span, tooth, away):
@@ -130,7 +68,7 @@ def test_cells_of_a_line_and_of_both_neighbours(tmp_path, degrees, within):
     meshed = MeshedShape(shapes(PAIR, PAIR.teeth_profiles, "strain")[0], Sizes(), 1)
     span = sample_places(meshed.shape.profile, 5)[[0, -1]] * MODULE
     lines = [oblique(twist, span, tooth, away) for tooth, away in ((0, 0.0), (1, 0.3), (-1, -0.3))]
-    solid = Solid(twist)
+    solid = HelicalSolid(PAIR.teeth_profiles[0], LAW, SIZES, MODULE, WIDTH, twist, LAYERS)
     moved = solid.answer(tmp_path, solid.cell(lines[0], loaded))
     theirs = np.array([[np.sum(moved * solid.cell(line, i)) for i in range(CELLS)] for line in lines])
     mine = ours(twist, lines, loaded)
