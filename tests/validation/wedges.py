@@ -18,7 +18,7 @@ __all__ = ["CCX", "REQUIRED", "displacements", "heights_of", "line_forces", "wed
 
 CCX = shutil.which("ccx")
 REQUIRED = os.environ.get("FLANKFILM_REQUIRE_CCX") == "1"
-PATIENCE = 300
+PATIENCE = 900
 """Seconds for one solution."""
 
 

@@ -7,6 +7,10 @@ normal are observed. In this position the wheel is the pinion turned end for end
 nodal forces lack beside their line is that of the same mesh in the plane, the local law is Hertz's; nothing of waves
 and free ends is used. Our own compliance and that of the solids go into the same contact problem.
 
+Elements of 0.8 by 1 mm do not resolve a load of 1.2 to 2 mm at itself: what nodal forces lack is known for even loads
+alone, not beside the end of a cell or of the face. So loads are given with the solids' answer everywhere, with ours for
+a cell at itself, and with ours for its neighbours too.
+
 Run from the root with
 
     PYTHONPATH=. python tests/validation/studies/helix_three_lines.py FILE.npz
@@ -31,7 +35,7 @@ from fem.contact.contact_sides import one_side
 from fem.contact.line_contact import LineContact, lines_compliance
 from fem.contact.loaded_flanks import loaded_flanks
 from fem.contact.solver import solve_contact
-from fem.elasticity.prism import section
+from fem.influence.gear_face import section_of
 from fem.influence.helix_lines import ContactLine
 from fem.laws.corner_laws import CornerLaws
 from fem.laws.line_candidates import LineCells
@@ -44,10 +48,13 @@ from tests.even_helices import of_half_space
 from tests.validation.helical_solid import HelicalSolid
 
 PAIR = GearPair(*2 * [Gear(12, profile_shift=0.4, bore_radius=6e-3)], 2e-3, 0.016, helix_angle=radians(30.0))
-CELLS, LAYERS, LOADS = 8, 20, (20e3, 100e3, 300e3)
+CELLS, LAYERS, LOADS = 8, 16, (20e3, 100e3, 300e3)
 """Cells on the whole face, layers of wedges, forces per face width [N/m]."""
 
-SIZES = Sizes(flank=0.35, fillet=0.5, root=0.6, corner=0.5, top=2.0, rim=2.0, layer_growth=2.0)
+WITHIN = 16
+"""Places of a cell at which nodal forces are compared with those of the plane: it crosses several edges of the mesh."""
+
+SIZES = Sizes(flank=0.4, fillet=0.5, root=0.6, corner=0.5, top=2.0, rim=2.0, layer_growth=2.0)
 
 
 def in_contact(bodies: PairCompliance, face: FaceSetting, force: Array) -> tuple[LineContact, Array]:
@@ -87,9 +94,13 @@ def by_solids(over: LineContact, bodies: PairCompliance, cells: LineCells, file:
             np.savez(file, moved=moved)
             print(f"{row + 1} of {len(places)} cells", flush=True)
     print(f"not reciprocal by {np.abs(moved - moved.T).max() / moved.max():.1e} of the largest")
-    over_section = section(solid.sector, law, twist * module)
+    over_section = section_of(bodies.meshed[0], SIZES, 0, twist * module)
+    inside = np.polynomial.legendre.leggauss(WITHIN)
     lacking = [
-        of_half_space(over_section, bodies.meshed[0].shape, float(line.rho[i]))
+        sum(
+            0.5 * share * of_half_space(over_section, bodies.meshed[0].shape, float(line.rho[i] + at))
+            for at, share in zip(0.5 * over.lines.slope * line.length * inside[0], inside[1], strict=True)
+        )
         / (law.plane_modulus * module * line.length)
         for line, i in places
     ]
@@ -117,9 +128,9 @@ def shared(compliance_of: Array, over: LineContact, face: FaceSetting, whole: fl
     return np.asarray(found.x[:-1] * whole / count)
 
 
-def size(apart: Array) -> float:
-    """Root mean square [%]."""
-    return 100.0 * float(np.sqrt(np.mean(apart**2)))
+def size(mine: Array, theirs: Array) -> float:
+    """Root mean square difference over the mean [%]."""
+    return 100.0 * float(np.sqrt(np.mean((mine - theirs) ** 2)) / theirs.mean())
 
 
 def main(file: Path) -> None:
@@ -134,16 +145,19 @@ def main(file: Path) -> None:
     print("cells on each line:", cells.count[0].tolist(), "overlap", PAIR.overlap_ratio)
     ours = lines_compliance(bodies, gears, offset, cells, 0, 0.0)
     theirs = by_solids(over, bodies, cells, file)
-    off = (ours - theirs) / theirs.max()
-    print(f"compliances differ by {100 * off.min():.2f} to {100 * off.max():.2f} % of the largest")
+    off, away = 1e9 * (ours - theirs), np.abs(np.subtract.outer(*2 * [np.arange(len(ours))]))
+    print(
+        f"beyond neighbours compliances differ by {off[away > 1].min():.3f} to {off[away > 1].max():.3f} nm/N"
+    )
     for load, solved in zip(force.tolist(), product, strict=True):
-        mine, solids = (shared(each, over, face, load) for each in (ours, theirs))
-        apart, program = ((each - solids) / solids.mean() for each in (mine, solved))
+        mine = shared(ours, over, face, load)
+        assert size(mine, solved) < 1e-6
         print(
-            f"{load / PAIR.face_width / 1e3:.0f} N/mm: loads differ by {size(apart):.2f} % of their mean (root mean "
-            f"square), {100 * np.abs(apart).max():.2f} % at most; the program's by {size(program):.2f} %"
+            f"{load / PAIR.face_width / 1e3:.0f} N/mm: root mean square difference of loads over their mean"
         )
-        print("  ", np.round(mine, 2).tolist(), np.round(solids, 2).tolist(), np.round(solved, 2).tolist())
+        for name, reach in (("all by solids", -1), ("own cell by ours", 0), ("neighbours by ours too", 1)):
+            solids = shared(np.where(away <= reach, ours, theirs), over, face, load)
+            print(f"   {name}: {size(mine, solids):.2f} %")
 
 
 if __name__ == "__main__":
