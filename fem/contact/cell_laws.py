@@ -88,15 +88,19 @@ class LawOnLines(JointLaw):
         At the places of the cells, under forces of whole faces at their line loads.
     faces : (positions, lines cells) array
         Force of a whole face at a cell's line load over that of the cell.
+    part : (positions, lines cells) array or None
+        Of each cell that has the law, by which it counts; all of it unless given.
     """
 
     whole: JointLaw
     faces: Array
+    part: Array | None = None
 
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Both together."""
         value, slope = self.whole.value_and_slope(force * self.faces)
-        return value, slope * self.faces
+        slope = slope * self.faces
+        return (value, slope) if self.part is None else (value * self.part, slope * self.part)
 
 
 def between_middles(values: Array, cells: int) -> Array:

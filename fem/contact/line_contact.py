@@ -180,18 +180,21 @@ class LineContact(CellContact):
         )
 
     def films(self, face: FaceSetting) -> JointLaw | None:
-        """Films of cells, each under its line load along the line; None where they are dry."""
+        """Films of cells, each under its line load along the line; None where they are dry.
+
+        Tip edges are dry: of a cell that ends beyond the path the film counts by the part on it, so that none comes at
+        once.
+        """
         oil = self.sides.flanks[0].oil
         if oil is None:
             return None
         cells, pair, positions = self.lines.divided(face.cells), self.pair, len(self.lines.middle)
         shape = (positions, -1)
-        places, edges = cells.film_places, self.lines.edges
-        if edges is not None:  # which are dry
-            places = np.where(edges.beyond(self.lines.places(cells)), np.nan, places)
+        part = None if self.lines.edges is None else self.lines.on_path(cells).reshape(shape)
         return LawOnLines(
-            FilmLaw(oil.film, places.reshape(shape)),
+            FilmLaw(oil.film, self.lines.film_places(cells).reshape(shape)),
             cells.faces(pair.face_width, pair.helix.base_cosine).reshape(shape),
+            part,
         )
 
     def spread(self, face: FaceSetting, near: Array) -> Array:

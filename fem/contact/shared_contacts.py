@@ -236,7 +236,12 @@ def settled_gaps(remaining_gaps: Array, forces: Array) -> Array:
 
 
 def yielding_over_face(
-    film: Film, rho1: Array, forces: Array, shares: Array, faces: Array | None = None
+    film: Film,
+    rho1: Array,
+    forces: Array,
+    shares: Array,
+    faces: Array | None = None,
+    wet: Array | None = None,
 ) -> Array:
     """What films of all cells yield beyond the transmission error (positions,) [m], see ``film_yielding``.
 
@@ -254,10 +259,13 @@ def yielding_over_face(
         Of the pairs, of the whole force.
     faces : (positions, pairs, cells) array, optional
         Force of a whole face at a cell's line load over that of the cell; the number of cells unless given.
+    wet : (positions, pairs, cells) array, optional
+        Part of each cell that has a film; all of it unless given.
     """
     positions, pairs, cells = forces.shape
     whole = forces.sum(axis=-1, keepdims=True)
     part = np.divide(forces, whole, out=np.zeros_like(forces), where=whole > 0.0)
+    part = part if wet is None else part * wet
     flat = (positions, pairs * cells)
     places = np.repeat(rho1, cells, axis=-1) if rho1.ndim == 2 else rho1.reshape(flat)
     whole_faces = (cells if faces is None else faces.reshape(flat)) * forces.reshape(flat)

@@ -203,9 +203,10 @@ class ContactProblem:
             on_path = candidates.touchable & ~candidates.edge
             rho1 = np.where(on_path, np.clip(candidates.place, *self.setup.ends), np.nan)
             return yielding_over_face(film, rho1, forces, shares)
-        cells, cosine = candidates.lines.divided(forces.shape[-1]), pair.helix.base_cosine
-        faces = cells.faces(pair.face_width, cosine)
-        return yielding_over_face(film, cells.film_places, forces, shares, faces) / cosine
+        lines, cosine = candidates.lines, pair.helix.base_cosine
+        cells = lines.divided(forces.shape[-1])
+        faces, wet = cells.faces(pair.face_width, cosine), lines.on_path(cells)
+        return yielding_over_face(film, lines.film_places(cells), forces, shares, faces, wet) / cosine
 
 
 def measured_less(mesh_arcs: MeshArcs, force: float, turn: Array, pressed: bool = False) -> MeshArcs:

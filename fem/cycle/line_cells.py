@@ -64,6 +64,7 @@ class CellsOfLines:
         no_error=IN_SINGLE_CELLS,
     )
     pair: GearPair = part("the gears")
+    ends: tuple[float, float] = part("curvature radii on the pinion between which flanks touch flanks [m]")
 
     @property
     def cells(self) -> dict[str, Any]:
@@ -72,21 +73,31 @@ class CellsOfLines:
 
     @property
     def rho(self) -> Array:
-        """Curvature radii on pinion and wheel (2, positions, pairs, cells) [m]."""
-        points = self.pair.points
-        # tip edges as flanks at the ends of the path
-        rho1 = np.clip(self.travel + points.A, points.A, points.E)
+        """Curvature radii on pinion and wheel (2, positions, pairs, cells) [m]; of edges at the ends of the path."""
+        rho1 = np.clip(self.travel + self.pair.points.A, *self.ends)
         return np.stack([rho1, self.pair.line_of_action - rho1])
+
+    @property
+    def unlimited_rho(self) -> Array:
+        """The same on involutes without ends, along which lines go on beyond the path."""
+        rho1 = self.travel + self.pair.points.A
+        return np.stack([rho1, self.pair.line_of_action - rho1])
+
+    def within(self, gear: int, rho: Array) -> Array:
+        """Curvature radii on a gear, held to the path; ``rho`` (...) [m]."""
+        low, high = self.ends
+        line = self.pair.line_of_action
+        return np.asarray(np.clip(rho, low, high) if gear == 0 else np.clip(rho, line - high, line - low))
 
     @property
     def on_path(self) -> Array:
         """Part of each cell between the ends of the path (positions, pairs, cells); 0 where there is none."""
-        points, helix = self.pair.points, self.pair.helix
+        helix, (start, end) = self.pair.helix, self.ends
         across = self.length[..., None] * helix.base_cosine * abs(helix.base_tangent)
-        travel, path = np.nan_to_num(self.travel), points.E - points.A
+        rho1 = np.nan_to_num(self.travel) + self.pair.points.A
         before, after = (
-            np.clip(0.5 + away / np.where(across > 0.0, across, path), 0.0, 1.0)
-            for away in (travel, path - travel)
+            np.clip(0.5 + away / np.where(across > 0.0, across, end - start), 0.0, 1.0)
+            for away in (rho1 - start, end - rho1)
         )
         part = before + after - 1.0
         # cells that end with the path are whole but for rounding

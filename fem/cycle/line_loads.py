@@ -122,17 +122,18 @@ class LineLoads(CellsOfLines):
 
     @described("Pa", "position pair cell", shown="MPa", no_error=HERTZ)
     def hertz_pressure(self) -> Array:
-        """Hertz pressure: largest of the contact of every cell."""
+        """Hertz pressure: largest of the contact of every cell; nan at tip edges, where it is no ellipse."""
         return peak_pressure(*self._contacts)
 
     @described("m", "position pair cell", shown="um", no_error=HERTZ)
     def half_width(self) -> Array:
-        """Half-width of the Hertz contact of every cell."""
+        """Half-width of the Hertz contact of every cell; nan at tip edges."""
         return half_width(*self._contacts)
 
     @property
     def _contacts(self) -> tuple[Array, Array, float]:
-        return self.line_load, self.curvature_radius, reduced_modulus(self.pair, self.plane)
+        load = np.where(self.on_path > 0.0, self.line_load, np.nan)
+        return load, self.curvature_radius, reduced_modulus(self.pair, self.plane)
 
     @described("m", "position", shown="mm", no_error=EXACT)
     def whole_length(self) -> Array:
@@ -287,6 +288,7 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         slopes=slopes.reshape(-1, *slopes.shape[2:]),
         tilting=tilting.reshape(2, -1, 2, 2),
         slope=lines.slope,
+        ends=setup.ends,
         centre_error=float(over.errors.centre[number]),
         **of_cells(setup, over, number, plane),
         **shaft_figures(setup, over, number),

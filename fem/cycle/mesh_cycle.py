@@ -233,9 +233,6 @@ def _check(
             "must not be 0 with a helix: only teeth that are pressed together have an answer without a torque"
         )
         faults.add("torque", "0", allowed, "give the pinion's torque")
-    if setup.helical and setup.beyond_path and film is not None:
-        allowed = "must be False with a helix and a film: films end with the path"
-        faults.add("beyond_path", True, allowed, "leave it out, and see cycle.beyond_path_change")
     if reference is not None:
         faults.choice("reference", reference, REFERENCES)
     if not torque.size:

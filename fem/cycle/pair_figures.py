@@ -140,12 +140,41 @@ class PairFigures:
             total = total + turning * self.lines.rubbed[1] + self._on_edges()
         return np.asarray(total if self.flank == "front" else -total)
 
+    def edge_sliding(self, speed: float = 1.0) -> Array:
+        """Sum of ``F |u1 - u2|`` of tip edges on lines of contact beyond the path (n,) [W]; zero of spur pairs.
+
+        By a coefficient of friction it is the power that they lose.
+
+        Parameters
+        ----------
+        speed : float
+            Of the pinion [rad/s].
+        """
+        lines, cells = self.candidates.lines, self.lines
+        if lines is None or lines.edges is None or cells is None:
+            return np.zeros(len(self.position))
+        first, second = self.pair.base_radii
+        place = np.nan_to_num(cells.travel) + self.pair.points.A
+        arms = lines.edges.arms(place, self.pair.line_of_action, (first, second))
+        slip = np.abs(speed * (arms[0] - arms[1] * first / second))
+        beyond = np.where(np.isfinite(cells.z), 1.0 - cells.on_path, 0.0)
+        return np.asarray(np.sum(beyond * cells.force * slip, axis=(-2, -1)))
+
+    def edge_levers(self) -> Array:
+        """Levers about both axes of cells on lines of contact over those on the path (2, n, pairs, cells)."""
+        lines, cells = self.candidates.lines, self.lines
+        assert cells is not None
+        shape = (2, *cells.z.shape)
+        if lines is None or lines.edges is None:
+            return np.ones(shape)
+        return lines.edges.levers(np.nan_to_num(cells.travel) + self.pair.points.A)
+
     def _on_edges(self) -> Array | float:
         """What levers of tip edges on lines of contact add to the wheel's torque (positions,) [N m]."""
         lines, cells = self.candidates.lines, self.lines
         if lines is None or lines.edges is None or cells is None:
             return 0.0
-        shorter = lines.edges.levers(np.nan_to_num(cells.travel) + self.pair.points.A)[1] - 1.0
+        shorter = self.edge_levers()[1] - 1.0
         arm = self.pair.helix.base_cosine * self.pair.base_radii[1]
         return np.asarray(arm * np.sum(cells.force * shorter, axis=(-2, -1)))
 

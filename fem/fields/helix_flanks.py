@@ -13,10 +13,11 @@ import numpy as np
 from base import Array, Booleans, Integers, quantity, record
 from base.results import EXACT
 from fem.elasticity.flank_samples import CORNER_CLEARANCE
-from fem.elasticity.plane_elasticity import MIRROR
+from fem.elasticity.plane_elasticity import MIRROR, reduced_modulus
 from fem.fields.face_waves import on_flank
 from fem.fields.flank_patches import FlankField, Place, PointCells, half_circle
 from fem.fields.helix_solids import TwistedGear
+from gears import half_width
 
 if TYPE_CHECKING:
     from fem.cycle.line_loads import LineLoads
@@ -75,7 +76,14 @@ class LineOnGear:
         Of a cell along the axis [m].
     slope : float
         Change of rho by z.
+    first_rho : float
+        Of its first cell on an involute without end, beyond the path where that is.
+    limits : (float, float)
+        Between which flanks are touched [m]; without bounds where no cell is beyond the path.
     half_width, force, load, pressure, gap : (cells,) arrays
+        Half-widths of tip edges are those of flanks at the ends of the path.
+    edge : (cells,) boolean array
+        Cells of tip edges.
     cosine : float
         cos(beta_b)
     """
@@ -89,11 +97,14 @@ class LineOnGear:
     z: Array
     length: float
     slope: float
+    first_rho: float
+    limits: tuple[float, float]
     half_width: Array
     force: Array
     load: Array
     pressure: Array
     gap: Array
+    edge: Booleans
     cosine: float
 
     @classmethod
@@ -105,6 +116,9 @@ class LineOnGear:
         def cells(values: Array) -> Array:
             return np.asarray(values[row, column, used])
 
+        load, edge = cells(lines.line_load), cells(lines.on_path) == 0.0
+        beyond = bool(edge.any())
+        modulus = reduced_modulus(lines.pair, lines.plane)
         return cls(
             profile=lines.pair.teeth_profiles[gear],
             gear=gear,
@@ -115,11 +129,16 @@ class LineOnGear:
             z=cells(lines.z),
             length=float(lines.length[row, column]) * cosine,
             slope=side * lines.slope,
-            half_width=cells(lines.half_width),
+            first_rho=float(cells(lines.unlimited_rho[gear])[0]),
+            limits=tuple(lines.within(gear, np.array([-np.inf, np.inf])).tolist())
+            if beyond
+            else (-np.inf, np.inf),
+            half_width=half_width(load, cells(lines.curvature_radius), modulus),
             force=cells(lines.force),
-            load=cells(lines.line_load),
+            load=load,
             pressure=cells(lines.hertz_pressure),
             gap=cells(lines.gap),
+            edge=edge,
             cosine=cosine,
         )
 
@@ -193,13 +212,14 @@ class LineOnGear:
             of_line(self.gap, np.nan),
             np.full(count, self.tooth),
             np.full(count, self.pair),
-            np.zeros(count, dtype=int),
+            of_line(self.edge.astype(np.float64), 0.0).astype(int),
         )
 
     def _rho_at(self, z: Array) -> Array:
         """Curvature radii of the line, beyond its ends those at the ends."""
         ends = self.ends
-        return np.asarray(self.rho[0] + self.slope * (np.clip(z, ends[0], ends[-1]) - self.z[0]))
+        along = np.clip(z, ends[0], ends[-1]) - self.z[0]
+        return np.asarray(np.clip(self.first_rho + self.slope * along, *self.limits))
 
     def _on_flank(self, place: Place, rho: Array, z: Array) -> Array:
         """Points of the exact flank (n, 3) in the common frame."""

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 
 __all__ = ["check_helical"]
 
-SPUR = "give helix_angle = 0 for a spur pair, or leave it out"
-
 
 class Setting(Protocol):
     """What of a ``fem.laws.mesh_setup.MeshSetup`` helical pairs do not have."""
@@ -26,6 +24,10 @@ class Setting(Protocol):
     @property
     def radii(self) -> tuple[float, ...]:
         """Of rounded tip edges [m]."""
+
+    @property
+    def beyond_path(self) -> bool:
+        """Whether tip edges may touch outside the path."""
 
     @property
     def moving_contact(self) -> bool:
@@ -41,8 +43,9 @@ def check_helical(faults: Faults, setup: Setting) -> None:
     if setup.pair.tight:
         allowed = "must be False with a helix: flanks on one side of the teeth carry the load"
         faults.add("pair.tight", True, allowed, "give backlash")
-    if any(radius != 0.0 for radius in setup.radii):
-        faults.add("tip_rounding", setup.radii, "must be 0 with a helix", SPUR)
+    if not setup.beyond_path and any(radius != 0.0 for radius in setup.radii):
+        allowed = "must be 0 with a helix whose lines of contact end with the path"
+        faults.add("tip_rounding", setup.radii, allowed, "give beyond_path=True, in which tip edges touch")
     if setup.moving_contact:
         allowed = "must be False with a helix: contacts stay where undeformed teeth touch"
         faults.add("moving_contact", True, allowed, "give moving_contact=False")

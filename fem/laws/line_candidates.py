@@ -83,11 +83,6 @@ class LineCells:
         behind = before - there - (reached - first) * force
         return np.asarray(np.maximum(ahead, behind).max(axis=-1) / window)
 
-    @property
-    def film_places(self) -> Array:
-        """rho1 of the cells that there are (positions, pairs, cells) [m]; nan of others, which have no film."""
-        return np.where(self.used, self.rho[0], np.nan)
-
     def faces(self, face_width: float, base_cosine: float) -> Array:
         """Force of a whole face [m] at a cell's load per length of the line, over the cell's (positions, pairs, cells).
 
@@ -172,6 +167,21 @@ class ContactLines:
     def places(self, cells: LineCells) -> Array:
         """rho1 of the unlimited involutes at cells [m], beyond the path at tip edges (positions, pairs, cells)."""
         return self._places(cells.z, cells.used)
+
+    def on_path(self, cells: LineCells) -> Array:
+        """Part of each cell between the ends of the path (positions, pairs, cells); 0 where there is none."""
+        if self.edges is None:
+            return cells.used.astype(np.float64)
+        place, half = self.places(cells), 0.5 * abs(self.slope) * cells.length[..., None]
+        low, high = (np.clip(place + side, *self.edges.ends) for side in (-half, half))
+        return np.where(cells.used, 0.5 * (high - low) / half, 0.0)
+
+    def film_places(self, cells: LineCells) -> Array:
+        """rho1 of films on cells [m], as many; nan of those beyond the path, which are dry."""
+        if self.edges is None:
+            return np.where(cells.used, cells.rho[0], np.nan)
+        place = np.clip(self.places(cells), *self.edges.ends)
+        return np.where(self.on_path(cells) > 0.0, place, np.nan)
 
     def _places(self, z: Array, used: Booleans) -> Array:
         rho1 = self.middle[..., None] + self.slope * z

@@ -68,7 +68,7 @@ def edges_of_lines(setup: MeshSetup, reach: float) -> EdgesOfLines:
     Parameters
     ----------
     setup : MeshSetup
-        Of a helical pair with sharp tips.
+        Of a helical pair; its roundings are those of the section.
     reach : float
         Base pitches.
     """

@@ -187,10 +187,9 @@ class LineRoots:
         count = int(np.ceil(whole / lines.pair.face_width * len(force) - 1e-9))
         along = whole / count * (np.arange(count) + 0.5)
         slope = lines.slope if self.gear == 0 else -lines.slope
-        first, rho = lines.z[position, column, 0], lines.rho[self.gear, position, column, 0]
-        return CellLoad(
-            rho + slope * (along - 0.5 * cell), first - 0.5 * cell + along, whole / count, force[:count]
-        )
+        first, rho = lines.z[position, column, 0], lines.unlimited_rho[self.gear, position, column, 0]
+        rho = lines.within(self.gear, rho + slope * (along - 0.5 * cell))
+        return CellLoad(rho, first - 0.5 * cell + along, whole / count, force[:count])
 
     def _clear(self, stress: Array, z: Array, rows: slice = slice(None)) -> Array:
         """Stress (n, teeth, places, 2, samples) without what contacts do next to themselves, under the loaded flank.

@@ -57,6 +57,8 @@ class SpurKey:
         Whether a given value is refused.
     beside : frozenset of str
         Wants beside which it is refused; those of loaded teeth unless given.
+    unless : str
+        Key with which it is not refused where that is given as true; none unless given.
     """
 
     path: str
@@ -65,6 +67,7 @@ class SpurKey:
     remedy: str = "Leave it out"
     refuses: Callable[[Any], bool] = _anything
     beside: frozenset[str] = LOADED
+    unless: str = ""
 
 
 KEYS_OF_SPUR: tuple[SpurKey, ...] = (
@@ -101,12 +104,6 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
         _other_than("strain"),
     ),
     SpurKey(
-        "stiffness.contact_beyond_path",
-        "contact with tip edges outside the path",
-        "must be false",
-        "Give contact_beyond_path = false",
-    ),
-    SpurKey(
         "shafts.*.segments",
         "motion on shafts that bend, whose axial forces and tilting moments count",
         remedy="Leave it out; inertias of motor and load, behind couplings or not, may stay",
@@ -114,7 +111,13 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
     ),
     SpurKey("pair.tight", "twisted teeth that bear on both sides", "must be false", "Give more backlash"),
     SpurKey("pair.*.blank", "webs of twisted bodies"),
-    SpurKey("pair.*.tip_rounding_um", "contact with tip edges outside the path", "must be 0"),
+    SpurKey(
+        "pair.*.tip_rounding_um",
+        "rounded tip edges where contact is held to the path",
+        "must be 0",
+        "Give contact_beyond_path = true in [stiffness]",
+        unless="stiffness.contact_beyond_path",
+    ),
 )
 """Keys, each with what is missing for a helical pair."""
 
@@ -157,6 +160,8 @@ def _given(raw: Mapping[str, Any]) -> Iterator[tuple[str, Any, SpurKey]]:
 
     values = {path: value for path, _, value in given_keys(raw, Scene)}
     for row in KEYS_OF_SPUR:
+        if values.get(row.unless) is True:
+            continue
         paths = [
             path for path in values if path.count(".") == row.path.count(".") and fnmatchcase(path, row.path)
         ]

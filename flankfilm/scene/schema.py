@@ -137,8 +137,10 @@ class Scene(Section):
 
     @property
     def tip_edges(self) -> bool:
-        """Whether tip edges may touch outside the path: lines of contact that cross the face are held to it."""
-        return self.stiffness.contact_beyond_path and not (self.pair is not None and self.pair.helical)
+        """Whether tip edges may touch outside the path; with a helix where that is asked for."""
+        asked = "contact_beyond_path" in self.stiffness.model_fields_set
+        helical = self.pair is not None and self.pair.helical
+        return self.stiffness.contact_beyond_path and (asked or not helical)
 
     @property
     def bore_inertia(self) -> tuple[float, float]:

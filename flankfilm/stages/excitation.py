@@ -14,7 +14,7 @@ from flankfilm.stages.engine import Engine, stage
 from flankfilm.stages.mesh import MESH, PAIR
 from flankfilm.stages.ranges import deflection, frequency_range
 
-KEYS = "operating dynamics pair material heat stiffness.contact_beyond_path tolerance"
+KEYS = "operating dynamics pair material heat tip_edges tolerance"
 
 
 @stage("excitation", "unloaded transmission error", f"{KEYS} alignment wants", PAIR, MESH, FILM_DAMPING)
@@ -62,5 +62,5 @@ def REVOLUTION_ERROR(run: Engine) -> coupling.ErrorSeries | None:
         run[PAIR],
         each,
         tip_rounding=tip_roundings(scene),
-        beyond_path=scene.stiffness.contact_beyond_path,
+        beyond_path=scene.tip_edges,
     )

@@ -28,7 +28,7 @@ from flankfilm.scene.plain_gears import plain_flanks
 from flankfilm.scene.sections.ground import under_keys
 from flankfilm.stages.engine import Engine, stage
 
-TEETH = "stiffness.pairs stiffness.contact_beyond_path stiffness.moving_contact face operating heat tolerance"
+TEETH = "stiffness.pairs tip_edges stiffness.moving_contact face operating heat tolerance"
 """Keys of all that is loaded; of [alignment] and [shafts] what the load over the face depends on."""
 
 

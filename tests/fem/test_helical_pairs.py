@@ -50,7 +50,7 @@ def test_bodies_of_a_spur_pair_do_not_open_the_way():
 
 def test_a_setup_notes_a_fault_once_beside_others_and_none_of_spur_pairs():
     faults = Faults()
-    MeshSetup(HELICAL, positions=0, tip_rounding=1e-5).check(faults)
+    MeshSetup(HELICAL, positions=0, beyond_path=False, tip_rounding=1e-5).check(faults)
     assert sorted(fault.where for fault in faults.found) == ["positions", "tip_rounding"]
     spur = Faults()
     MeshSetup(GearPair(*GEARS, 2e-3, 20e-3, helix_angle=0.0)).check(spur)

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from base import Array, InputError
-from fem import MeshCycle, PairCompliance, compliance, mesh_cycle
+from fem import Film, MeshCycle, PairCompliance, compliance, mesh_cycle
 from fem.laws.contact_candidates import contact_candidates
 from fem.laws.mesh_setup import MeshSetup
 from fem.laws.tip_edges import edges_at, edges_of_lines
+from fem.stress.line_roots import LineRoots
 from gears import Gear, GearPair, TipRelief, contact_lines
 
 SMALL = GearPair(Gear(18), Gear(23), module=1e-3, face_width=5e-3, helix_angle=radians(18.0))
@@ -153,10 +154,76 @@ def test_the_other_hand_and_back_flanks_have_the_same_edges(bodies: PairComplian
     assert braking.secant_stiffness.mean() == pytest.approx(driving.secant_stiffness.mean(), rel=0.01)
 
 
-def test_films_end_with_the_path():
-    """A film on cells of tip edges is refused, with what to do."""
-    with pytest.raises(InputError, match="beyond_path"):
-        mesh_cycle(SMALL, 8.0, beyond_path=True, film=lambda rho1, forces: (rho1, forces))
+def test_films_are_on_the_part_of_each_cell_that_is_on_the_path():
+    """Their parts add up to the lines' length there, so that none comes at once where a line moves on."""
+    for setup in (SETUP, replace(SETUP, tip_rounding=0.03e-3)):
+        lines = contact_candidates(setup, 0.1).lines
+        assert lines is not None
+        cells = lines.divided(40)
+        part, places = lines.on_path(cells), lines.film_places(cells)
+        length = (part * cells.length[..., None]).sum(axis=-1)[lines.touches]
+        assert length == pytest.approx(lines.length_on_path[lines.touches], abs=1e-12)
+        assert np.array_equal(np.isfinite(places), part > 0.0)
+        wet = places[part > 0.0]
+        assert wet.min() >= setup.ends[0]
+        assert wet.max() <= setup.ends[1]
+        assert np.count_nonzero(part == 0.0) > np.count_nonzero(~cells.used)
+    held = contact_candidates(replace(SETUP, beyond_path=False)).lines
+    assert held is not None
+    assert np.array_equal(held.on_path(held.divided(40)), held.divided(40).used)
+
+
+def test_tip_edges_slide_as_in_the_section():
+    """Arms of both gears at places beyond the path; on it they are the curvature radii."""
+    edges, pitch, line = edges_of_lines(SETUP, 0.3), SMALL.base_pitch, SMALL.line_of_action
+    away = pitch * np.array([0.0123, 0.0777, 0.211])
+    for corner, place in ((1, SMALL.points.A - away), (0, SMALL.points.E + away)):
+        at, arms = edges_at(SETUP, corner, place), edges.arms(place, line, SMALL.base_radii)
+        assert arms[corner] == pytest.approx(at.arm, abs=1e-4 * SMALL.module)
+        assert arms[1 - corner] == pytest.approx(at.touched_rho, abs=2e-5 * SMALL.module)
+    inside = np.linspace(SMALL.points.A, SMALL.points.E, 7)
+    assert edges.arms(inside, line, SMALL.base_radii) == pytest.approx(
+        np.stack([inside, line - inside]), rel=1e-12
+    )
+
+
+def _film(rho1: Array, forces: Array) -> tuple[Array, Array]:
+    """Separation of .4 um at no load, which falls with the force of a whole face."""
+    pressed = 1.0 + np.maximum(forces, 0.0) / 500.0
+    return 0.4e-6 / np.sqrt(pressed), -0.4e-6 / (2.0 * 500.0 * pressed**1.5)
+
+
+@pytest.mark.slow
+def test_a_thick_film_keeps_dry_edges_apart(bodies: PairCompliance) -> None:
+    """By an even film flanks on the path touch as much earlier, and edges no more: the pair held to the path."""
+    thick, cosine = 50e-6, SMALL.helix.base_cosine
+
+    def even(rho1: Array, forces: Array) -> tuple[Array, Array]:
+        return np.full(forces.shape, thick), np.zeros(forces.shape)
+
+    held, free = (mesh_cycle(SMALL, 8.0, 6, bodies, beyond_path=edges, cells=24) for edges in (False, True))
+    apart = mesh_cycle(SMALL, 8.0, 6, bodies, beyond_path=True, cells=24, film=even)
+    assert apart.lines is not None
+    assert free.lines is not None
+    beyond = (1.0 - apart.lines.on_path) * apart.lines.force
+    carried = (1.0 - free.lines.on_path) * free.lines.force
+    print(np.c_[held.transmission_error, free.transmission_error, apart.transmission_error + thick / cosine])
+    assert beyond.sum() < 0.05 * carried.sum()
+    allowed = (held.error + apart.error) * held.transmission_error.max()
+    assert apart.transmission_error + thick / cosine == pytest.approx(held.transmission_error, abs=allowed)
+    assert np.max(held.transmission_error - free.transmission_error) > 5.0 * allowed
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("film", [None, _film])
+def test_the_tangent_is_the_slope_of_the_torque(bodies: PairCompliance, film: Film | None) -> None:
+    """With tip edges, dry and with films: central differences of the deflection over 0.2 % of the torque."""
+    torques = 8.0 * np.array([0.999, 1.0, 1.001])
+    low, middle, high = mesh_cycle(SMALL, torques, 6, bodies, beyond_path=True, cells=24, film=film)
+    slope = (high.force - low.force) / (high.transmission_error - low.transmission_error)
+    print(slope / middle.stiffness - 1.0)
+    assert middle.stiffness == pytest.approx(slope, rel=2e-3)
+    assert middle.load_share.sum(axis=1) == pytest.approx(np.ones(6), abs=1e-12)
 
 
 @pytest.mark.slow
@@ -193,3 +260,78 @@ def test_levers_of_edges_balance_torque_and_power(bodies: PairCompliance, fricti
     print(given)
     assert np.ptp(given) > 1e-3
     assert given.mean() == pytest.approx(1.0, abs=2e-4)
+
+
+@pytest.mark.slow
+def test_roots_carry_lines_that_begin_beyond_the_path_where_they_are(bodies: PairCompliance) -> None:
+    """Places of the forces on both flanks: along the line, and held to the path at edges."""
+    free = mesh_cycle(SMALL, 8.0, 6, bodies, beyond_path=True, cells=24)
+    lines = free.lines
+    assert lines is not None
+    (row, column), *_ = np.argwhere(
+        (np.nan_to_num(lines.travel[..., 0]) < 0.0) & (lines.length > 0.0)
+    ).tolist()
+    used, start = np.isfinite(lines.z[row, column]), SMALL.points.A
+    assert (lines.travel[row, column, used] > 0.0).any()
+    for gear in (0, 1):
+        roots = LineRoots(None, lines, gear, free.pair_offset, 0.0, 0.0)  # type: ignore[arg-type]
+        load = roots._load(row, column, np.ones(24))
+        assert load is not None
+        rho1 = np.clip(lines.travel[row, column, used] + start, start, SMALL.points.E)
+        rho = rho1 if gear == 0 else SMALL.line_of_action - rho1
+        assert load.z == pytest.approx(lines.z[row, column, used], abs=1e-12)
+        assert load.rho == pytest.approx(rho, abs=1e-12)
+
+
+def test_rounded_edges_are_those_of_the_section():
+    """A radius that goes to 0 is the sharp edge; a larger one begins earlier and opens less at once."""
+    gaps = []
+    for radius in (0.0, 1e-9, 0.05e-3):
+        setup = replace(SETUP, tip_rounding=radius)
+        edges = edges_of_lines(setup, 0.3)
+        assert edges.ends == setup.ends
+        gaps.append(edges.gaps(SMALL.points.E + SMALL.base_pitch * np.array([0.05, 0.1, 0.2])))
+        at = edges_at(setup, 0, edges.ends[1] + SMALL.base_pitch * np.array([0.05, 0.1]))
+        found = edges.gaps(edges.ends[1] + SMALL.base_pitch * np.array([0.05, 0.1]))
+        assert found == pytest.approx(at.gap, rel=1e-3)
+    assert gaps[1] == pytest.approx(gaps[0], rel=1e-4)
+    assert np.all(gaps[2] > gaps[0])
+
+
+@pytest.mark.slow
+def test_a_small_radius_is_the_sharp_edge(bodies: PairCompliance) -> None:
+    """And a larger one lets less of the load beyond the path."""
+    sharp, small, large = (
+        mesh_cycle(SMALL, 8.0, 6, bodies, beyond_path=True, cells=24, tip_rounding=radius)
+        for radius in (0.0, 0.2e-6, 0.06e-3)
+    )
+    print(small.transmission_error / sharp.transmission_error - 1.0, large.transmission_error)
+    assert small.transmission_error == pytest.approx(sharp.transmission_error, rel=2.0 * sharp.error)
+    assert large.transmission_error.max() > sharp.transmission_error.max()
+    for cycle in (small, large):
+        assert cycle.load_share.sum(axis=1) == pytest.approx(np.ones(6), abs=1e-12)
+
+
+def test_rounded_edges_ask_for_contact_beyond_the_path():
+    with pytest.raises(InputError, match=r"tip_rounding.*beyond_path=True"):
+        mesh_cycle(SMALL, 8.0, tip_rounding=1e-5)
+
+
+@pytest.mark.slow
+@pytest.mark.long
+def test_a_small_helix_has_the_rounded_edges_of_the_spur_pair() -> None:
+    """Deflections, shares and the paths' ends, by another code."""
+    spur = replace(SMALL, helix_angle=0.0)
+    found = [
+        mesh_cycle(
+            pair, 8.0, 12, compliance(pair, tolerance=0.02), beyond_path=True, cells=24, tip_rounding=0.05e-3
+        )
+        for pair in (spur, replace(spur, helix_angle=1e-6))
+    ]
+    straight, twisted = found
+    error = straight.error + twisted.error
+    print(twisted.transmission_error / straight.transmission_error - 1.0, error)
+    assert twisted.transmission_error == pytest.approx(straight.transmission_error, rel=error)
+    assert twisted.stiffness == pytest.approx(straight.stiffness, rel=2.0 * error)
+    share = [np.sort(each.load_share, axis=1)[:, -2:] for each in found]
+    assert share[1] == pytest.approx(share[0], abs=error)

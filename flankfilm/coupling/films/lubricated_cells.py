@@ -86,7 +86,7 @@ def _yielding(table: FilmTable, cycle: MeshCycle, pair: gears.GearPair) -> Array
     faces = np.divide(
         pair.face_width, cells.length, out=np.zeros(cells.length.shape), where=cells.length > 0.0
     )
-    yields = yielding_over_face(table, cells.rho1, cells.force, cycle.load_share, faces)
+    yields = yielding_over_face(table, cells.rho1, cells.force, cycle.load_share, faces, cells.part)
     return yields / pair.helix.base_cosine
 
 

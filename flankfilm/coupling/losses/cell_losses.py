@@ -93,8 +93,8 @@ def losses_of_cells(
         "minimum_thickness": each("minimum_thickness"),
         "oil_temperature_rise": each("oil_rise"),
         "contact_temperature": np.maximum(first, second),
-        "sliding_loss": np.nan_to_num(friction) * load * slip,
-        "rolling_loss": np.nan_to_num(each("rolling")),
+        "sliding_loss": np.nan_to_num(friction) * load * slip * cells.part,
+        "rolling_loss": np.nan_to_num(each("rolling")) * cells.part,
         "films": len(table.films),
         "table_error": table_error,
     }

@@ -83,7 +83,7 @@ class HeatedTable(FilmField):
     def borne(self, cycle: MeshCycle, face_width: float) -> Borne:
         """What the cells of a cycle bear, with friction and rolling."""
         cells = cells_of(cycle)
-        width = cells.length[cells.bear]
+        width = (cells.length * cells.part)[cells.bear]
         rho1, load = cells.rho1[cells.bear], cells.line_load[cells.bear]
         friction, rolling, first = (
             self.at(name, rho1, load) for name in ("friction", "rolling", "first_part")

@@ -33,7 +33,7 @@ class LineLosses(CellLosses, CellsOfLines):
 
     @described("W", "position", no_error=AS_FILMS)
     def power_lost(self) -> Array:
-        """Power lost by sliding and rolling on all lines together."""
+        """Power lost by sliding and rolling on all lines together, between the ends of the path."""
         loss = self.sliding_loss + self.rolling_loss
         return np.asarray((loss * self.length[..., None]).sum(axis=(1, 2)))
 

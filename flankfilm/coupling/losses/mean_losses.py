@@ -175,6 +175,8 @@ def _edges(cycle: MeshCycle, speed: float) -> float:
     contact = cycle.contact
     if contact is None:
         return 0.0
+    if contact.lines is not None:
+        return float(np.mean(contact.edge_sliding(speed)))
     pressed = contact.edge & (contact.forces > 0.0)
     slips = np.abs(contact.sliding(speed))
     return float(np.sum(np.where(pressed, contact.forces * slips, 0.0))) / cycle.position.size

@@ -28,7 +28,7 @@ class Cells(NamedTuple):
     loads : fem.FaceLoads or fem.LineLoads
         What they bear.
     rho1 : ndarray, shape (positions, pairs, cells)
-        Curvature radius of the pinion's flank [m]; nan where no two flanks can touch.
+        Curvature radius of the pinion's flank [m]; nan where no two flanks can touch, at tip edges too.
     line_load : ndarray, of the same shape
         Force per length of face, or per length of the line of contact [N/m]; 0 where flanks stand clear.
     length : ndarray, of the same shape
@@ -38,6 +38,8 @@ class Cells(NamedTuple):
     inside : ndarray of bool, of the same shape
         Which of them count for the largest line load: of a line of contact those that bear away from its ends
         (`fem.LineLoads.inside`).
+    part : ndarray, of the same shape
+        Of each cell that is flank on flank, and has a film: lines of contact may go on over tip edges, which have none.
     """
 
     loads: fem.FaceLoads | fem.LineLoads
@@ -46,6 +48,7 @@ class Cells(NamedTuple):
     length: Array
     bear: NDArray[np.bool_]
     inside: NDArray[np.bool_]
+    part: Array
 
     @property
     def greatest(self) -> float:
@@ -66,16 +69,18 @@ def has_cells(cycle: MeshCycle) -> bool:
 def cells_of(cycle: MeshCycle) -> Cells:
     """Cells of a cycle that has them (`has_cells`)."""
     if (lines := cycle.lines) is not None:
-        load, rho1 = np.nan_to_num(lines.line_load), lines.rho[0]
+        load, part = np.nan_to_num(lines.line_load), lines.on_path
+        rho1 = np.where(part > 0.0, lines.rho[0], np.nan)
         length = np.broadcast_to(lines.length[..., None], load.shape)
         bear = np.isfinite(rho1) & (load > 0.0)
-        return Cells(lines, rho1, load, length, bear, bear & lines.inside)
+        return Cells(lines, rho1, load, length, bear, bear & lines.inside, part)
     face = cycle.face
     assert face is not None
     load = face.line_load
     rho1 = np.broadcast_to(cycle.rho1[..., None], load.shape)
     length = np.broadcast_to(face.pair.face_width / load.shape[-1], load.shape)
-    return Cells(face, rho1, load, length, np.isfinite(rho1) & (load > 0.0), load > 0.0)
+    bear = np.isfinite(rho1) & (load > 0.0)
+    return Cells(face, rho1, load, length, bear, load > 0.0, np.ones(load.shape))
 
 
 def line_loads(cycle: MeshCycle, face_width: float) -> Array:

@@ -104,7 +104,7 @@ def revolution_error(
     *,
     order: int = LEAST_ORDER,
     tip_rounding: tuple[float, float] = (0.0, 0.0),
-    beyond_path: bool = True,
+    beyond_path: bool | None = None,
 ) -> ErrorSeries:
     """Error that the deviations of single teeth add to that of the mean flanks, over the hunting period.
 

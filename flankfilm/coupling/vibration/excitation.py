@@ -207,7 +207,7 @@ def unloaded_error(
     tip_rounding : (float, float)
         Radii of the tip edges [m].
     beyond_path : bool, optional
-        Whether tip edges may touch outside A..E; of helical pairs they may not. None: of spur pairs alone.
+        Whether tip edges may touch outside A..E. None: of spur pairs alone.
     back : bool
         Whether the wheel drives, so that the flanks are the back ones.
     alignment : gears.Alignment, optional

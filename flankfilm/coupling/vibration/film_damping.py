@@ -234,10 +234,11 @@ def _of_cells(asked: _Asked, lines: fem.LineLoads) -> _Summed:
     at = np.nonzero((load > 0.0) & (lines.slopes > 0.0))
     rho1, pressed, slope = lines.rho[0][at], load[at], lines.slopes[at] / cosine
     length = np.broadcast_to(lines.length[..., None], load.shape)[at]
+    wet = lines.on_path[at]  # tip edges are dry
 
     def series(by: FilmResponses) -> tuple[Array, Array]:
         """Stiffness of cells with their films along the transverse line of action, and what films yield."""
-        yielding = by.compliance(rho1, pressed) / length
+        yielding = wet * by.compliance(rho1, pressed) / length
         return cosine**2 / (1.0 / slope + yielding), yielding
 
     def over_cycle(values: Array) -> Array:

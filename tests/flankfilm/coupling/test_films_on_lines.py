@@ -90,6 +90,7 @@ def even_lines(pair: GearPair, positions: int, cells: int) -> SimpleNamespace:
         rho=np.stack([used(each) for each in parts.rho]),
         length=length,
         inside=parts.used,
+        on_path=parts.used.astype(float),
     )
     return SimpleNamespace(lines=loads, face=None, position=position, contact=None)
 

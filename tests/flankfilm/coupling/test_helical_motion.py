@@ -8,10 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from base import InputError
 from flankfilm import coupling
 from flankfilm.coupling.vibration.speed_ranges import standard_factors
-from gears import Alignment, Gear, GearPair, Lead, TipRelief
+from gears import Alignment, Gear, GearDeviations, GearPair, Lead, PitchDeviations, TipRelief
 from gears.closed_form import iso6336_dynamic
 
 BETA, ALPHA = math.radians(20.0), math.radians(20.0)
@@ -201,6 +200,19 @@ class TestUnloadedError:
         assert back.range == pytest.approx(other.range, rel=1e-9)
         assert back.all_amplitudes[:8] == pytest.approx(other.all_amplitudes[:8], rel=0.02, abs=1e-9)
 
-    def test_tip_edges_are_refused(self) -> None:
-        with pytest.raises(InputError, match="beyond_path = True: must be False with a helix"):
-            coupling.unloaded_error(PAIR, beyond_path=True)
+    def test_tip_edges_take_over_as_on_spur_pairs(self) -> None:
+        """Teeth that come late leave the load to tip edges before and after them; held to the path it leaps."""
+        late = GearDeviations(pitch=PitchDeviations((6e-6, -4e-6, 3e-6) + (0.0,) * 33))
+        given = {"deviations": (late, None), "meshes": 4, "positions": 64}
+        twisted = replace(SPUR, helix_angle=1e-6)
+        spur, held, free = (
+            coupling.unloaded_error(pair, beyond_path=edges, **given).curve
+            for pair, edges in ((SPUR, True), (twisted, False), (twisted, True))
+        )
+        assert free == pytest.approx(spur, abs=1e-3 * np.ptp(spur))
+        assert np.max(held - free) > 0.2 * np.ptp(spur)
+        wide, wide_held = (
+            coupling.unloaded_error(PAIR, beyond_path=edges, **given) for edges in (True, False)
+        )
+        steps = [float(np.abs(np.diff(each.curve)).max()) for each in (wide, wide_held)]
+        assert steps[0] < 0.8 * steps[1]
