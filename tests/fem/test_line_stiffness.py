@@ -114,12 +114,12 @@ def test_the_other_hand_is_the_mirror(bodies: PairCompliance) -> None:
 def test_a_small_helix_resists_tilt_as_a_spur_pair_on_shafts() -> None:
     """That has its stiffness against approach and tilt from cells of the face, on shafts that hardly yield.
 
-    Both solve free ends apart. Their compliances differ in the cells at the ends, by what answers of a helix near an end
-    leave between the five places of the flank; farther in by less than 0.4 % against tilt. A compliance d that is added
-    at both ends, z = b/2, makes a part d/S of that against approach, S the sum of the compliances of all cells, and
-    (b/2)^2 d/T of that against tilt, T their sum by z z': a weight of (b/2)^2 S/T. With even slopes of force over the face
-    the stiffnesses are 1/S and (b^2/12)^2/T, to a common factor, so that the weight is 36 k_tilt/(b^2 k_approach). It is 3
-    where cells do not couple, k_tilt = b^2/12 k_approach, and more where bodies yield to all of them together.
+    Both solve free ends apart. Their compliances differ in the cells at the ends, by what answers of a helix near an
+    end leave between the five places of the flank; farther in by less than 0.4 % against tilt. A compliance d that is
+    added at both ends, z = b/2, makes a part d/S of that against approach, S the sum of the compliances of all cells,
+    and (b/2)^2 d/T of that against tilt, T their sum by z z': a weight of (b/2)^2 S/T. With even slopes of force over
+    the face the stiffnesses are 1/S and (b^2/12)^2/T, to a common factor: the weight is 36 k_tilt/(b^2 k_approach). It
+    is 3 where cells do not couple, k_tilt = b^2/12 k_approach, and more where bodies yield to all of them together.
     """
     spur = GearPair(Gear(18), Gear(23), module=1e-3, face_width=5e-3)
     shaft = Shaft((ShaftSegment(0.06, 0.03),), (Bearing(0.0, 1e12), Bearing(0.06, 1e12)), 0.03, 0.0)
