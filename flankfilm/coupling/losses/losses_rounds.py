@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -91,29 +89,9 @@ class LossRounds:
         return abs(self.teeth.torque) * self.speed
 
     def cycle(self, friction: float, positions: int) -> MeshCycle:
-        """Dry mesh cycle whose forces a mean friction tilts; those on lines of contact have none (`untilted`)."""
-        if self.teeth.pair.helix_angle:
-            return self._untilted(positions)
+        """Dry mesh cycle whose forces a mean friction tilts."""
         flanks = replace(self.teeth.flanks, friction=friction)
         return replace(self.teeth, flanks=flanks).cycle(positions)
-
-    @cached_property
-    def _untilted(self) -> Callable[[int], MeshCycle]:
-        return lru_cache(maxsize=2)(self.teeth.cycle)
-
-    def untilted(self, cycle: MeshCycle, friction: float) -> float:
-        """What friction would change of the forces on lines of contact, relative; 0 of spur pairs, which have it.
-
-        Friction acts in the section, on the pinion by the lever rho1: sum N (cos(beta_b) r_b1 + mu sign(u1 - u2) rho1)
-        is the torque.
-        """
-        if cycle.lines is None:
-            return 0.0
-        cells, pair = cells_of(cycle), self.teeth.pair
-        arm = np.nan_to_num(cells.rho1) * np.sign(np.nan_to_num(cells.rho1) - pair.points.C)
-        return float(
-            friction * np.mean(np.abs(np.sum(cells.force * arm, axis=(1, 2)))) / abs(self.teeth.torque)
-        )
 
     def means(
         self, cycle: MeshCycle, films: HeatedFilms | HeatedTable, ratios: Carried | None = None

@@ -176,7 +176,6 @@ def _solved(rounds: LossRounds, bulk: tuple[float, float], ends: tuple[float, fl
     lost = path.sliding_loss
     by_films = np.average(path.friction_error, weights=lost) if lost.any() else 0.0
     error = float(by_films) + rounds.means(full_cycle, agreed.films).off(means) + agreed.shares + carried
-    error += rounds.untilted(full_cycle, means.friction)
     return MeshLosses(
         cycle=agreed.cycle,
         path=path,
