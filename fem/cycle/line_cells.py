@@ -105,14 +105,14 @@ class CellsOfLines:
 
     @property
     def inside(self) -> Booleans:
-        """Cells at least half a module of the line from both its ends (positions, pairs, cells).
+        """Cells at least half a module of the line from both its ends on the path (positions, pairs, cells).
 
         Nearer to them loads of single cells go with their length, and a line of contact that begins is none yet. Of
         lines that are nowhere so long, all cells.
         """
-        there = np.isfinite(self.z)
-        number, count = np.arange(there.shape[-1]) + 0.5, there.sum(axis=-1, keepdims=True)
-        away = np.minimum(number, count - number) * self.length[..., None]
+        part = self.on_path
+        there, along = part > 0.0, np.cumsum(part, axis=-1) - 0.5 * part
+        away = np.minimum(along, part.sum(axis=-1, keepdims=True) - along) * self.length[..., None]
         inside = there & (away >= WINDOW * self.pair.module)
         return inside if inside.any() else there
 

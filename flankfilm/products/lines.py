@@ -41,8 +41,9 @@ def headlines(computed: Computed) -> Iterator[Headline]:
 
 def sections(computed: Computed, results: xr.Dataset) -> Iterator[Part]:
     """Maps of the flanks, the centre of the load and the factor over the mesh cycle."""
-    if (loads := _of(computed.get(DRY_CYCLE))) is not None:
-        yield line_parts.lines(loads, results)
+    cycle = computed.get(DRY_CYCLE)
+    if cycle is not None and cycle.contact is not None and cycle.contact.lines is not None:
+        yield line_parts.lines(cycle.contact.lines, results, cycle.contact.beyond_path)
 
 
 def _output(name: str, figure: str, take: Take = float, said: str = SPUR, **held: Unpack[Held]) -> Named:

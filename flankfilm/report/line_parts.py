@@ -26,14 +26,14 @@ NONE = "-"
 HEADLINES = ("greatest_line_load_factor", "greatest_line_load")
 
 
-def lines(loads: fem.LineLoads, results: xr.Dataset) -> Part:
-    """Maps of the flanks, and what the lines carry at most."""
+def lines(loads: fem.LineLoads, results: xr.Dataset, tip_edges: bool) -> Part:
+    """Maps of the flanks, and what the lines carry at most; whether tip edges may touch beyond the path is said."""
     return Part(
         "lines",
         "Load along the lines of contact",
         figures=pictures(results, PICTURES),
         tables=(Table(("over the mesh cycle", "value"), tuple(_rows(loads))),),
-        notes=(said("lines"),),
+        notes=(said("lines", contact=said("lines_beyond_path" if tip_edges else "lines_held_to_path")),),
     )
 
 
