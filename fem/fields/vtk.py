@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -59,6 +60,25 @@ class Frames:
     colours: tuple[float, ...]
     surfaces: Surfaces | None = None
     surface_frames: tuple[SurfaceFrame, ...] = ()
+
+    def moved(self, source: Path, target: Path) -> Frames:
+        """The same after the files have been moved from one folder to another one of the same disk."""
+        if source == target:
+            return self
+        steps = tuple(
+            (place, {name: _moved(file, target / file.relative_to(source)) for name, file in files.items()})
+            for place, files in self.steps
+        )
+        return replace(self, steps=steps)
+
+
+def _moved(file: Path, target: Path) -> Path:
+    """Replace a file by another one."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        return file.replace(target)
+    except OSError as fault:
+        raise OSError(fault.errno, fault.strerror, str(target)) from fault
 
 
 def field_blocks(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import stat
 import tempfile
 from collections.abc import Iterable, Iterator
@@ -32,6 +33,9 @@ PAGE = "report.html"
 
 MANIFEST = "files.json"
 """Name of the list of a folder's files."""
+
+UNFINISHED = ".unfinished."
+"""Beginning of the names of folders in it for files of a run that is under way."""
 
 AWAY = "Move it away, or name another folder with --out"
 
@@ -172,3 +176,19 @@ def occupied(folder: Path | None, data: str = "", folders: Iterable[str] = ()) -
     claim(folder, data, folders)
     with locked(folder):
         yield
+
+
+@contextmanager
+def unfinished(folder: Path | None) -> Iterator[Path | None]:
+    """Give a folder in one that is `occupied`, for files that are not to replace earlier ones before a run has ended.
+
+    It is gone afterwards, and so is what killed runs left of theirs.
+    """
+    if folder is None:
+        yield None
+        return
+    for left in folder.glob(f"{UNFINISHED}*"):
+        if left.is_dir() and not left.is_symlink():
+            shutil.rmtree(left, ignore_errors=True)
+    with tempfile.TemporaryDirectory(prefix=UNFINISHED, dir=folder, ignore_cleanup_errors=True) as beside:
+        yield Path(beside)

@@ -10,7 +10,7 @@ from contextlib import suppress
 from pathlib import Path, PurePosixPath
 
 from base.files import replacing
-from flankfilm.files.folder import MANIFEST, REPORTS
+from flankfilm.files.folder import MANIFEST, REPORTS, UNFINISHED
 
 UNLISTED = (MANIFEST, ".lock", "study.json", "optimisation.json")
 """What belongs to the folder itself: the list, the lock, and the notes of whose rows it holds."""
@@ -48,7 +48,8 @@ def conclude(folder: Path, files: Iterable[Path]) -> tuple[str, ...]:
     with replacing(folder / MANIFEST) as beside:
         beside.write_text(json.dumps({"sha256": written}, indent=1), encoding="utf-8")
     names = (_name(folder, path) for path in folder.rglob("*") if path.is_file() or path.is_symlink())
-    return tuple(sorted(name for name in names if name not in written and name not in UNLISTED))
+    others = (name for name in names if name not in written and name not in UNLISTED)
+    return tuple(sorted(name for name in others if not name.startswith(UNFINISHED)))
 
 
 def changed(folder: Path, *patterns: str) -> list[str]:

@@ -7,10 +7,10 @@ import io
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from base import replacing
 
@@ -48,11 +48,17 @@ def write_csv(path: Path, columns: Mapping[str, ArrayLike]) -> None:
     columns : mapping
         Name to values, shape (n,); numbers are written so that they read back exactly.
     """
-    listed = {name: np.asarray(values).tolist() for name, values in columns.items()}
+    listed = {name: _cells(np.asarray(values)) for name, values in columns.items()}
     with replacing(path) as beside, beside.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(listed)
-        writer.writerows([map(cell, row) for row in zip(*listed.values(), strict=True)])
+        writer.writerows(zip(*listed.values(), strict=True))
+
+
+def _cells(values: NDArray[Any]) -> list[object]:
+    """Values of the cells of a column; numbers are what they are."""
+    listed: list[object] = values.tolist()
+    return listed if values.dtype.kind in "biuf" else list(map(cell, listed))
 
 
 def cell(value: object) -> object:

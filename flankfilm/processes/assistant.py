@@ -35,12 +35,16 @@ class Task(Generic[T]):
     work : callable
         That another process can import, with arguments that it can be sent.
     arguments : tuple
+    packed : bytes
+        Both, as they were when the task was set: what records compute and keep later would change while it is sent.
+        Empty where they cannot be sent, and where nobody is to have them.
     ended : threading.Event
         Set when `value` or `fault` is known.
     """
 
     work: Callable[..., T]
     arguments: tuple[Any, ...]
+    packed: bytes = b""
     ended: threading.Event = field(default_factory=threading.Event)
     value: T | None = None
     fault: Exception | None = None
@@ -71,9 +75,14 @@ class Assistant:
         if process is not None:
             threading.Thread(target=self._hand_over, args=(process,), daemon=True).start()
 
+    @property
+    def there(self) -> bool:
+        """Whether there is a process that takes tasks."""
+        return not self._closed
+
     def submit(self, work: Callable[..., T], *arguments: Any) -> Task[T]:
         """Put a task at the end of the queue."""
-        task = Task(work, arguments)
+        task = Task(work, arguments, _packed(work, arguments) if self.there else b"")
         with self._changed:
             self._queue.append(task)
             self._changed.notify()
@@ -113,13 +122,11 @@ class Assistant:
                 if self._closed:
                     return
                 task = self._queue.popleft()
-            try:
-                sent = pickle.dumps((task.work, task.arguments))
-            except Exception:  # noqa: BLE001 - objects refuse to be sent in ways of many kinds
+            if not task.packed:
                 task.do()
                 continue
             try:
-                to.write(sent)
+                to.write(task.packed)
                 to.flush()
                 done, outcome = pickle.load(back)  # from the process started here alone
             except (OSError, EOFError, pickle.PickleError):
@@ -152,6 +159,14 @@ def assistant(modules: Sequence[str]) -> Iterator[Assistant]:
         yield helper
     finally:
         helper.dismiss()
+
+
+def _packed(work: Callable[..., Any], arguments: tuple[Any, ...]) -> bytes:
+    """Task as it is sent; empty where it cannot be."""
+    try:
+        return pickle.dumps((work, arguments))
+    except Exception:  # noqa: BLE001 - objects refuse to be sent in ways of many kinds
+        return b""
 
 
 def _serve(modules: Sequence[str]) -> None:

@@ -6,7 +6,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -20,6 +20,8 @@ from flankfilm.report.text import counted, missed, off, parts, percent, total
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
+
+    from flankfilm.processes.assistant import Assistant
 
 T = TypeVar("T")
 
@@ -44,6 +46,12 @@ class Drawing:
     caption: str
     function: str = ""
     redraw: Callable[[], str] | None = None
+
+    def drawn(self, helper: Assistant) -> Drawing:
+        """The figure, whose drawing for a phone waits in the queue of a helper."""
+        if self.redraw is None:
+            return self
+        return replace(self, redraw=partial(helper.result, helper.submit(self.redraw)))
 
     @cached_property
     def narrow(self) -> str:
@@ -143,11 +151,10 @@ class Part:
     unfolded: bool = False
     inset: str = ""
 
-    def drawn(self) -> Part:
-        """Draw what is seen at once for a phone too; of the rest there is the wide picture alone."""
-        for figure in self.figures[: self.seen]:
-            figure.narrow  # noqa: B018 - kept by the figure
-        return self
+    def drawn(self, helper: Assistant) -> Part:
+        """Have what is seen at once drawn for a phone too, by the helper or here; the rest has no other picture."""
+        seen = (figure.drawn(helper) for figure in self.figures[: self.seen])
+        return replace(self, figures=(*seen, *self.figures[self.seen :]))
 
     @property
     def folded(self) -> str:
@@ -238,15 +245,19 @@ class Fact:
 
 def picture(draw: Callable[[xr.Dataset], Figure], results: xr.Dataset, caption: str) -> Drawing:
     """Draw results with one of `flankfilm.figures` for the page; its name becomes the figure's id."""
-    from flankfilm.figures.style import narrow, to_svg  # which loads matplotlib
-
-    def redraw() -> str:
-        with narrow():
-            return to_svg(draw(results), f"{draw.__name__}-narrow")
+    from flankfilm.figures.style import to_svg  # which loads matplotlib
 
     name = f"flankfilm.figures.{draw.__name__}"
-    fits = draw.__name__ not in UNFIT
-    return Drawing(to_svg(draw(results), draw.__name__), caption, name, redraw if fits else None)
+    redraw = None if draw.__name__ in UNFIT else partial(_on_phone, draw, results)
+    return Drawing(to_svg(draw(results), draw.__name__), caption, name, redraw)
+
+
+def _on_phone(draw: Callable[[xr.Dataset], Figure], results: xr.Dataset) -> str:
+    """SVG of a figure as a phone shows it."""
+    from flankfilm.figures.style import narrow, to_svg
+
+    with narrow():
+        return to_svg(draw(results), f"{draw.__name__}-narrow")
 
 
 def pictures(results: xr.Dataset, shown: Pictures, **words: str) -> tuple[Drawing, ...]:

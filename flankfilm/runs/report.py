@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flankfilm.processes.assistant import Assistant
 from flankfilm.products.catalogue import PRODUCTS
 from flankfilm.report import pair_parts, run_parts
 from flankfilm.report.page import Fact, Head, Headline, Part, write_page
@@ -74,10 +75,13 @@ def _line(headline: Headline) -> str:
     return f"{headline.name}: {headline.with_unit}{note}"
 
 
-def sections(results: Results) -> tuple[Part, ...]:
-    """Parts of the report that show results, their pictures drawn: the longest work of a report."""
+def sections(results: Results, helper: Assistant) -> tuple[Part, ...]:
+    """Parts of the report that show results, their pictures drawn: the longest work of a report.
+
+    The helper draws those for phones meanwhile, where it has nothing else to do.
+    """
     each = (product.sections(results.computed, results.dataset) for product in PRODUCTS)
-    return tuple(part.drawn() for parts in each for part in parts)
+    return tuple(part.drawn(helper) for parts in each for part in parts)
 
 
 def write_report(results: Results, folder: Path, shown: Sequence[Part] | None = None) -> Path:
@@ -93,7 +97,7 @@ def write_report(results: Results, folder: Path, shown: Sequence[Part] | None = 
     scene, warned = results.scene, run_parts.warnings(results, misses(results))
     parts = [
         *run_parts.failures(results),
-        *(sections(results) if shown is None else shown),
+        *(sections(results, Assistant()) if shown is None else shown),
         run_parts.costs(results, [_work(name, results) for name in results.runs]),
         *run_parts.decisions(results, warned),
         run_parts.inputs(_asked(scene), results.dataset.attrs["versions_json"]),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from base import InputError, SolverError
 from flankfilm.files.cache import results_cache
-from flankfilm.files.folder import occupied
+from flankfilm.files.folder import occupied, unfinished
 from flankfilm.outcome.outcome import Outcome, concluded
 from flankfilm.outcome.results import Results
 from flankfilm.processes.assistant import Assistant, assistant
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from flankfilm.report.page import Part
 
-LOADED = ("fem.fields.vtk", "pyvista", "flankfilm.runs.dataset")
+LOADED = ("fem.fields.vtk", "pyvista", "flankfilm.runs.dataset", "matplotlib.backends.backend_svg")
 """What an assistant loads while the scene is computed. Fields for ParaView alone are worth a process."""
 
 FILES = "vtk files", "fields for ParaView"
@@ -53,6 +53,8 @@ class RunOutcome(Outcome[Results]):
     progress : callable
     helper : Assistant
         With which files are written beside each other.
+    fields : FieldFiles or None
+        Files for ParaView that are begun.
     """
 
     data = "results.nc"
@@ -62,6 +64,7 @@ class RunOutcome(Outcome[Results]):
     engine: Engine = field(kw_only=True)
     progress: Progress = field(kw_only=True)
     helper: Assistant = field(kw_only=True)
+    fields: FieldFiles | None = field(kw_only=True, default=None)
 
     @property
     def dataset(self) -> xr.Dataset:
@@ -98,7 +101,8 @@ class RunOutcome(Outcome[Results]):
     def written(self, folder: Path) -> RunOutcome:
         """Write all that the scene wants; fields that cannot be written are a part that failed, which the data say.
 
-        The assistant begins with the fields and goes on with the data, while the report's pictures are drawn here.
+        The assistant began with the fields, and goes on with the data and pictures for phones, while the report's
+        pictures are drawn here.
         """
         results, engine, began, wants = self.result, self.engine, time.perf_counter(), self.result.scene.wants
         fields = self._begun(folder) if "vtk" in wants else None
@@ -107,7 +111,7 @@ class RunOutcome(Outcome[Results]):
         self.progress("netCDF and CSV files", 1, 1)
         files = engine.timed("data files", "netCDF and CSV files", lambda: self.helper.result(data))
         if fields is not None:
-            files += self._fields(fields)
+            files += self._fields(fields, folder)
             if "report" in wants and len(engine.failures) == len(results.failures):
                 shown = (*shown, *in_space(fields.surfaces(self.helper), self.dataset))
         if len(engine.failures) > len(results.failures):
@@ -127,21 +131,21 @@ class RunOutcome(Outcome[Results]):
         from flankfilm.runs.report import sections
 
         self.progress("writing the report", 1, 1)
-        return sections(self.result)
+        return sections(self.result, self.helper)
 
     def _begun(self, folder: Path) -> FieldFiles | None:
         """Begin with the files for ParaView; None where fields failed, which the engine notes."""
-        if FIELDS.name in self.engine.failures:
-            return None
+        if self.fields is not None or FIELDS.name in self.engine.failures:
+            return self.fields
         kept = "report" in self.result.scene.wants
         with suppress(InputError, SolverError):
             return self.engine.timed(*FILES, lambda: begin_fields(folder, self.engine, self.helper, kept))
         return None
 
-    def _fields(self, begun: FieldFiles) -> list[Path]:
+    def _fields(self, begun: FieldFiles, folder: Path) -> list[Path]:
         """Files for ParaView; none where they cannot be written, which the engine notes."""
         with suppress(InputError, SolverError):
-            return self.engine.timed(*FILES, lambda: begun.written(self.helper, self.progress))
+            return self.engine.timed(*FILES, lambda: begun.written(folder, self.helper, self.progress))
         return []
 
 
@@ -159,8 +163,12 @@ def run_outcome(
     """
     start = time.perf_counter()
     shared = LOADED if folder is not None and "vtk" in scene.wants else ()
-    with occupied(folder, RunOutcome.data, RunOutcome.folders), assistant(shared) as helper:
-        outcome = _computed(scene, use_cache, progress, helper)
+    with (
+        occupied(folder, RunOutcome.data, RunOutcome.folders),
+        unfinished(folder if shared else None) as beside,
+        assistant(shared) as helper,
+    ):
+        outcome = _computed(scene, use_cache, progress, helper, beside)
         if computed is not None:
             computed(outcome.result)
         outcome = concluded(outcome, folder)
@@ -201,13 +209,17 @@ def run_scene(
     return run_outcome(scene, folder, use_cache=use_cache, progress=progress).result
 
 
-def _computed(scene: Scene, use_cache: bool, progress: Progress, helper: Assistant) -> RunOutcome:
-    """Results without files."""
-    start = time.perf_counter()
+def _computed(
+    scene: Scene, use_cache: bool, progress: Progress, helper: Assistant, beside: Path | None
+) -> RunOutcome:
+    """Results without files, but for those that the helper writes meanwhile into a folder beside the run's."""
+    start, fields = time.perf_counter(), None
     engine, wanted = begin(scene, results_cache(use_cache), progress)
     for stage in wanted:
         with suppress(InputError, SolverError):  # the engine keeps it, and the other stages go on
             engine[stage]
+            if stage is FIELDS and beside is not None and helper.there:
+                fields = begin_fields(beside, engine, helper, "report" in scene.wants)
     failures = tuple(engine.failures.values())
     asked = {stage.name for stage in wanted} - PREPARATIONS
     if failures and asked <= set(engine.failures):
@@ -218,4 +230,4 @@ def _computed(scene: Scene, use_cache: bool, progress: Progress, helper: Assista
     dataset = results_dataset(Computed(scene, values, failures))
     seconds = time.perf_counter() - start
     results = Results(scene, None, values, engine.runs, (), seconds, dataset, failures=failures)
-    return RunOutcome(results, engine=engine, progress=progress, helper=helper)
+    return RunOutcome(results, engine=engine, progress=progress, helper=helper, fields=fields)

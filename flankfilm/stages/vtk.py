@@ -56,7 +56,9 @@ class FieldFiles:
 
     Attributes
     ----------
-    folder, pair, cycle, rows
+    folder : Path
+        Where they are written.
+    pair, cycle, rows
         As of `fem.fields.vtk.write_series`.
     parts : tuple of Task
         Each writes some of the rows.
@@ -68,10 +70,10 @@ class FieldFiles:
     rows: Sequence[int]
     parts: tuple[Task[Frames], ...]
 
-    def written(self, helper: Assistant, progress: Progress = silent) -> list[Path]:
-        """Wait for them; return the ``.pvd`` that names them all, and the state of ParaView that opens it.
+    def written(self, folder: Path, helper: Assistant, progress: Progress = silent) -> list[Path]:
+        """Wait for them and move them to where they belong; return the ``.pvd`` of all, and the state of ParaView.
 
-        Fields over the face of a spur pair have no state.
+        The state opens the series; fields over the face of a spur pair have none.
         """
         from fem.fields.paraview_state import STATE
         from fem.fields.vtk import write_series
@@ -80,7 +82,8 @@ class FieldFiles:
         for done, part in enumerate(self.parts, start=1):
             frames.append(helper.result(part))
             progress("fields for ParaView", done, len(self.parts))
-        series = write_series(self.folder, self.pair, self.cycle, self.rows, frames)
+        frames = [part.moved(self.folder, folder) for part in frames]
+        series = write_series(folder, self.pair, self.cycle, self.rows, frames)
         return [series, series.with_name(STATE)] if self.cycle.face is None else [series]
 
     def surfaces(self, helper: Assistant) -> tuple[Surfaces, dict[float, SurfaceFrame]] | None:
@@ -118,4 +121,4 @@ def begin_fields(folder: Path, run: Engine, helper: Assistant, surfaces: bool = 
 def write_fields(folder: Path, run: Engine, progress: Progress = silent) -> list[Path]:
     """Write the mesh cycle for ParaView; return its ``.pvd`` and state, as `FieldFiles.written` does."""
     helper = Assistant()
-    return begin_fields(folder, run, helper).written(helper, progress)
+    return begin_fields(folder, run, helper).written(folder, helper, progress)

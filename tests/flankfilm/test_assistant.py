@@ -102,7 +102,18 @@ def test_a_task_that_cannot_be_sent_is_done_here_and_the_next_there(two_cores, a
         assert ended(helper.submit(os.getpid)).value not in (None, os.getpid())
 
 
+def test_the_assistant_gets_arguments_as_they_were_when_the_task_was_set(two_cores):
+    values = [1, 2]
+    with assistant(["base"]) as helper:
+        busy = helper.submit(exec, SLOW_LINE, {"path": os.devnull})
+        task = helper.submit(sum, values)
+        values.append(4)
+        ended(busy)
+        assert ended(task).value == 3
+
+
 def test_one_core_has_no_assistant(monkeypatch):
     monkeypatch.setattr(assistants, "cores", lambda: 1)
     with assistant(["base"]) as helper:
+        assert not helper.there
         assert helper.result(helper.submit(os.getpid)) == os.getpid()
