@@ -7,9 +7,9 @@ property. Datasets, tables, labels and the class's own documentation follow from
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar, dataclass_transform, runtime_checkable
 
 import numpy as np
@@ -273,6 +273,12 @@ def record(cls: type[T]) -> type[T]:
 
 def figures(cls: type) -> dict[str, Figure]:
     """Figures of a record's class by name: fields in their order, then properties."""
+    return dict(_figures(cls))
+
+
+@cache
+def _figures(cls: type) -> Mapping[str, Figure]:
+    """The same, looked for once."""
     of_fields = {f.name: f.metadata["figure"] for f in dataclasses.fields(cls) if "figure" in f.metadata}
     names = dict.fromkeys(name for base in reversed(cls.__mro__) for name in vars(base))
     marked = ((name, getattr(getattr(cls, name, None), "__figure__", None)) for name in names)

@@ -7,6 +7,7 @@ CSV file (``transmission_error_um``); both are spelt by `suffix`.
 from __future__ import annotations
 
 import math
+from functools import cache
 
 _SI = (
     "1|m|s|1/s|K|kg|kg/m|kg m2|kg/m3|N|N m|N/m|N m/rad|N s/m|Pa|1/Pa|1/K|Pa s|m2/s|m/s|Hz|rad|rad/s|W|W/m|W/K|Pa m/s|"
@@ -51,6 +52,7 @@ def factor(unit: str) -> float:
     return FACTORS[unit]
 
 
+@cache
 def suffix(unit: str) -> str:
     """Spelling of a unit as the end of a name; empty for pure numbers.
 
@@ -65,6 +67,7 @@ def suffix(unit: str) -> str:
     return text.removeprefix("1").replace("/", "_per_").strip("_").replace(" ", "_")
 
 
+@cache
 def unit_of(name: str) -> str:
     """Unit in which a name ends, ``1`` for none: the reverse of `suffix`.
 

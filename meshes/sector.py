@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cached_property
 from itertools import pairwise
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -121,9 +122,16 @@ class SectorMesh:
 
     def side_nodes(self, side: str) -> Integers:
         """Nodes of a cut to the neighbour (``"left"`` or ``"right"``) from the bore outwards."""
-        nodes = np.unique(self.facets[f"side_{side}"])
-        ordered: Integers = nodes[np.argsort(np.linalg.norm(self.points[nodes], axis=1))]
-        return ordered
+        return self._sides[side]
+
+    @cached_property
+    def _sides(self) -> Mapping[str, Integers]:
+        """Nodes of both cuts, which drawings ask for at every tooth."""
+        sides = {}
+        for side in ("left", "right"):
+            nodes = np.unique(self.facets[f"side_{side}"])
+            sides[side] = nodes[np.argsort(np.linalg.norm(self.points[nodes], axis=1))]
+        return sides
 
 
 def mesh_sector(

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 STEPS = 20
 """Positions of the time series: enough for a smooth film of one base pitch."""
 
-PART = 4
+PART = 10
 """Positions that are written in one go: few enough to share the work evenly."""
 
 
