@@ -83,13 +83,16 @@ def warmed(name: str) -> Warmed:
 
 
 def _motions() -> None:
-    """Sweeps, basins, orbits and trajectories of the exact flow."""
+    """Sweeps, basins, orbits and trajectories of the exact flow, and motions with a gridded contact."""
     import dynamics
     from dynamics.flow.exact_flow import exact_flow
+    from dynamics.motion.gridded_motion import GriddedContact, gridded_motions
     from dynamics.orbits.multiple_shooting import stretches
 
     pair = _pair()
     dynamics.sweep(pair, "frequency", [0.6])
+    grid = np.tile([0.0, 1.0], (12, 1))
+    gridded_motions(pair, GriddedContact(grid, 0.0, 1.0, np.zeros(12), 0.0), [0.6])
     dynamics.basins(pair, (-1.0, 1.0, 3), (-1.0, 1.0, 3))
     dynamics.find_orbits(pair, (1,), starts=2)
     dynamics.trajectory(pair, (0.5, 0.2), 1)

@@ -59,6 +59,8 @@ from .mesh.torque_curves import torque_curves as torque_curves
 from .mesh.verification import Verification as Verification
 from .mesh.verification import compare_closed_forms as compare_closed_forms
 from .mesh.verification import verification_of as verification_of
+from .rating.contact_laws import ContactLaws as ContactLaws
+from .rating.contact_laws import contact_laws as contact_laws
 from .rating.loaded_factors import LoadedFactors as LoadedFactors
 from .rating.loaded_factors import loaded_factors as loaded_factors
 from .rating.motion_factor import MotionFactor as MotionFactor

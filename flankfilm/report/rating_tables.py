@@ -61,8 +61,12 @@ def _of_motion(own: OwnRating | None) -> Ours:
         return "", "", "" if own is None else "none: no wanted motion"
     motion = own.motion
     pitch = f"f_pb = {number(1e6 * motion.deviation, 3)} µm"
-    load = ", rounded by the load" if motion.rounded else " of unloaded teeth: an upper estimate"
-    how = f"settled motion at the speed with {pitch} in the excitation{load}; {motion.even:.4f} without"
+    by = (
+        "in the loaded contact"
+        if motion.by_contact
+        else "of unloaded teeth in the excitation: an upper estimate"
+    )
+    how = f"settled motion at the speed with {pitch} {by}; {motion.even:.4f} without"
     return factor(motion.K_v), f"± {percent(motion.error)}", how
 
 

@@ -64,13 +64,29 @@ def UNEQUAL_PITCHES(run: Engine) -> coupling.UnequalPitches:
 
 
 @stage(
+    "laws of the contact",
+    "forces of the loaded contact over position and deflection",
+    TEETH,
+    RATING,
+    COMPLIANCE,
+    FACE_GEARS,
+    DRY_CYCLE,
+    settings=TEETH_DECIDED,
+)
+def CONTACT_LAWS(run: Engine) -> coupling.ContactLaws:
+    """Laws of the contact without film, of equal base pitches and of those that differ both ways."""
+    deviation = run[RATING].factors.effective.f_pb_eff
+    return coupling.contact_laws(loaded_teeth(run), measured(run, run[DRY_CYCLE]), deviation)
+
+
+@stage(
     "motion factor",
     "dynamic factor of the motion",
     "operating dynamics wants",
     RATING,
     SCALING,
     DRIVE,
-    UNEQUAL_PITCHES,
+    CONTACT_LAWS,
     kept="gears meshes fem dynamics flankfilm",
 )
 def MOTION_FACTOR(run: Engine) -> coupling.MotionFactor:
@@ -85,8 +101,8 @@ def MOTION_FACTOR(run: Engine) -> coupling.MotionFactor:
         by_frequency = asked.frequency is not None
         unit = motion.scales.speed(1.0) if by_frequency else math.pi / 30.0
         speeds = unit * values
-    pitches = run[UNEQUAL_PITCHES] if has_contact(run) else None
-    return coupling.motion_factor(motion, pinion_speed(run.scene), deviation, speeds, pitches)
+    laws = run[CONTACT_LAWS] if has_contact(run) else None
+    return coupling.motion_factor(motion, pinion_speed(run.scene), deviation, speeds, laws)
 
 
 @stage("loaded factors", "load factors of the loaded contact", "", DRY_CYCLE, UNEQUAL_PITCHES)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from base import Array, Faults, InputError, Limit
 
 if TYPE_CHECKING:
+    import fem
     from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth
     from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 
@@ -52,9 +53,21 @@ class UnequalPitches:
         """
         return cycle.transmission_error - self.even.transmission_error
 
-    def stiffened(self, cycle: MeshCycle) -> Array:
-        """Tangent stiffness over that of equal base pitches (positions,): other pairs bear at a position."""
-        return cycle.stiffness / self.even.stiffness
+
+def contact_of(even: MeshCycle, deviation: float) -> fem.MeshCycle:
+    """Loaded contact of a mesh cycle to which a base pitch deviation can be added.
+
+    Raises
+    ------
+    InputError
+        For a cycle without contacts of finite elements, and a deviation that is none.
+    """
+    with Faults() as faults:
+        faults.number("deviation", deviation, DEVIATION)
+    if even.contact is None:
+        allowed = "must be of coupled finite elements for base pitches that differ"
+        raise InputError.at("even", "", allowed, 'take model = "fem" with pairs = "coupled"')
+    return even.contact
 
 
 def unequal_pitches(teeth: LoadedTeeth, even: MeshCycle, deviation: float) -> UnequalPitches:
@@ -87,12 +100,7 @@ def unequal_pitches(teeth: LoadedTeeth, even: MeshCycle, deviation: float) -> Un
     >>> bool(2e-6 < added.max() - added.min() < 4e-6)
     True
     """
-    with Faults() as faults:
-        faults.number("deviation", deviation, DEVIATION)
-    contact = even.contact
-    if contact is None:
-        allowed = "must be of coupled finite elements for base pitches that differ"
-        raise InputError.at("even", "", allowed, 'take model = "fem" with pairs = "coupled"')
+    contact = contact_of(even, deviation)
     own = teeth.flanks.base_pitch_difference
 
     def cycle(difference: float) -> MeshCycle:

@@ -1,0 +1,71 @@
+"""Steps in time with a mesh force that is given on a grid of angles and depths."""
+
+from dynamics.kernels.compiling import DIVERGED, FINE, FloatArray, helper, plain_kernel
+
+
+@helper
+def between(forces: FloatArray, lowest: float, spacing: float, place: float, depth: float) -> float:
+    """Force at a place of the angles, counted in rows, and a depth: straight between samples, and beyond the last."""
+    rows, columns = forces.shape
+    across = (depth - lowest) / spacing
+    if across <= 0.0:
+        return 0.0
+    column = min(int(across), columns - 2)
+    across -= column
+    row = int(place)
+    along = place - row
+    row -= rows if row >= rows else 0
+    after = row + 1 if row + 1 < rows else 0
+    here: float = forces[row, column] + across * (forces[row, column + 1] - forces[row, column])
+    there: float = forces[after, column] + across * (forces[after, column + 1] - forces[after, column])
+    return here + along * (there - here)
+
+
+@plain_kernel
+def step_through(
+    forces: FloatArray, figures: FloatArray, places: FloatArray, errors: FloatArray, rates: FloatArray,
+    over: FloatArray, constant: FloatArray, state: FloatArray, room: FloatArray, skip: int, periods: int,
+) -> tuple[int, float]:  # fmt: skip
+    """Follow a state through equal steps of a period; returns the flag and the maximum force after `skip` periods.
+
+    The linear part moves exactly, z = `over` z + `constant`; the mesh pushes the first coordinate before and after
+    each step by half of what it does in one. `figures`: lowest depth and spacing of the grid, half the backlash, 1 if
+    the back flanks can touch, what a force changes of the speed in half a step, damping of the mesh in contact, and how
+    much less it is without. `places`, (steps + 1, 2): rows of the grid for front and back flanks; `errors` and `rates`
+    (steps + 1,): error of the angle, and the rate that the damper feels, before and after a step
+    (`rates` (steps, 2)).
+    """
+    lowest, spacing, half_backlash, back, push, damping, freed = figures
+    size, steps = len(state), len(rates)
+    middle = size // 2
+    greatest = 0.0
+    y = state[0] - errors[0]
+    force = between(forces, lowest, spacing, places[0, 0], y - half_backlash)
+    if back > 0.0:
+        force -= between(forces, lowest, spacing, places[0, 1], -y - half_backlash)
+    for period in range(skip + periods):
+        for step in range(steps):
+            drag = damping * rates[step, 0]
+            if force == 0.0:
+                drag += freed * (state[middle] - rates[step, 0])
+            state[middle] += push * (drag - force)
+            for i in range(size):
+                total = constant[i]
+                for j in range(size):
+                    total += over[i, j] * state[j]
+                room[i] = total
+            for i in range(size):
+                state[i] = room[i]
+            y = state[0] - errors[step + 1]
+            force = between(forces, lowest, spacing, places[step + 1, 0], y - half_backlash)
+            if back > 0.0:
+                force -= between(forces, lowest, spacing, places[step + 1, 1], -y - half_backlash)
+            drag = damping * rates[step, 1]
+            if force == 0.0:
+                drag += freed * (state[middle] - rates[step, 1])
+            state[middle] += push * (drag - force)
+            if period >= skip and force > greatest:
+                greatest = force
+        if not abs(y) < 1e150:
+            return DIVERGED, greatest
+    return FINE, greatest

@@ -1,0 +1,207 @@
+"""Settled motion with a mesh force that depends on the deflection as the contact itself has it, from a grid of samples.
+
+Pairs of teeth come into contact and leave it along curved lines of angle and depth, where the force has corners.
+`TabulatedContact` is smooth, and rounds them; here the force is straight between samples, and steps are equal.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, cast
+
+import numpy as np
+
+from base import Array
+from dynamics.model.drive_oscillator import DriveOscillator
+from dynamics.model.protocol import settling_periods
+
+if TYPE_CHECKING:
+    from dynamics.model.oscillator import GearOscillator
+
+PER_OSCILLATION = 240
+"""Steps of a natural period of the mesh."""
+
+PER_SAMPLE = 2
+"""Steps from one angle of the grid to the next, at least."""
+
+LEAST_SETTLING = 10
+"""Periods that a motion has at least before its maximum force is taken."""
+
+KEPT = 32
+"""Periods over which the maximum force is taken."""
+
+
+@dataclass(frozen=True, eq=False)
+class GriddedContact:
+    """Mesh force over the angle of the excitation and the depth, in the units of an oscillator.
+
+    Attributes
+    ----------
+    forces : ndarray, shape (angles, depths)
+        Force at the middle of equal parts of a period, at equally spaced depths from `lowest`, where it is 0.
+    lowest, spacing : float
+        First depth, below 0 where teeth touch before the deflection of the oscillator begins; and their distance.
+    moved : ndarray, shape (angles,)
+        Displacement whose rate the damper of the mesh does not feel.
+    mirror : float
+        Sum of a place in the period and of that at which the back flanks have the force of the front ones, 0 to 1.
+    """
+
+    forces: Array
+    lowest: float
+    spacing: float
+    moved: Array
+    mirror: float
+
+
+class GriddedMotions(NamedTuple):
+    """Maximum force of settled motions at some frequencies, nan where one grew without bound."""
+
+    force: Array
+    followed: bool
+
+
+class Linear(NamedTuple):
+    """What moves beside the mesh force, in coordinates of which the first closes the mesh.
+
+    Attributes
+    ----------
+    stiffness, damping : ndarray, shape (m, m)
+        Without the mesh.
+    load : ndarray, shape (m,)
+    gain : float
+        Acceleration of the first coordinate by a force of the mesh.
+    damped : tuple of float
+        Damping of the mesh in contact, and out of it.
+    """
+
+    stiffness: Array
+    damping: Array
+    load: Array
+    gain: float
+    damped: tuple[float, float]
+
+
+def linear_part(oscillator: GearOscillator | DriveOscillator) -> Linear:
+    """Everything of an oscillator but its mesh stiffness."""
+    if isinstance(oscillator, DriveOscillator):
+        at = oscillator.coordinates
+        return Linear(at.stiffness, at.damping, oscillator.load, at.gain, oscillator.dampings)
+    contact, free = oscillator.damping_ratios
+    none = np.zeros((1, 1))
+    return Linear(none, none, np.array([oscillator.mean_force]), 1.0, (2.0 * contact, 2.0 * free))
+
+
+def gridded_motions(
+    oscillator: GearOscillator | DriveOscillator,
+    contact: GriddedContact,
+    frequencies: Iterable[float],
+    steps: float = PER_OSCILLATION,
+) -> GriddedMotions:
+    """Settled motions with a gridded contact in place of the stiffness, each from the last state of the one before.
+
+    Its load, damping, backlash and error stay. The linear part moves exactly, and the mesh pushes it between equal
+    steps, which is of second order in the step.
+
+    Parameters
+    ----------
+    oscillator : GearOscillator or DriveOscillator
+    contact : GriddedContact
+    frequencies : iterable of float
+        In the order in which they are passed.
+    steps : float
+        In a natural period of the mesh.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from dynamics import FourierStiffness, GearOscillator
+    >>> linear = GearOscillator(FourierStiffness(1.0), 0.05, 0.1, 0.01, 0.5, half_backlash=0.2)
+    >>> spring = GriddedContact(np.tile([0.0, 1.0], (12, 1)), 0.0, 1.0, np.zeros(12), 0.0)
+    >>> swing = 0.01 * 0.25 / np.hypot(0.75, 2 * 0.05 * 0.5)
+    >>> found = gridded_motions(linear, spring, [0.5])
+    >>> bool(abs(found.force[0] - 0.1 - swing) < 1e-6)
+    True
+    """
+    part = linear_part(oscillator)
+    m = len(part.load)
+    state = np.zeros(2 * m)
+    soft = part.stiffness.copy()
+    soft[0, 0] += part.gain * oscillator.contact_stiffness.mean
+    pushed = part.load.copy()
+    pushed[0] += part.gain * oscillator.contact_stiffness.mean * oscillator.half_backlash
+    state[:m] = np.linalg.lstsq(soft, pushed, rcond=None)[0]
+    rest, forces = state.copy(), []
+    for frequency in frequencies:
+        moved = cast("GearOscillator", oscillator.with_parameter("frequency", float(frequency)))
+        forces.append(_settled(moved, part, contact, state, steps))
+        if not math.isfinite(forces[-1]):
+            state[:] = rest
+    return GriddedMotions(np.array(forces), bool(np.isfinite(forces).all()))
+
+
+def _settled(
+    oscillator: GearOscillator | DriveOscillator,
+    part: Linear,
+    contact: GriddedContact,
+    state: Array,
+    fine: float,
+) -> float:
+    """Maximum force of the settled motion from a state, which goes on; nan where it grew without bound."""
+    from scipy.linalg import expm
+
+    from dynamics.kernels.compiling import FINE
+    from dynamics.kernels.gridding import step_through
+
+    m, rows = len(part.load), len(contact.forces)
+    natural = math.sqrt(part.gain * oscillator.contact_stiffness.mean)
+    per_period = oscillator.period * natural / (2.0 * math.pi) * fine
+    steps = max(PER_SAMPLE * rows, math.ceil(per_period / rows) * rows)
+    dt = oscillator.period / steps
+    within, without = part.damped
+    damping = part.damping.copy()
+    damping[0, 0] += part.gain * within
+    whole = np.zeros((2 * m + 1, 2 * m + 1))
+    whole[:m, m : 2 * m] = np.eye(m)
+    whole[m : 2 * m, :m], whole[m : 2 * m, m : 2 * m], whole[m : 2 * m, -1] = (
+        -part.stiffness,
+        -damping,
+        part.load,
+    )
+    linear = expm(whole * dt)
+    share = np.arange(steps + 1) / steps
+    places = np.column_stack([share, (contact.mirror - share) % 1.0]) * rows + (rows - 0.5)
+    error, rate = _error(oscillator, share * oscillator.period)
+    change = np.roll(contact.moved, -1) - contact.moved  # from the middle of a part to the next one's
+    cell = np.floor((np.arange(steps) + 0.5) / steps * rows - 0.5).astype(np.int64)
+    slip = change[cell] * rows / oscillator.period
+    rates = np.column_stack([rate[:-1] + slip, rate[1:] + slip])
+    sides = 0.0 if oscillator.one_sided else 1.0
+    push = 0.5 * dt * part.gain
+    figures = np.array(
+        [contact.lowest, contact.spacing, oscillator.half_backlash, sides, push, within, within - without]
+    )
+    flag, greatest = step_through(
+        np.ascontiguousarray(contact.forces),
+        figures,
+        places,
+        error,
+        rates,
+        np.ascontiguousarray(linear[: 2 * m, : 2 * m]),
+        np.ascontiguousarray(linear[: 2 * m, -1]),
+        state,
+        np.empty(2 * m),
+        settling_periods(oscillator, LEAST_SETTLING),
+        KEPT,
+    )
+    return float(greatest) if flag == FINE else math.nan
+
+
+def _error(oscillator: GearOscillator | DriveOscillator, tau: Array) -> tuple[Array, Array]:
+    """Error of an oscillator and its rate at some times."""
+    amplitudes, phases = oscillator.error_series
+    j = oscillator.frequency * np.arange(1, len(amplitudes) + 1)
+    angles = tau[:, None] * j + phases
+    return np.cos(angles) @ amplitudes, -np.sin(angles) @ (j * amplitudes)
