@@ -67,13 +67,12 @@ def STANDARDS(run: Engine) -> coupling.Standards:
 @stage(
     "verification",
     "closed forms against finite elements",
-    "stiffness.contact_beyond_path stiffness.moving_contact operating reference bore_inertia",
+    "tip_edges stiffness.moving_contact operating reference bore_inertia",
     COMPLIANCE,
 )
 def VERIFICATION(run: Engine) -> coupling.Verification:
     """Every closed form beside finite elements, of loads that are even along the face."""
-    stiffness, pair = run.scene.stiffness, even_along_face(run[PAIR])
-    asked = stiffness.contact_beyond_path, stiffness.moving_contact
+    pair, asked = even_along_face(run[PAIR]), (run.scene.tip_edges, run.scene.stiffness.moving_contact)
     compliance = replace(run[COMPLIANCE], pair=pair)
     return coupling.verification_of(
         pair,

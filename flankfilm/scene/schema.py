@@ -137,10 +137,9 @@ class Scene(Section):
 
     @property
     def tip_edges(self) -> bool:
-        """Whether tip edges may touch outside the path; with a helix where that is asked for."""
-        asked = "contact_beyond_path" in self.stiffness.model_fields_set
-        helical = self.pair is not None and self.pair.helical
-        return self.stiffness.contact_beyond_path and (asked or not helical)
+        """Whether tip edges may touch outside the path: of spur pairs unless something else is given."""
+        asked = self.stiffness.contact_beyond_path
+        return asked if asked is not None else self.pair is None or not self.pair.helical
 
     @property
     def bore_inertia(self) -> tuple[float, float]:

@@ -275,7 +275,7 @@ class TestTable:
 
     def test_contact_beyond_the_path_is_left_out_unless_it_is_asked_for(self):
         text = SCENE.replace("WANTS", '"stiffness"')
-        assert parse_scene(text).stiffness.contact_beyond_path
+        assert parse_scene(text).stiffness.contact_beyond_path is None
         assert not parse_scene(text).tip_edges
         asked = parse_scene(text + "[stiffness]\ncontact_beyond_path = true\n")
         assert asked.tip_edges
@@ -297,7 +297,7 @@ class TestTable:
             check_scene(parse_scene(free.replace("um = 50", "um = 900")))
 
     def test_cached_results_are_of_the_contact_that_was_asked_for(self):
-        """The key has one value where it is left out and where it is given; the stages go by what it does."""
+        """Stages go by what the key does."""
         text = SCENE.replace("WANTS", '"sweep"') + MOTION
         scenes = [parse_scene(text + edges) for edges in ("", "[stiffness]\ncontact_beyond_path = true\n")]
         for stage in (DRY_CYCLE, EXCITATION, REVOLUTION_ERROR):

@@ -136,10 +136,10 @@ class StiffnessSection(Section):
     plane: Literal["strain", "stress"] = key(
         "plane strain or plane stress of the finite elements", "strain", shown=True
     )
-    contact_beyond_path: bool = key(
-        "whether loaded teeth may touch outside A..E with their tip edges; those of a helix only where true is given",
-        True,
-        shown=True,
+    contact_beyond_path: bool | None = key(
+        "whether loaded teeth may touch outside A..E with their tip edges; those of spur pairs if left out",
+        None,
+        such_as=True,
     )
     moving_contact: bool | None = key(
         "whether the deflection shifts the contacts of coupled finite elements along the flanks; plastics if left out",
