@@ -97,7 +97,7 @@ class DriveFlow(PartedFlow):
             states[:], jacobian[:] = np.nan, np.nan
         return MapResult(
             self.oscillator.lifted(states, np.zeros(periods)),
-            _blocks(at.up) @ jacobian @ _blocks(at.down),
+            at.raises @ jacobian @ at.lowers,
             -self.damped(float(clock[0]), periods + skip),
             counts,
             REASONS.get(flag, ""),
@@ -120,7 +120,7 @@ class DriveFlow(PartedFlow):
         if iterate(self.arrays, first, number, moved, 0, 1, jacobian, last, met, clock):
             last[:] = np.nan
         counts += met[0]
-        factor = _blocks(at.up) @ jacobian @ _blocks(at.down)
+        factor = at.raises @ jacobian @ at.lowers
         return osc.lifted(last, tau[1:])[0], factor, float(clock[0])
 
     def damped(self, contact: float, periods: int) -> float:
@@ -220,9 +220,3 @@ def tabulated(oscillator: DriveOscillator, cells: int, degree: int = DEGREE) -> 
     size = systems.shape[1]
     none = np.zeros((0, 2 * size + 2, 2 * size + 2 * STRIDE))
     return DriveFlow(oscillator, (own, systems, load, *tables, none))
-
-
-def _blocks(matrix: Array) -> Array:
-    """The matrix for displacements and for speeds."""
-    none = np.zeros_like(matrix)
-    return np.block([[matrix, none], [none, matrix]])

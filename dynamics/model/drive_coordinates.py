@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -50,6 +51,39 @@ class Coordinates:
     push: Array
     drift: Array
     gain: float
+
+    @cached_property
+    def lowers(self) -> Array:
+        """W for displacements and for speeds, shape (2 m, 2 n)."""
+        return _twice(self.down)
+
+    @cached_property
+    def raises(self) -> Array:
+        """`up` for displacements and for speeds, shape (2 n, 2 m)."""
+        return _twice(self.up)
+
+    def fastest(self, stiffness: float, damping: float) -> float:
+        """Rate that no motion exceeds, with so much of the mesh's stiffness and damping."""
+        return _fastest(self, stiffness, damping)
+
+
+@lru_cache(maxsize=64)
+def _fastest(at: Coordinates, stiffness: float, damping: float) -> float:
+    """As `Coordinates.fastest`: oscillators that differ in frequency, force or backlash alone have the same."""
+    stiff, drag = at.stiffness.copy(), at.damping.copy()
+    stiff[0, 0] += at.gain * stiffness
+    drag[0, 0] += at.gain * damping
+    return max(math.sqrt(float(np.linalg.norm(stiff, 2))), float(np.linalg.norm(drag, 2)))
+
+
+def _twice(matrix: Array) -> Array:
+    """Two of a matrix along a diagonal, that nobody can change."""
+    rows, columns = matrix.shape
+    twice = np.zeros((2 * rows, 2 * columns))
+    twice[:rows, :columns] = matrix
+    twice[rows:, columns:] = matrix
+    twice.flags.writeable = False
+    return twice
 
 
 def coordinates_of(mass: Array, damping: Array, stiffness: Array, direction: Array) -> Coordinates:

@@ -191,14 +191,10 @@ class DriveOscillator(PeriodicOscillator):
     @cached_property
     def cells(self) -> float:
         """Cells of a period, before rounding up: a radian of every time scale, half a one of every harmonic."""
-        at = self.coordinates
-        stiff, drag = at.stiffness.copy(), at.damping.copy()
-        stiff[0, 0] += at.gain * (
-            abs(self.mesh_stiffness.mean) + math.fsum(map(abs, self.mesh_stiffness.amplitudes))
-        )
-        drag[0, 0] += at.gain * max(self.dampings)
-        highest = highest_harmonic(self.mesh_stiffness.order, self.error_series[0, 1:])
-        fastest = max(math.sqrt(float(np.linalg.norm(stiff, 2))), float(np.linalg.norm(drag, 2)))
+        mesh = self.mesh_stiffness
+        stiff = abs(mesh.mean) + math.fsum(map(abs, mesh.amplitudes))
+        fastest = self.coordinates.fastest(stiff, max(self.dampings))
+        highest = highest_harmonic(mesh.order, self.error_series[0, 1:])
         return max(self.period * fastest, 4.0 * math.pi * highest)
 
     @cached_property
@@ -266,9 +262,10 @@ class DriveOscillator(PeriodicOscillator):
 
     def error_motion(self, tau: Array) -> tuple[Array, Array]:
         """Error e and its rate at some times."""
-        total, rate = np.zeros(np.shape(tau)), np.zeros(np.shape(tau))
+        tau = np.asarray(tau)
+        total, rate = np.zeros(tau.shape), np.zeros(tau.shape)
         for j, (amplitude, phase) in enumerate(self.error_series.T.tolist(), start=1):
-            angle = j * self.frequency * np.asarray(tau) + phase
+            angle = j * self.frequency * tau + phase
             total = total + amplitude * np.cos(angle)
             rate = rate - j * self.frequency * amplitude * np.sin(angle)
         return total, rate

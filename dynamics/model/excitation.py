@@ -61,7 +61,7 @@ def _numbers(faults: Faults, name: str, harmonics: object) -> tuple[float, ...]:
 
 def as_series(amplitude: Harmonics, phase: Harmonics) -> Array:
     """Amplitudes and phases [rad] of the harmonics 1, 2, ..., shape (2, harmonics)."""
-    return np.array([np.atleast_1d(amplitude), np.atleast_1d(phase)], dtype=np.float64)
+    return np.array([amplitude, phase], dtype=np.float64).reshape(2, -1)
 
 
 @functools.lru_cache(maxsize=64)

@@ -24,6 +24,7 @@ the plane (``fem.elasticity.ring``), with more unknowns at a node, since T does 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,6 +32,7 @@ import numpy as np
 from base import Array, Integers, record, unclocked
 from fem.elasticity.condensation import Condensation, condensation
 from fem.elasticity.cyclic_structure import CyclicStructure, cyclic_structure
+from fem.elasticity.dissection import Dissection, dissection
 from fem.elasticity.line_load import FlankPoints
 from fem.elasticity.plane_elasticity import INTEGRATION, PlaneElasticity, physical_gradients
 from fem.elasticity.ring import held_and_cut, polar_components
@@ -42,6 +44,9 @@ if TYPE_CHECKING:
     from meshes import SectorMesh
 
 __all__ = ["Face", "Prism", "Section", "prism", "section"]
+
+TOGETHER = 2_000_000
+"""Numbers of all triangles' matrices (16 MB) up to which these are made at once: half the time of few at a time."""
 
 
 @record
@@ -387,12 +392,22 @@ def prism(over: Section, face: Face) -> Prism:
     mesh, psi, phi = over.mesh, face.psi, face.phi
     n = 2 * psi + phi
     cut, hub = held_and_cut(mesh)
-    condensed = condensation(
-        mesh.points, mesh.triangles, lambda triangles: over.elements(face, triangles), cut, hub, n
-    )
+
+    def elements(triangles: Integers) -> Array:
+        return over.elements(face, triangles)
+
+    together = len(mesh.triangles) * (6 * n) ** 2 <= TOGETHER
+    matrices = elements(np.arange(len(mesh.triangles))) if together else elements
+    condensed = condensation(_dissected(mesh, n), matrices)
     polar = polar_components(mesh.points[cut], psi, phi)
     stiffness = polar.T @ (polar.T @ condensed.stiffness).T
     nodes = np.setdiff1d(np.arange(len(mesh.points)), np.concatenate([cut, hub]))
     inner = (n * nodes[:, None] + np.arange(n)).ravel()
     links = cyclic_structure(0.5 * (stiffness + stiffness.T), mesh.teeth)
     return Prism(mesh, over.twist, psi, phi, inner, condensed, polar, links)
+
+
+@lru_cache(maxsize=2)
+def _dissected(mesh: SectorMesh, components: int) -> Dissection:
+    """Groups of a sector's elements; those of the last two, which all waves of a gear share."""
+    return dissection(mesh.points, mesh.triangles, *held_and_cut(mesh), components)

@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Cost, Integers, Stopwatch, record, unclocked
-from fem.elasticity.condensation import Condensation, condensation, unknowns_of
+from fem.elasticity.condensation import Condensation, condensation
 from fem.elasticity.cyclic_structure import CyclicStructure, cyclic_structure
+from fem.elasticity.dissection import dissection, unknowns_of
 from fem.elasticity.plane_elasticity import PlaneElasticity, element_matrices
 
 if TYPE_CHECKING:
@@ -129,7 +130,7 @@ def ring_of(mesh: SectorMesh, law: PlaneElasticity) -> Ring:
     cut_nodes, hub_nodes = held_and_cut(mesh)
     cut, hub = unknowns_of(cut_nodes), unknowns_of(hub_nodes)
     inner = np.setdiff1d(np.arange(mesh.unknowns), np.concatenate([cut, hub]))
-    condensed = condensation(mesh.points, mesh.triangles, elements, cut_nodes, hub_nodes)
+    condensed = condensation(dissection(mesh.points, mesh.triangles, cut_nodes, hub_nodes), elements)
     factored = watch.seconds
     polar = polar_components(mesh.points[cut_nodes])
     schur = polar.T @ (polar.T @ condensed.stiffness).T

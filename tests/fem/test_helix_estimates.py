@@ -21,7 +21,7 @@ from fem.pair.face_setting import FaceSetting
 from gears import Alignment, Gear, GearPair
 from gears.sharing.mesh_arcs import Scatter
 
-SPUR = GearPair(Gear(20), Gear(30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
+SPUR = GearPair(Gear(20), Gear(20), module=2e-3, face_width=12e-3).with_backlash(100e-6)
 SMALL = GearPair(Gear(18), Gear(23), module=1e-3, face_width=5e-3, helix_angle=radians(18.0))
 PIECES, PLACE = FacePieces(np.array([0.0, 0.5, 2.0])), FlankVariable((3.0, 9.0))
 RHO = np.array([3.0, 4.1, 5.2, 7.4, 9.0])

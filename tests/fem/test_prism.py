@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -89,6 +90,32 @@ def test_answer_is_symmetric_and_shorter_waves_yield_less(case: _Case) -> None:
     # the same tooth mirrored, with neighbours counted the other way round
     assert np.allclose(forth[0], back[0], rtol=1e-4)
     assert np.allclose(forth[1][0], back[1][-1], rtol=1e-4)
+
+
+@pytest.mark.parametrize("wavenumber", [0.0, 400.0])
+def test_matrices_are_those_of_triangles_taken_one_by_one(
+    case: _Case, wavenumber: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Made at once, or few at a time where there are too many of them; either way the ring answers alike."""
+    face, some = Face.wave(wavenumber), np.array([0, 7, 8, 100])
+    alone = np.concatenate([case.over.elements(face, np.array([one])) for one in some])
+    np.testing.assert_allclose(case.over.elements(face, some), alone, rtol=1e-13)
+    at_once = prism(case.over, face).condensed.stiffness
+    monkeypatch.setattr("fem.elasticity.prism.TOGETHER", 0)
+    few = prism(case.over, face).condensed.stiffness
+    np.testing.assert_allclose(few, at_once, rtol=0.0, atol=1e-12 * np.abs(at_once).max())
+
+
+def test_waves_share_the_groups_of_their_mesh_and_nothing_else(case: _Case) -> None:
+    """Whatever was condensed on it before, a wave is that of a mesh by itself; what is shared refuses writing."""
+    waves = [prism(case.over, Face.wave(k)).condensed for k in (400.0, 50.0, 400.0)]
+    np.testing.assert_array_equal(waves[0].stiffness, waves[2].stiffness)
+    assert not np.allclose(waves[0].stiffness, waves[1].stiffness, rtol=1e-3)
+    other = section(replace(case.mesh), LAW)
+    np.testing.assert_array_equal(prism(other, Face.wave(50.0)).condensed.stiffness, waves[1].stiffness)
+    for front in waves[0].fronts:
+        assert not front.done.flags.writeable
+        assert not front.shared.flags.writeable
 
 
 def test_short_waves_grow_as_the_half_space_does(case: _Case) -> None:

@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.linalg import spsolve
 
 from base import Array
-from fem.elasticity.condensation import unknowns_of
+from fem.elasticity.dissection import unknowns_of
 from fem.elasticity.free_ends import HalfFace, half_face
 from fem.elasticity.line_load import FlankPoints, flank_points
 from fem.elasticity.plane_elasticity import PlaneElasticity, physical_gradients
