@@ -162,7 +162,7 @@ def dissection(
 
 def _half(nodes: Integers, components: int) -> Half:
     """Places of the nodes that a half leaves, as blocks of neighbours where they are long."""
-    starts = np.flatnonzero(np.diff(nodes, prepend=-2) != 1)
+    starts = np.append(0, np.flatnonzero(nodes[1:] - nodes[:-1] != 1) + 1)
     ends = np.append(starts[1:], len(nodes))
     unknowns = unknowns_of(nodes, components)
     if LONG * len(starts) > len(unknowns):

@@ -84,14 +84,17 @@ class CornerLaw:
             len(self.log_force) - 1,
         )
         log, row = np.log(np.maximum(force, LEAST_FORCE)), np.arange(force.shape[-1])
-        cell = np.clip(((log - first) / step).astype(np.int64), 0, last - 1)
-        place = np.minimum((log - first) / step - cell, 1.0)
+        steps = (log - first) / step
+        cell = np.minimum(np.maximum(steps.astype(np.int64), 0), last - 1)
+        place, after = np.minimum(steps - cell, 1.0), cell + 1
         t, before = np.maximum(place, 0.0), np.minimum(place, 0.0)
-        q0, q1 = self.quotient[row, cell], self.quotient[row, cell + 1]
-        s0, s1 = self.slope[row, cell] * step, self.slope[row, cell + 1] * step
-        quotient = q0 * (1 + 2 * t) * (1 - t) ** 2 + q1 * t**2 * (3 - 2 * t)
-        quotient = quotient + s0 * t * (1 - t) ** 2 - s1 * t**2 * (1 - t) + s0 * before
-        rise = (6 * t * (1 - t) * (q1 - q0) + s0 * (1 - t) * (1 - 3 * t) + s1 * t * (3 * t - 2)) / step
+        u, square = 1 - t, t**2
+        left = u**2
+        q0, q1 = self.quotient[row, cell], self.quotient[row, after]
+        s0, s1 = self.slope[row, cell] * step, self.slope[row, after] * step
+        quotient = q0 * (1 + 2 * t) * left + q1 * square * (3 - 2 * t)
+        quotient = quotient + s0 * t * left - s1 * square * u + s0 * before
+        rise = (6 * t * u * (q1 - q0) + s0 * u * (1 - 3 * t) + s1 * t * (3 * t - 2)) / step
         rise = np.where((log > np.log(LEAST_FORCE)) & (log < self.log_force[-1]), rise, 0.0)
         return force * quotient, quotient + rise
 
