@@ -160,10 +160,9 @@ def middle_weights(nodes: Array) -> Array:
     Gaps are those of the film at the nodes alone: between them straight pressures leave a bump of the third power of
     the cell, as large as thin films in the wide cells of the middle.
     """
-    first = int(np.clip(np.searchsorted(nodes, 0.0) - 2, 0, nodes.size - 4))
+    first = min(max(int(np.searchsorted(nodes, 0.0)) - 2, 0), nodes.size - 4)
     near = nodes[first : first + 4]
+    others = near[np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])]
     weights = np.zeros(nodes.size)
-    for i, own in enumerate(near):
-        others = np.delete(near, i)
-        weights[first + i] = np.prod(others / (others - own))
+    weights[first : first + 4] = np.prod(others / (others - near[:, None]), axis=1)
     return weights

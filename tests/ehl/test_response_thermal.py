@@ -80,12 +80,13 @@ def test_oil_at_rest_stores_heat_as_the_closed_form_has_it(thick):
 
 @pytest.mark.parametrize("speed", [0.0, 0.2, -0.5])
 def test_a_surface_heated_evenly_is_a_half_space_in_one_dimension(speed):
+    """In the middle of 70 lengths over which the waves die out."""
     omega = 3e4
-    edges = np.linspace(-2e-3, 2e-3, 1601)
+    edges = np.linspace(-1e-3, 1e-3, 801)
     still = surface_heating(edges, speed, STEEL, 0.01)
     answer = oscillating_heating(still, edges, speed, STEEL, 0.01, omega)
     exact = 1.0 / (STEEL.conductivity * np.sqrt(1j * omega / DIFFUSIVITY))
-    assert answer.sum(axis=1)[800] == pytest.approx(exact, rel=0.03)
+    assert answer.sum(axis=1)[400] == pytest.approx(exact, rel=0.03)
 
 
 def test_what_has_passed_a_source_carries_the_heat_that_it_gave_then():
