@@ -35,7 +35,8 @@ def solved(points, triangles, thickness, held, force):
     stiffness = stiffness_matrix(points, triangles, LAW, thickness).tocsc()
     free = np.setdiff1d(np.arange(2 * len(points)), np.concatenate([2 * held, 2 * held + 1]))
     u = np.zeros(2 * len(points))
-    u[free] = splu(stiffness[free][:, free]).solve(force.ravel()[free])
+    options = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+    u[free] = splu(stiffness[free][:, free], **options).solve(force.ravel()[free])
     return u.reshape(-1, 2)
 
 

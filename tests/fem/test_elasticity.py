@@ -32,7 +32,7 @@ def solve(points, triangles, law, force, held):
     K = stiffness_matrix(points, triangles, law)
     free = np.setdiff1d(np.arange(2 * len(points)), held)
     u = np.zeros(2 * len(points))
-    u[free] = spsolve(csc_array(K[free][:, free]), force.ravel()[free])
+    u[free] = spsolve(csc_array(K[free][:, free]), force.ravel()[free], permc_spec="MMD_AT_PLUS_A")
     return u.reshape(-1, 2)
 
 
