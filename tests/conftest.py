@@ -39,6 +39,9 @@ __all__ = [
 # this each worker, and each program with a cache of its own, would compile them anew.
 keep_compiled_code()
 
+RARELY = (10_000, 10, 50)
+"""Objects after which the youngest are looked at, and how many such looks come before one at the older, and at all."""
+
 
 def pytest_report_header() -> list[str]:
     """Lines of the session's head: what repeats the choices and the order of this session."""
@@ -50,7 +53,8 @@ def pytest_collection() -> Generator[None, object, object]:
     """Look for no garbage while modules are loaded: all of them stay, and looking at them takes a third of the time.
 
     What is there once they are loaded, a million objects, is passed over from then on: each look at all of it takes a
-    second.
+    second. What tests load later, libraries of pictures and compiled code, stays as well, so that all of it is looked
+    at the more seldom.
     """
     gc.disable()
     try:
@@ -58,6 +62,7 @@ def pytest_collection() -> Generator[None, object, object]:
     finally:
         gc.collect()
         gc.freeze()
+        gc.set_threshold(*RARELY)
         gc.enable()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar, Self, TypeVar
 
 import numpy as np
@@ -77,15 +78,10 @@ class PointCurve:
 
     def at(self, place: float | Array) -> Array:
         """Value at places [m], an array like them [m]."""
-        x, y = np.array(self.places), np.array(self.values)
         if self.form == "linear":
+            x, y = np.array(self.places), np.array(self.values)
             return np.asarray(np.interp(np.asarray(place, dtype=float), x, y))
-        width, rise = np.diff(x), np.diff(y) / np.diff(x)
-        slope = np.concatenate([rise[:1], np.zeros(len(x) - 2), rise[-1:]])
-        same = np.flatnonzero(rise[:-1] * rise[1:] > 0)
-        left = 2 * width[same + 1] + width[same]
-        right = width[same + 1] + 2 * width[same]
-        slope[same + 1] = (left + right) / (left / rise[same] + right / rise[same + 1])
+        x, y, width, slope = _cubic(self.places, self.values)
         inside = np.clip(np.asarray(place, dtype=float), x[0], x[-1])
         cell = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, len(x) - 2)
         t = (inside - x[cell]) / width[cell]
@@ -108,6 +104,19 @@ class PointCurve:
                 at, "not growing", f"must be growing {self.called}", "sort the points and leave out doubles"
             )
         return tuple(collector.found)
+
+
+@lru_cache(maxsize=64)
+def _cubic(places: tuple[float, ...], values: tuple[float, ...]) -> tuple[Array, Array, Array, Array]:
+    """Points of a smooth curve, their distances and its slopes at them: asked for at every step of a mesh cycle."""
+    x, y = np.array(places), np.array(values)
+    width, rise = np.diff(x), np.diff(y) / np.diff(x)
+    slope = np.concatenate([rise[:1], np.zeros(len(x) - 2), rise[-1:]])
+    same = np.flatnonzero(rise[:-1] * rise[1:] > 0)
+    left = 2 * width[same + 1] + width[same]
+    right = width[same + 1] + 2 * width[same]
+    slope[same + 1] = (left + right) / (left / rise[same] + right / rise[same + 1])
+    return x, y, width, slope
 
 
 @dataclass(frozen=True, repr=False)

@@ -1,6 +1,6 @@
 """A headless Chromium that opens pages, spoken to over its debugging pipe: no driver, no further package.
 
-And rows of studies without processes of their own.
+Rows of studies without processes of their own, and a run with fields.
 """
 
 from __future__ import annotations
@@ -171,6 +171,14 @@ def browser(chromium: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     opened = Browser(chromium, tmp_path_factory.mktemp("chromium"))
     yield opened
     opened.close()
+
+
+@pytest.fixture(scope="session")
+def run_with_fields(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder of a run with three positions for ParaView, which nobody writes into."""
+    from tests.flankfilm.fields import write_run
+
+    return write_run(tmp_path_factory.mktemp("fields"))
 
 
 class Here(Executor):

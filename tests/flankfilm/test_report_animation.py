@@ -13,36 +13,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-import fem
 from base import InputError, SolverError
-from fem.fields.vtk import write_vtk_series
 from flankfilm.figures import Frame, animate_cycle, tooth_picture
 from flankfilm.figures.rendering import animation
-from flankfilm.files.cache import Cache
 from flankfilm.files.manifest import conclude
-from flankfilm.runs.dataset import results_dataset, write_data
-from flankfilm.scene import parse_scene
-from flankfilm.stages.computed import Computed
-from flankfilm.stages.engine import Engine
-from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FIELDS, MESH, PAIR
 from tests.flankfilm.program import command
-
-SCENE = """
-wants = ["stiffness", "vtk"]
-tolerance = 0.05
-[pair]
-module_mm = 2.0
-face_width_mm = 40.0
-pinion = { teeth = 23, bore_mm = 20 }
-wheel = { teeth = 25, bore_mm = 20 }
-[material]
-youngs_modulus_GPa = 206
-poisson_ratio = 0.3
-[operating]
-pinion_torque_Nm = 300
-[film]
-model = "none"
-"""
 
 
 def test_colours_reach_the_maximum_stress_in_the_fillets(run):
@@ -66,17 +41,9 @@ def _pinions(run: Path):
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def run(run_with_fields: Path) -> Path:
     """A run's folder with three positions for ParaView."""
-    folder = tmp_path_factory.mktemp("run")
-    scene = parse_scene(SCENE)
-    engine = Engine(scene, Cache(None))
-    for stage in (DRY_CYCLE, MESH, FIELDS):
-        engine[stage]
-    write_data(folder, results_dataset(Computed(scene, engine.results())))
-    cycle: fem.MeshCycle = engine[MESH].contact
-    write_vtk_series(folder, engine[PAIR], cycle, engine[COMPLIANCE], (0, 40, 80))
-    return folder
+    return run_with_fields
 
 
 def drawn(draw, *arguments, **options) -> Path:

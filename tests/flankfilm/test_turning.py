@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+import shutil
 import zlib
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
@@ -18,36 +19,13 @@ import xarray as xr
 
 from base import InputError
 from fem.fields.surface_frames import Surfaces
-from fem.fields.vtk import write_vtk_series
 from flankfilm.figures.rendering.turning import VALUES
 from flankfilm.figures.rendering.turning_page import write_turning
 from flankfilm.figures.rendering.view import steps
-from flankfilm.files.cache import Cache
-from flankfilm.runs.dataset import results_dataset, write_data
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
-from flankfilm.stages.computed import Computed
-from flankfilm.stages.engine import Engine
-from flankfilm.stages.mesh import COMPLIANCE, DRY_CYCLE, FIELDS, MESH, PAIR
+from tests.flankfilm.fields import SCENE
 from tests.flankfilm.program import command
-
-SCENE = """
-title = "A pair <b> that turns"
-wants = ["stiffness", "vtk"]
-tolerance = 0.05
-[pair]
-module_mm = 2.0
-face_width_mm = 40.0
-pinion = { teeth = 23, bore_mm = 20 }
-wheel = { teeth = 25, bore_mm = 20 }
-[material]
-youngs_modulus_GPa = 206
-poisson_ratio = 0.3
-[operating]
-pinion_torque_Nm = 300
-[film]
-model = "none"
-"""
 
 REQUESTS = re.compile(
     r"""\b(?:src|href)\s*=|url\(|@import|\bimport\s*\(|\bfetch\(|XMLHttpRequest|WebSocket|https?:"""
@@ -55,15 +33,9 @@ REQUESTS = re.compile(
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run's folder with three positions for ParaView."""
-    folder = tmp_path_factory.mktemp("run")
-    engine = Engine(parse_scene(SCENE), Cache(None))
-    for stage in (DRY_CYCLE, MESH, FIELDS):
-        engine[stage]
-    write_data(folder, results_dataset(Computed(engine.scene, engine.results())))
-    write_vtk_series(folder, engine[PAIR], engine[MESH].contact, engine[COMPLIANCE], (0, 40, 80))
-    return folder
+def run(run_with_fields: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Copy of a run with three positions, which pages are written into."""
+    return Path(shutil.copytree(run_with_fields, tmp_path_factory.mktemp("turning") / "run"))
 
 
 @pytest.fixture(scope="module")

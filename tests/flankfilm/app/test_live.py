@@ -69,9 +69,19 @@ def asked(text: str, newer=lambda: False) -> list[dict]:
     return messages
 
 
-def test_curves_and_figures_are_those_of_a_run_digit_by_digit():
-    drawn, told, _ = asked(SCENE)
-    engine = Engine(parse_scene(SCENE), Cache(None))
+@pytest.fixture(scope="module")
+def alone() -> tuple[dict, ...]:
+    """Messages of the scene by a child that knows no gears."""
+    return tuple(asked(SCENE))
+
+
+@pytest.fixture(scope="module")
+def engine() -> Engine:
+    return Engine(parse_scene(SCENE), Cache(None))
+
+
+def test_curves_and_figures_are_those_of_a_run_digit_by_digit(alone, engine):
+    drawn, told, _ = alone
     run = engine[DRY_CYCLE]
     assert drawn["position"] == run.position.tolist()
     lines = {curve["name"]: curve["lines"] for curve in drawn["curves"]}
@@ -94,13 +104,13 @@ def test_curves_and_figures_are_those_of_a_run_digit_by_digit():
     assert all(curve["error"] for curve in drawn["curves"])
 
 
-def test_gears_that_are_known_change_no_digit():
+def test_gears_that_are_known_change_no_digit(alone):
     known, told = KnownGears(), []
     for torque in (150, 200, 250, 200):
         text = SCENE.replace("= 200", f"= {torque}")
         request = {"number": torque, "text": text, "root": str(ROOT), "folder": str(ROOT)}
         answer(request, told.append, lambda: False, known)
-    drawn, figures, rooted = asked(SCENE)
+    drawn, figures, rooted = alone
     for message in (told[3], told[9]):
         assert message["curves"] == drawn["curves"]
     for message in (told[4], told[10]):
@@ -109,9 +119,8 @@ def test_gears_that_are_known_change_no_digit():
         assert (message["curve"], message["figures"]) == (rooted["curve"], rooted["figures"])
 
 
-def test_root_stress_follows_digit_by_digit_as_of_a_run():
-    drawn, _, rooted = asked(SCENE)
-    engine = Engine(parse_scene(SCENE), Cache(None))
+def test_root_stress_follows_digit_by_digit_as_of_a_run(alone, engine):
+    drawn, _, rooted = alone
     stress = engine[ROOT_STRESS].stress
     assert drawn["roots"]
     assert rooted["curve"]["lines"] == tuple(

@@ -109,12 +109,12 @@ def test_a_peak_between_two_speeds_is_found():
     drive = train((0.0,), error_amplitude=2e-7, speeds=(100.0, 300.0))
     swept = drive_sweep(drive, speed=np.array([1800.0, 2200.0]) * math.pi / 30.0)
     at = np.linspace(1080.0, 1320.0, 241)
-    names = [one.name for one in drive.outputs]
+    names, curves = [one.name for one in drive.outputs], linear(drive, at, 2e-7)
     for figure, parts in (("bearing_force", swept.bearings), ("shaft_torque", swept.shafts)):
         for column, name in enumerate(parts):
             part = names.index(name)
             mean = abs(float(getattr(swept, f"{figure}_mean")["up"][0, column]))
-            curve = linear(drive, at, 2e-7)[:, part]
+            curve = curves[:, part]
             peak, speed = (float(getattr(swept, f"{figure}_peak{end}")[column]) for end in ("", "_speed"))
             sampled = getattr(swept, figure)["up"][:, column].max()
             assert peak - mean == pytest.approx(curve.max(), rel=5e-3, abs=1e-6 * mean)
