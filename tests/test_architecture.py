@@ -8,7 +8,7 @@ import re
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -87,7 +87,29 @@ Imports = list[ast.Import | ast.ImportFrom]
 def imports_in(source: Path) -> Imports:
     """All imports that a file has, in functions and under TYPE_CHECKING too."""
     tree = ast.parse(source.read_text(encoding="utf-8"))
-    return [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+    return [node for node in statements(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
+
+
+def statements(within: ast.AST) -> Iterator[ast.AST]:
+    """All statements, at any depth, with the branches that hold them; no expressions, which are most of a tree."""
+    for branch in ("body", "orelse", "finalbody", "handlers", "cases"):
+        for node in getattr(within, branch, ()):
+            yield node
+            yield from statements(node)
+
+
+def test_imports_are_seen_at_any_depth():
+    code = (
+        "import a\ntry:\n    import b\nexcept OSError:\n    import c\nelse:\n    import d\nfinally:\n    import e\n"
+        "for x in y:\n    import f\nelse:\n    import g\nwith z:\n    def w():\n        import h\n"
+        "class V:\n    if u:\n        import i\n    elif t:\n        from j import k\n"
+        "match s:\n    case 1:\n        import l\nwhile r:\n    async def q():\n        import m\n"
+    )
+    found = [node for node in statements(ast.parse(code)) if isinstance(node, ast.Import | ast.ImportFrom)]
+    assert len(found) == 12
+    assert len(found) == sum(
+        isinstance(node, ast.Import | ast.ImportFrom) for node in ast.walk(ast.parse(code))
+    )
 
 
 class Files:

@@ -21,17 +21,19 @@ FIELDS = {
 
 def bound(tree: ast.AST) -> Iterator[tuple[int, str]]:
     """Names of values and functions with their lines; those of comprehensions and lambdas live for one line."""
+    nodes = list(ast.walk(tree))
     short = {
         id(node)
-        for part in ast.walk(tree)
+        for part in nodes
         if isinstance(part, ast.comprehension | ast.Lambda)
         for node in ast.walk(part.target if isinstance(part, ast.comprehension) else part.args)
     }
-    for node in ast.walk(tree):
+    for node in nodes:
         if id(node) in short:
             continue
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-            yield node.lineno, node.id
+        if isinstance(node, ast.Name):
+            if isinstance(node.ctx, ast.Store):
+                yield node.lineno, node.id
         elif isinstance(node, ast.arg):
             yield node.lineno, node.arg
         elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):

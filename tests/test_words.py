@@ -48,8 +48,9 @@ REFUSED_ON_PAGES = {  # things that are not alive
     r"\bthrow-away\b": "independent",
     r"\bhardly any\b": "very small",
 }
-WORDS = {re.compile(pattern, re.IGNORECASE): instead for pattern, instead in REFUSED.items()}
+WORDS = {re.compile(pattern, re.IGNORECASE | re.MULTILINE): instead for pattern, instead in REFUSED.items()}
 WORDS_OF_PAGES = WORDS | {re.compile(pattern): instead for pattern, instead in REFUSED_ON_PAGES.items()}
+"""Patterns that match within a line: those that nothing in the whole text matches are in none of its lines."""
 NAMES = re.compile(
     r"`[^`]*`|\{[^{}]*\}|^\s*(\w+, )*\w+ : "
 )  # inline code, fields of a format, documented parameters
@@ -80,15 +81,18 @@ def prose_of_code(text: str) -> Iterator[tuple[int, str]]:
 def refused(path: Path) -> list[str]:
     text = path.read_text(encoding="utf-8")
     code = path.suffix == ".py"
-    lines = (
+    lines = list(
         prose_of_code(text)
         if code
         else prose_of_page(FIELDS.sub("", text) if path.suffix == ".toml" else text)
     )
+    whole = "\n".join(line for _, line in lines)
+    words = WORDS if code else WORDS_OF_PAGES
+    there = {pattern: instead for pattern, instead in words.items() if pattern.search(whole)}
     return [
         f"{path.relative_to(ROOT)}:{number}: {found[0]!r}, write: {instead}"
-        for number, line in lines
-        for pattern, instead in (WORDS if code else WORDS_OF_PAGES).items()
+        for number, line in (lines if there else ())
+        for pattern, instead in there.items()
         if (found := pattern.search(line))
     ]
 

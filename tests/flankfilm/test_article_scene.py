@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
@@ -110,17 +108,12 @@ def test_time_series_names_files_that_exist(folder):
 
 
 def test_fields_open_in_vtk_with_sensible_names(folder):
-    code = (
-        "import sys, pyvista\n"
-        "grid = pyvista.read(sys.argv[1])\n"
-        "print(sorted(grid.point_data), grid.celltypes[0], float(grid['von_mises_Pa'].max()))\n"
-    )
-    file = sorted((folder / "first" / "vtk").glob("pinion*.vtu"))[0]
-    done = subprocess.run([sys.executable, "-c", code, file], capture_output=True, text=True, check=True)
-    assert "von_mises_Pa" in done.stdout
-    assert "displacement_m" in done.stdout
-    assert " 22 " in done.stdout  # VTK's quadratic triangle
-    assert 2e8 < float(done.stdout.split()[-1]) < 2e9
+    import pyvista
+
+    grid = pyvista.read(sorted((folder / "first" / "vtk").glob("pinion*.vtu"))[0])
+    assert {"von_mises_Pa", "displacement_m"} <= {*grid.point_data}
+    assert grid.celltypes[0] == 22  # VTK's quadratic triangle
+    assert 2e8 < float(grid["von_mises_Pa"].max()) < 2e9
 
 
 @pytest.mark.slow
