@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel
@@ -23,6 +24,12 @@ HEAD = """\
 
 def template() -> str:
     """Text of a commented scene that runs as it is."""
+    return _text()
+
+
+@cache
+def _text() -> str:
+    """Text from the schema, which stays."""
     own = {name: field for name, field in Scene.model_fields.items() if model_in(field.annotation) is None}
     lines = [HEAD, *(line for name, field in own.items() for line in _key(name, field))]
     for name, field in Scene.model_fields.items():
