@@ -106,9 +106,7 @@ def _array(
 
 def _blocks(values: NDArray[Any]) -> Iterator[bytes]:
     """Head of an array, which is the number of blocks, bytes of each, of the last one and packed, then the blocks."""
-    content = memoryview(np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<")).reshape(-1)).cast(
-        "B"
-    )
+    content = values.astype(values.dtype.newbyteorder("<"), copy=False).tobytes()
     # of numbers that hardly repeat runs of the same byte alone
     search = zlib.Z_RLE if values.dtype.kind == "f" else zlib.Z_DEFAULT_STRATEGY
     blocks = []
