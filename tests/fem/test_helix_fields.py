@@ -133,6 +133,33 @@ def test_pressures_over_areas_are_the_forces_and_stay_below_hertz_s(drawn, cycle
 
 
 @pytest.mark.slow
+def test_tip_edges_press_on_the_exact_flanks_and_are_said(bodies, solids):
+    """Lines that go on beyond the path: forces of both gears' flanks, and places held to the ends of the path."""
+    pyvista = pytest.importorskip("pyvista")
+    free = mesh_cycle(PAIR, TORQUE, 2, bodies, cells=16, beyond_path=True)
+    lines = free.lines
+    assert lines is not None
+    for row in range(2):
+        fields = helix_fields(PAIR, free, row, bodies, solids)
+        edges = lines.force[row][np.isfinite(lines.z[row]) & (lines.on_path[row] == 0.0)].sum()
+        for gear, one in enumerate((fields.pinion, fields.wheel)):
+            flanks = one.flanks
+            grid = pyvista.UnstructuredGrid({pyvista.CellType.QUAD: flanks.cells}, flanks.points)
+            force = flanks.pressure_Pa * grid.compute_cell_sizes(length=False, volume=False)["Area"]
+            by_pair = [force[flanks.pair == offset].sum() for offset in free.pair_offset]
+            # quadrangles are less plane where a line turns along the tip
+            assert by_pair == pytest.approx(free.forces[row], rel=1e-4, abs=1e-9)
+            at_edges = flanks.tip_edge == 1
+            assert force[at_edges].sum() == pytest.approx(edges, rel=1e-4)
+            assert not np.isfinite(flanks.hertz_pressure_Pa[at_edges]).any()
+            section = untwisted(flanks.points, PAIR, free, row, gear)
+            assert off_the_flank(section, PAIR, gear).max() < 1e-12
+        own = fields.lines.points
+        assert np.isfinite(own).all()
+    assert edges > 0.0
+
+
+@pytest.mark.slow
 def test_other_teeth_yield_as_the_contact_says(bodies, cycle, solids):
     """The contact's compliance is waves of a fine section with what free ends add, apart from this solid."""
     row, lines = 1, cycle.lines

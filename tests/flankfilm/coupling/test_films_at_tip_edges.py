@@ -15,6 +15,7 @@ from flankfilm.coupling import FilmModel, Flanks, LoadedTeeth, LubricatedCycle, 
 from flankfilm.coupling.drive.mesh_in_space import spatial_mesh
 from flankfilm.coupling.mesh.cells import cells_of
 from flankfilm.coupling.mesh.resolution import resolution_of
+from flankfilm.output.line_model_errors import MEAN, deflection_of_lines, mean_of_lines
 from gears import Gear, GearPair
 
 PAIR = GearPair(Gear(18), Gear(23), module=1e-3, face_width=5e-3, helix_angle=math.radians(18.0))
@@ -78,6 +79,17 @@ class TestFilms:
         ]
         assert changes[0] < 0.0
         assert changes[0] == pytest.approx(changes[1], rel=0.3)
+
+
+@pytest.mark.slow
+def test_model_errors_do_not_count_edges_that_are_in_the_model(bodies):
+    held, free = (
+        fem.mesh_cycle(PAIR, TORQUE, 6, bodies, cells=24, beyond_path=edges) for edges in (False, True)
+    )
+    for law in (1.0, 2.0):
+        assert mean_of_lines(free, law) == pytest.approx(MEAN + law * free.flank_error, rel=1e-12)
+        assert mean_of_lines(free, law) < 0.7 * mean_of_lines(held, law)
+    assert deflection_of_lines(free) < 0.5 * deflection_of_lines(held)
 
 
 @pytest.mark.slow
