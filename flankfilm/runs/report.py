@@ -108,9 +108,14 @@ def write_report(results: Results, folder: Path, shown: Sequence[Part] | None = 
 
 
 def _asked(scene: Scene) -> dict[str, Any]:
-    """Plain values of a scene; the defaults of [film] are left out if the scene has no such section."""
+    """Plain values of a scene; the defaults of [film] are left out if the scene has no such section.
+
+    With a helix the default of contact beyond the path is what it does there.
+    """
     unsaid = set() if "film" in scene.model_fields_set else {"film"}
-    return scene.model_dump(exclude_none=True, exclude=unsaid)
+    asked = scene.model_dump(exclude_none=True, exclude=unsaid)
+    asked["stiffness"]["contact_beyond_path"] = scene.tip_edges
+    return asked
 
 
 def _facts(results: Results) -> list[Fact]:

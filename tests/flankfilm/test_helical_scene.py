@@ -17,6 +17,7 @@ from flankfilm.building.pair import gear_pair, warm_pair
 from flankfilm.figures.style import narrow
 from flankfilm.files.cache import Cache
 from flankfilm.runs.check import check_scene
+from flankfilm.runs.report import _asked
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene, read_scene, template
 from flankfilm.scene.needs_of_helix import HELIX, KEYS_OF_SPUR
@@ -281,6 +282,12 @@ class TestTable:
         assert asked.tip_edges
         assert not parse_scene(text + "[stiffness]\ncontact_beyond_path = false\n").tip_edges
         assert parse_scene(text.replace("deg = 20", "deg = 0")).tip_edges
+
+    @pytest.mark.parametrize(("given", "told"), [("", False), ("false", False), ("true", True)])
+    def test_the_inputs_of_a_report_say_what_contact_there_was(self, given, told):
+        edges = f"[stiffness]\ncontact_beyond_path = {given}\n" if given else ""
+        told_so = _asked(parse_scene(SCENE.replace("WANTS", '"stiffness"') + edges))
+        assert told_so["stiffness"]["contact_beyond_path"] is told
 
     def test_rounded_tips_are_taken_with_contact_beyond_the_path(self):
         text = SCENE.replace("WANTS", '"stiffness"').replace(
