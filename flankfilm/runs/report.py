@@ -110,7 +110,7 @@ def write_report(results: Results, folder: Path, shown: Sequence[Part] | None = 
 def _asked(scene: Scene) -> dict[str, Any]:
     """Plain values of a scene; the defaults of [film] are left out if the scene has no such section.
 
-    With a helix the default of contact beyond the path is what it does there.
+    Contact beyond the path is what there was, also where the key is left out.
     """
     unsaid = set() if "film" in scene.model_fields_set else {"film"}
     asked = scene.model_dump(exclude_none=True, exclude=unsaid)
