@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -51,6 +52,7 @@ def RATING(run: Engine) -> gears.rating.Rating:
     "unequal pitches",
     "loaded contact with base pitches that differ",
     TEETH,
+    PAIR,
     RATING,
     COMPLIANCE,
     FACE_GEARS,
@@ -58,9 +60,16 @@ def RATING(run: Engine) -> gears.rating.Rating:
     settings=TEETH_DECIDED,
 )
 def UNEQUAL_PITCHES(run: Engine) -> coupling.UnequalPitches:
-    """Mesh cycles without film, of base pitches that differ by the deviation of the rating, both ways."""
-    deviation = run[RATING].factors.effective.f_pb_eff
-    return coupling.unequal_pitches(loaded_teeth(run), measured(run, run[DRY_CYCLE]), deviation)
+    """Mesh cycles without film, of base pitches that differ by the deviation of the rating, both ways.
+
+    Lines of contact of helical pairs go on over tip edges here, which the rest of a run holds to the path: there a line
+    begins with its whole approach in a corner of the face, and carries what no tooth does.
+    """
+    deviation, teeth, even = run[RATING].factors.effective.f_pb_eff, loaded_teeth(run), run[DRY_CYCLE]
+    if run[PAIR].helix_angle != 0.0 and run.scene.stiffness.contact_beyond_path:
+        teeth = replace(teeth, flanks=replace(teeth.flanks, beyond_path=True))
+        even = teeth.cycle(even.position.size)
+    return coupling.unequal_pitches(teeth, measured(run, even), deviation)
 
 
 @stage(
@@ -105,10 +114,11 @@ def MOTION_FACTOR(run: Engine) -> coupling.MotionFactor:
     return coupling.motion_factor(motion, pinion_speed(run.scene), deviation, speeds, laws)
 
 
-@stage("loaded factors", "load factors of the loaded contact", "", DRY_CYCLE, UNEQUAL_PITCHES)
+@stage("loaded factors", "load factors of the loaded contact", "", PAIR, DRY_CYCLE, UNEQUAL_PITCHES)
 def LOADED_FACTORS(run: Engine) -> coupling.LoadedFactors:
     """Face-load and transverse load factors of the mesh cycles without film, with the base pitch deviation."""
-    return coupling.loaded_factors(run[DRY_CYCLE], run[UNEQUAL_PITCHES])
+    pitches = run[UNEQUAL_PITCHES]
+    return coupling.loaded_factors(pitches.even if run[PAIR].helix_angle != 0.0 else run[DRY_CYCLE], pitches)
 
 
 @stage(

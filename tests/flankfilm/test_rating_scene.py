@@ -13,7 +13,8 @@ from flankfilm.building.preflight import refuse
 from flankfilm.files.cache import Cache
 from flankfilm.scene.reader import validated
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.rating import RATING
+from flankfilm.stages.mesh import DRY_CYCLE
+from flankfilm.stages.rating import LOADED_FACTORS, RATING
 from flankfilm.studies.outputs import OUTPUTS
 from tests.validation.rated_pairs import printed
 
@@ -192,3 +193,16 @@ def test_what_no_rating_takes_says_what_to_do(change, where, said):
     with pytest.raises(InputError, match=said) as caught:
         validated(put(WHOLE, **change))
     assert [fault.where for fault in caught.value.faults] == [where]
+
+
+@pytest.mark.slow
+@pytest.mark.long
+def test_lines_of_a_helical_pair_go_on_over_tip_edges_in_its_load_factors():
+    """Held to the path they begin in a corner of the face with their whole approach, which no gear has."""
+    whole = {**WHOLE, "wants": ["rating", "stiffness"], "tolerance": 0.1}
+    scene = put(whole, pair__helix_angle_deg=20.0, operating__pinion_torque_Nm=600.0)
+    run, held = engine(scene), engine(put(scene, stiffness__contact_beyond_path=False))
+    factors, without = run[LOADED_FACTORS], held[LOADED_FACTORS]
+    assert run[DRY_CYCLE].lines.greatest_line_load_factor == without.K_H
+    assert 1.0 < factors.K_H < 0.8 * without.K_H
+    assert factors.K_H < factors.K_H_unequal < 0.8 * without.K_H_unequal
