@@ -51,7 +51,7 @@ def RATING(run: Engine) -> gears.rating.Rating:
 @stage(
     "unequal pitches",
     "loaded contact with base pitches that differ",
-    TEETH,
+    f"{TEETH} stiffness.contact_beyond_path",
     PAIR,
     RATING,
     COMPLIANCE,
@@ -62,11 +62,12 @@ def RATING(run: Engine) -> gears.rating.Rating:
 def UNEQUAL_PITCHES(run: Engine) -> coupling.UnequalPitches:
     """Mesh cycles without film, of base pitches that differ by the deviation of the rating, both ways.
 
-    Lines of contact of helical pairs go on over tip edges here, which the rest of a run holds to the path: there a line
-    begins with its whole approach in a corner of the face, and carries what no tooth does.
+    Lines of contact of helical pairs go on over tip edges here unless the scene holds them to the path: held to it, as
+    the rest of a run does where nothing is said, a line begins with its whole approach in a corner of the face, and
+    carries what no tooth does.
     """
     deviation, teeth, even = run[RATING].factors.effective.f_pb_eff, loaded_teeth(run), run[DRY_CYCLE]
-    if run[PAIR].helix_angle != 0.0 and run.scene.stiffness.contact_beyond_path:
+    if run[PAIR].helix_angle != 0.0 and run.scene.stiffness.contact_beyond_path is None:
         teeth = replace(teeth, flanks=replace(teeth.flanks, beyond_path=True))
         even = teeth.cycle(even.position.size)
     return coupling.unequal_pitches(teeth, measured(run, even), deviation)
