@@ -1,12 +1,15 @@
-"""Grids of VTK: those of fields in the plane and over the face, and the precision of what they hold."""
+"""Grids of VTK: those of fields in the plane and over the face, precision of what they hold, and their files."""
 
 from __future__ import annotations
 
+import errno
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from base import replacing
 from fem.fields.contact_forces import ContactForces
 from fem.fields.face_fields import FaceField, ToothField
 from fem.fields.flank_patches import FlankField
@@ -17,11 +20,16 @@ from fem.fields.stress_fields import GearField, of_axis
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["face_grids", "helix_grids", "plane_grids", "rounded"]
+__all__ = ["face_grids", "helix_grids", "plane_grids", "rounded", "write_grid"]
 
 DROPPED = 12
 """Bits of the mantissa that fields but the displacement lose: 12 significant ones stay (2.5e-4 of the value), which is
 finer than the fields are exact and packs far better."""
+
+LEVEL, BLOCK = 1, 1 << 22
+"""zlib's fastest, since more effort saves no more than some per cent of digits that are nearly random; and bytes that
+are packed at once."""
+
 
 COMPONENTS = {"stress_Pa": ("xx", "yy", "zz", "xy"), "principal_Pa": ("larger", "smaller")}
 
@@ -142,3 +150,29 @@ def rounded(values: NDArray[np.float32]) -> NDArray[np.float32]:
     bits, finite = values.view(np.uint32), np.isfinite(values)
     bits[finite] = (bits[finite] + (1 << (DROPPED - 1))) & ~np.uint32((1 << DROPPED) - 1)
     return values
+
+
+def write_grid(path: Path, grid: pyvista.UnstructuredGrid) -> None:
+    """Write a ``.vtu`` with its arrays packed behind the text; ``grid.save`` spells them in a third more bytes."""
+    from vtkmodules.vtkCommonMisc import vtkErrorCode
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetInputData(grid)
+    writer.SetDataModeToAppended()
+    writer.EncodeAppendedDataOff()
+    writer.SetHeaderTypeToUInt32()
+    writer.SetCompressorTypeToZLib()
+    writer.SetCompressionLevel(LEVEL)
+    writer.SetBlockSize(BLOCK)
+    with replacing(path) as beside:
+        writer.SetFileName(str(beside))
+        shown = writer.GetGlobalWarningDisplay()
+        writer.GlobalWarningDisplayOff()  # what goes wrong is raised
+        try:
+            done = writer.Write()
+        finally:
+            writer.SetGlobalWarningDisplay(shown)
+        if not done:
+            fault = vtkErrorCode.GetStringFromErrorCode(writer.GetErrorCode())
+            raise OSError(errno.ENOSPC, fault, str(path))

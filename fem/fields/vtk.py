@@ -16,8 +16,7 @@ from fem.fields.contact_forces import contact_forces
 from fem.fields.drawing import GearDrawing
 from fem.fields.face_fields import face_fields
 from fem.fields.face_waves import GearPrisms, gear_prisms
-from fem.fields.grid_files import write_grid
-from fem.fields.grids import face_grids, helix_grids, plane_grids
+from fem.fields.grids import face_grids, helix_grids, plane_grids, write_grid
 from fem.fields.helix_fields import helix_fields
 from fem.fields.helix_solids import TwistedGear, twisted_gears
 from fem.fields.loaded_gears import frames

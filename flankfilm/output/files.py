@@ -6,7 +6,6 @@ import csv
 import io
 import json
 from collections.abc import Mapping
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +15,6 @@ from numpy.typing import ArrayLike, NDArray
 from base import replacing
 
 if TYPE_CHECKING:
-    import h5py
     import xarray as xr
 
 
@@ -33,37 +31,11 @@ def write_netcdf(path: Path, dataset: xr.Dataset) -> None:
     from xarray.backends import H5NetCDFStore
 
     content = io.BytesIO()
-    with _looking_up_once()(content, "w", track_order=True) as opened, h5netcdf.File(opened, "w") as file:
+    with h5netcdf.File(content, "w") as file:
         dataset.drop_attrs(deep=False).dump_to_store(H5NetCDFStore(file))
         file.attrs.update(dataset.attrs)
     with replacing(path) as beside:
         beside.write_bytes(content.getbuffer())
-
-
-@cache
-def _looking_up_once() -> type[h5py.File]:
-    """HDF5 file that keeps what was looked up in it: h5netcdf looks up a variable thirty times while it writes it."""
-    import h5py
-
-    class File(h5py.File):
-        """A file whose root group is itself, so that it sees what is removed."""
-
-        def __getitem__(self, name: Any) -> Any:
-            if not isinstance(name, str):  # a reference
-                return super().__getitem__(name)
-            path = name.strip("/")
-            if not path:
-                return self
-            known = self.__dict__.setdefault("known", {})
-            if path not in known:
-                known[path] = super().__getitem__(path)
-            return known[path]
-
-        def __delitem__(self, name: str) -> None:
-            self.__dict__.get("known", {}).pop(name.strip("/"), None)
-            super().__delitem__(name)
-
-    return File
 
 
 def write_csv(path: Path, columns: Mapping[str, ArrayLike]) -> None:

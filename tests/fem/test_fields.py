@@ -13,8 +13,7 @@ from base import InputError
 from fem.elasticity.flamant import hertz_half_width
 from fem.elasticity.ring import mesh_and_factor
 from fem.fields.contact_forces import contact_forces
-from fem.fields.grid_files import write_grid
-from fem.fields.grids import rounded, single_precision
+from fem.fields.grids import rounded, single_precision, write_grid
 from fem.fields.picture import picture_of
 from fem.fields.stress_fields import REGIONS, draw_gears, loaded_fields
 from fem.fields.vtk import write_vtk_series

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import csv
 
-import h5netcdf
-import h5py
 import numpy as np
 import pytest
 import xarray as xr
-from xarray.backends import H5NetCDFStore
 
 from base import quantity, record
 from flankfilm.output.files import write_csv, write_netcdf
@@ -108,49 +105,3 @@ def test_a_tangent_says_so_in_files_and_keeps_its_older_name_for_one_version():
     for given in ({"names": ("position", "tangent_stiffness")}, {"axis": "position"}):
         found = columns(data, "dry", **given)
         assert list(found) == ["position", "tangent_stiffness_N_per_m", "stiffness_N_per_m"]
-
-
-def held(path):
-    """All that HDF5 has of a file of results: objects, attributes, references by the names that they lead to."""
-
-    def plain(file, value):
-        if isinstance(value, np.ndarray) and value.dtype.names:  # which variables have a dimension
-            return sorted((file[reference].name, int(axis)) for reference, axis in value)
-        if isinstance(value, np.ndarray) and value.dtype == object:
-            return [[file[reference].name for reference in references] for references in value]
-        return repr(value)
-
-    def about(file, thing):
-        return [
-            (name, str(thing.attrs.get_id(name).dtype), plain(file, value))
-            for name, value in thing.attrs.items()
-        ]
-
-    with h5py.File(path) as file:
-        variables = {
-            name: (str(v.dtype), v.maxshape, v.chunks, repr(v.fillvalue), v[()].tolist(), about(file, v))
-            for name, v in file.items()
-        }
-        return variables, about(file, file)
-
-
-def test_a_file_is_the_one_of_h5netcdf_though_it_looks_up_each_variable_once(tmp_path):
-    """Coordinates, dimensions without one, texts, whole numbers, empty and single values."""
-    data = xr.Dataset(
-        {
-            "force": (("place", "tooth"), np.arange(6.0).reshape(3, 2), {"units": "N", "error": 0.1}),
-            "name": ("tooth", np.array(["left", "right"]), {"units": ""}),
-            "count": ((), 3, {"units": "1"}),
-            "none": ("nothing", np.zeros(0), {"units": "m"}),
-            "number": ("tooth", np.array([1, 2], dtype=np.int8)),
-        },
-        coords={"place": ("place", [0.1, 0.2, 0.3], {"units": "m"})},
-        attrs={"title": "small"},
-    )
-    write_netcdf(tmp_path / "own.nc", data)
-    with h5netcdf.File(tmp_path / "plain.nc", "w") as file:
-        data.drop_attrs(deep=False).dump_to_store(H5NetCDFStore(file))
-        file.attrs.update(data.attrs)
-    assert held(tmp_path / "own.nc") == held(tmp_path / "plain.nc")
-    with xr.open_dataset(tmp_path / "own.nc", engine="h5netcdf") as back:
-        xr.testing.assert_identical(back.load(), data)
