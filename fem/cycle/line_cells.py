@@ -10,6 +10,7 @@ import numpy as np
 from base import Array, Booleans, part, quantity, record
 from base.results import EXACT
 from fem.contact.line_contact import WINDOW
+from fem.laws.line_candidates import part_on_path
 
 if TYPE_CHECKING:
     from gears import GearPair
@@ -92,16 +93,10 @@ class CellsOfLines:
     @property
     def on_path(self) -> Array:
         """Part of each cell between the ends of the path (positions, pairs, cells); 0 where there is none."""
-        helix, (start, end) = self.pair.helix, self.ends
+        helix = self.pair.helix
         across = self.length[..., None] * helix.base_cosine * abs(helix.base_tangent)
-        rho1 = np.nan_to_num(self.travel) + self.pair.points.A
-        before, after = (
-            np.clip(0.5 + away / np.where(across > 0.0, across, end - start), 0.0, 1.0)
-            for away in (rho1 - start, end - rho1)
-        )
-        part = before + after - 1.0
-        # cells that end with the path are whole but for rounding
-        return np.asarray(np.isfinite(self.z) * np.where(part > 1.0 - 1e-9, 1.0, part))
+        place = np.nan_to_num(self.travel) + self.pair.points.A
+        return np.asarray(np.isfinite(self.z) * part_on_path(place, across, self.ends))
 
     @property
     def inside(self) -> Booleans:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fem.laws.edges_of_lines import EdgesOfLines
     from gears import GearPair
 
-__all__ = ["ContactLines", "LineCells", "contact_lines", "line_offsets"]
+__all__ = ["ContactLines", "LineCells", "contact_lines", "line_offsets", "part_on_path"]
 
 SHORTEST = 1e-9
 """Part of the face below which a line does not touch."""
@@ -172,9 +172,8 @@ class ContactLines:
         """Part of each cell between the ends of the path (positions, pairs, cells); 0 where there is none."""
         if self.edges is None:
             return cells.used.astype(np.float64)
-        place, half = self.places(cells), 0.5 * abs(self.slope) * cells.length[..., None]
-        low, high = (np.clip(place + side, *self.edges.ends) for side in (-half, half))
-        return np.where(cells.used, 0.5 * (high - low) / half, 0.0)
+        across = abs(self.slope) * cells.length[..., None]
+        return np.where(cells.used, part_on_path(self.places(cells), across, self.edges.ends), 0.0)
 
     def film_places(self, cells: LineCells) -> Array:
         """rho1 of films on cells [m], as many; nan of those beyond the path, which are dry."""
@@ -198,6 +197,28 @@ class ContactLines:
     def edge_gaps(self, place: Array) -> Array:
         """Gaps of tip edges at places of the line of action [m]; 0 on the path."""
         return np.zeros_like(place) if self.edges is None else self.edges.gaps(place)
+
+
+def part_on_path(place: Array, across: Array, ends: tuple[float, float]) -> Array:
+    """Part of cells between the ends of the path; 0 of those beyond it, and 1 of all that end with it.
+
+    Parameters
+    ----------
+    place : array
+        rho1 of the unlimited involutes in their middles [m].
+    across : array
+        By how much rho1 changes over a cell [m].
+    ends : (float, float)
+        rho1 at the ends of the path [m].
+    """
+    start, end = ends
+    before, after = (
+        np.clip(0.5 + away / np.where(across > 0.0, across, end - start), 0.0, 1.0)
+        for away in (place - start, end - place)
+    )
+    part = before + after - 1.0
+    # cells that end with the path are whole but for rounding
+    return np.asarray(np.where(part > 1.0 - 1e-9, 1.0, part))
 
 
 def line_offsets(pair: GearPair, farther: float = 0.0) -> Integers:

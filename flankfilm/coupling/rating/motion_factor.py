@@ -21,7 +21,7 @@ import numpy as np
 from base import Array, Cost, Faults, InputError, Limit, Stopwatch, quantity, record, unclocked
 from base.results import EXACT
 from flankfilm.coupling.drive.pair_drive import PairDrive
-from flankfilm.coupling.rating.contact_motion import followed, followed_speeds, followed_worse
+from flankfilm.coupling.rating.contact_motion import EVEN, UNEQUAL, followed
 from flankfilm.coupling.rating.pitch_excitation import harmonics_of, pitch_errors
 from flankfilm.coupling.rating.unequal_pitches import DEVIATION
 from flankfilm.coupling.speeds.sidebands import over_revolution
@@ -144,7 +144,7 @@ def motion_factor(
         factors = _by_laws(motion, laws, frequency, values)
     swept: dict[str, Any] = dict.fromkeys(("swept", "factor", "greatest", "greatest_at", "swept_error"))
     if speeds is not None:
-        peak = int(np.nanargmax(factors.factor))
+        peak = int(np.argmax(np.nan_to_num(factors.factor, nan=-np.inf)))
         swept = {
             "swept": np.asarray(speeds, dtype=np.float64),
             "factor": factors.factor,
@@ -181,12 +181,14 @@ def _by_laws(
     motion: PairOscillator | PairDrive, laws: ContactLaws, frequency: float, values: Array | None
 ) -> _Found:
     """Motions with the laws of the contact as the force of the mesh."""
-    even, worse = followed(motion, laws, "even", frequency), followed_worse(motion, laws, frequency)
-    error, factor, swept_error, well = worse.error, np.zeros(0), math.nan, even.followed and worse.followed
+    at = np.array([frequency])
+    runs = [followed(motion, laws, chosen, at) for chosen in (EVEN, UNEQUAL)]
+    (even, unequal), error = (float(run.factor[0]) for run in runs), max(run.error for run in runs)
+    factor, swept_error = np.zeros(0), math.nan
     if values is not None:
-        sweep = followed_speeds(motion, laws, values)
-        factor, swept_error, well = sweep.factor, sweep.error, well and sweep.followed
-    return _Found(worse.factor, even.factor, error, factor, swept_error, well)
+        runs.append(followed(motion, laws, UNEQUAL, values))
+        factor, swept_error = runs[-1].factor, runs[-1].error
+    return _Found(unequal, even, error, factor, swept_error, all(run.followed for run in runs))
 
 
 def _by_sawtooth(
