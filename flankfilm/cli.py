@@ -22,8 +22,8 @@ from flankfilm.studies.executors import Kind
 
 if TYPE_CHECKING:
     from flankfilm.outcome.outcome import Line, Outcome
-    from flankfilm.outcome.results import Results
     from flankfilm.scene import Scene
+    from flankfilm.stages.computed import Computed
 
 app = App(
     name="flankfilm",
@@ -128,7 +128,7 @@ def run(scene: Path, /, *, options: ForScene = SceneOptions()) -> int:
     folder = options.out or Path(f"{name}-results")
     figures: list[str] = []
 
-    def computed(results: Results) -> None:
+    def computed(results: Computed) -> None:
         lines = report.figure_lines(results)
         with suppress(OSError):  # a closed pipe keeps no file from being written; it shows again at the end
             _printed(lines)

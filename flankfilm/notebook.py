@@ -117,7 +117,7 @@ def results_html(results: Results) -> str:
     """Headline figures of a run with their notes, and its files."""
     from flankfilm.runs.report import headlines
 
-    rows = [(line.name, line.with_unit, line.note) for line in headlines(results)]
+    rows = [(line.name, line.with_unit, line.note) for line in headlines(results.computed)]
     folder = results.folder or Path()
     files = ", ".join(str(path.relative_to(folder)) for path in results.files[:20])
     more = f" and {len(results.files) - 20} more" if len(results.files) > 20 else ""

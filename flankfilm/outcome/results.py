@@ -78,7 +78,7 @@ class Results:
     @property
     def computed(self) -> Computed:
         """Results of the stages, as everything that shows them reads them."""
-        return Computed(self.scene, self.values, self.failures)
+        return Computed(self.scene, self.values, self.failures, self.runs)
 
     @property
     def title(self) -> str:

@@ -53,7 +53,12 @@ def _attributes(path: Path) -> dict[str, str]:
 
     with readable(path, "Name a scene or a results.nc"), h5py.File(path, "r") as file:
         names = ("scene_json", "versions_json", "code_sha256", "design")
-        return {name: str(file.attrs[name])[: LARGEST_SCENE + 1] for name in names if name in file.attrs}
+        held = {name: file.attrs[name] for name in names if name in file.attrs}
+    # netCDF has characters of ASCII, which HDF5 gives as bytes, and text of other letters
+    texts = {
+        name: x.decode("utf-8", "replace") if isinstance(x, bytes) else str(x) for name, x in held.items()
+    }
+    return {name: text[: LARGEST_SCENE + 1] for name, text in texts.items()}
 
 
 def _scene(text: str, name: str) -> Scene:

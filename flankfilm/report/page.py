@@ -6,7 +6,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -274,6 +274,7 @@ def said(note: str, **words: Any) -> str:
     return _prose()["notes"][note].format(**words)
 
 
+@cache
 def _prose() -> dict[str, dict[str, str]]:
     return tomllib.loads(_text("prose.toml"))
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from flankfilm.outcome.results import Results
     from flankfilm.plan.decide import Plan
     from flankfilm.plan.decisions import Decision
+    from flankfilm.stages.computed import Computed
 
 LEAST_SECONDS = 0.005
 """Minimum time of a stage that is listed although it has no separate error [s]."""
@@ -89,11 +90,11 @@ def failures(results: Results) -> list[Part]:
     return [Part("failures", "Not computed", (said("failures"),), tables=(table,), unfolded=True)]
 
 
-def doubts(results: Results) -> list[str]:
+def doubts(computed: Computed) -> list[str]:
     """Messages of solvers that did not converge."""
-    values = results.values
-    doubted = [name for name in results.runs if getattr(values.get(name), "converged", True) is False]
-    return [f"{results.runs[name].title}: {values[name].message}" for name in doubted]
+    values, runs = computed.values, computed.runs
+    doubted = [name for name in runs if getattr(values.get(name), "converged", True) is False]
+    return [f"{runs[name].title}: {values[name].message}" for name in doubted]
 
 
 def warnings(results: Results, misses: Sequence[str] = ()) -> list[str]:

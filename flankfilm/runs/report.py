@@ -7,11 +7,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flankfilm.plan.decisions import decisions
 from flankfilm.processes.assistant import Assistant
 from flankfilm.products.catalogue import PRODUCTS
 from flankfilm.report import pair_parts, run_parts
 from flankfilm.report.page import Fact, Head, Headline, Part, write_page
 from flankfilm.report.text import counted, percent, seconds
+from flankfilm.runs.dataset import results_dataset
+from flankfilm.stages.computed import Computed
 
 if TYPE_CHECKING:
     from flankfilm.outcome.results import Results
@@ -24,39 +27,39 @@ SHOWN = 5
 """Maximum number of foreign files that are named."""
 
 
-def headlines(results: Results) -> list[Headline]:
+def headlines(computed: Computed) -> list[Headline]:
     """Numbers for the page's head and for the terminal, with their errors against the scene's tolerance."""
-    return [headline.against(results.scene.tolerance) for headline in _headlines(results)]
+    return [headline.against(computed.scene.tolerance) for headline in _headlines(computed)]
 
 
-def misses(results: Results) -> list[str]:
+def misses(computed: Computed) -> list[str]:
     """Headlines whose error is above the tolerance of the scene, and messages of solvers."""
-    above = [headline.miss(results.scene.tolerance) for headline in _headlines(results)]
-    return [*filter(None, above), *run_parts.doubts(results)]
+    above = [headline.miss(computed.scene.tolerance) for headline in _headlines(computed)]
+    return [*filter(None, above), *run_parts.doubts(computed)]
 
 
-def _headlines(results: Results) -> list[Headline]:
-    shown = [headline for product in PRODUCTS for headline in product.headlines(results.computed)]
-    pair = results.values.get("pair")
+def _headlines(computed: Computed) -> list[Headline]:
+    shown = [headline for product in PRODUCTS for headline in product.headlines(computed)]
+    pair = computed.values.get("pair")
     return shown if shown or pair is None else pair_parts.headlines(pair)
 
 
-def figure_lines(results: Results) -> list[str]:
+def figure_lines(computed: Computed) -> list[str]:
     """Lines for the terminal that are known before files are: headline figures with errors, and decisions."""
-    if set(results.scene.wants) <= GEOMETRY:
-        lines = pair_parts.printed(results.dataset)
+    if set(computed.scene.wants) <= GEOMETRY:
+        lines = pair_parts.printed(results_dataset(computed))
     else:
-        lines = [_line(headline) for headline in headlines(results)]
-    lines += misses(results)
-    lines += [decision.line for decision in results.decisions]
-    if results.plan is not None:
-        lines.append(results.plan.line)
+        lines = [_line(headline) for headline in headlines(computed)]
+    lines += misses(computed)
+    lines += [decision.line for decision in decisions(computed.values)]
+    if (plan := computed.values.get("plan")) is not None:
+        lines.append(plan.line)
     return lines
 
 
 def summary(results: Results) -> list[str]:
     """Lines for the terminal: `figure_lines`, and the files."""
-    lines = [*figure_lines(results), f"{results.written} after {results.seconds:.1f} s"]
+    lines = [*figure_lines(results.computed), f"{results.written} after {results.seconds:.1f} s"]
     if results.others:
         more = ", ..." if len(results.others) > SHOWN else ""
         lines.append(f"kept, not of this run: {', '.join(results.others[:SHOWN])}{more}")
@@ -94,7 +97,7 @@ def write_report(results: Results, folder: Path, shown: Sequence[Part] | None = 
     shown : sequence of Part, optional
         Of `sections`, where they are at hand.
     """
-    scene, warned = results.scene, run_parts.warnings(results, misses(results))
+    scene, warned = results.scene, run_parts.warnings(results, misses(results.computed))
     parts = [
         *run_parts.failures(results),
         *(sections(results, Assistant()) if shown is None else shown),
@@ -103,7 +106,7 @@ def write_report(results: Results, folder: Path, shown: Sequence[Part] | None = 
         run_parts.inputs(_asked(scene), results.dataset.attrs["versions_json"]),
     ]
     drawing = None if results.values.get("pair") is None else pair_parts.drawing(results.dataset)
-    head = Head(scene.title or "flankfilm", _facts(results), headlines(results), warned, drawing)
+    head = Head(scene.title or "flankfilm", _facts(results), headlines(results.computed), warned, drawing)
     return write_page(folder, head, parts)
 
 

@@ -155,11 +155,11 @@ def run_outcome(
     *,
     use_cache: bool = True,
     progress: Progress = silent,
-    computed: Callable[[Results], None] | None = None,
+    computed: Callable[[Computed], None] | None = None,
 ) -> RunOutcome:
     """Compute what a scene wants and write it where there is a folder; arguments and faults as of `run_scene`.
 
-    `computed` is called with the results before files are written.
+    `computed` is called with the results before they become a dataset and files.
     """
     start = time.perf_counter()
     shared = LOADED if folder is not None and "vtk" in scene.wants else ()
@@ -168,10 +168,7 @@ def run_outcome(
         unfinished(folder if shared else None) as beside,
         assistant(shared) as helper,
     ):
-        outcome = _computed(scene, use_cache, progress, helper, beside)
-        if computed is not None:
-            computed(outcome.result)
-        outcome = concluded(outcome, folder)
+        outcome = concluded(_computed(scene, use_cache, progress, helper, beside, computed), folder)
     results = replace(
         outcome.result, files=outcome.files, others=outcome.others, seconds=time.perf_counter() - start
     )
@@ -210,7 +207,12 @@ def run_scene(
 
 
 def _computed(
-    scene: Scene, use_cache: bool, progress: Progress, helper: Assistant, beside: Path | None
+    scene: Scene,
+    use_cache: bool,
+    progress: Progress,
+    helper: Assistant,
+    beside: Path | None,
+    computed: Callable[[Computed], None] | None,
 ) -> RunOutcome:
     """Results without files, but for those that the helper writes meanwhile into a folder beside the run's."""
     start, fields = time.perf_counter(), None
@@ -226,8 +228,9 @@ def _computed(
         raise failures[0].error
     for failure in failures:
         failure.error.with_traceback(None)  # which would keep every array of the solver
-    values = engine.results()
-    dataset = results_dataset(Computed(scene, values, failures))
-    seconds = time.perf_counter() - start
-    results = Results(scene, None, values, engine.runs, (), seconds, dataset, failures=failures)
+    stages = Computed(scene, engine.results(), failures, engine.runs)
+    if computed is not None:
+        computed(stages)
+    dataset, seconds = results_dataset(stages), time.perf_counter() - start
+    results = Results(scene, None, stages.values, stages.runs, (), seconds, dataset, failures=failures)
     return RunOutcome(results, engine=engine, progress=progress, helper=helper, fields=fields)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from flankfilm.scene import Scene
-from flankfilm.stages.engine import Stage
+from flankfilm.stages.engine import Stage, StageRun
 from flankfilm.stages.failures import Failure
 
 T = TypeVar("T")
@@ -25,11 +25,14 @@ class Computed:
         Stage name to result.
     failures : tuple of Failure
         Parts that could not be computed.
+    runs : mapping
+        Stage name to how it came about.
     """
 
     scene: Scene
     values: Mapping[str, Any]
     failures: tuple[Failure, ...] = ()
+    runs: Mapping[str, StageRun] = field(default_factory=dict)
 
     def get(self, stage: Stage[T]) -> T | None:
         """Result of a stage; None where the scene did not need it, or where it failed."""

@@ -16,10 +16,10 @@ from flankfilm.optimisation.files import OptimumOutcome, optimum_outcome
 from flankfilm.optimisation.optimum import Evaluation, Optimum
 from flankfilm.optimisation.task import read_task
 from flankfilm.outcome.outcome import Outcome, concluded
-from flankfilm.outcome.results import Results
 from flankfilm.runs import report
 from flankfilm.runs.run_scene import run_outcome, run_scene
 from flankfilm.scene import parse_scene
+from flankfilm.stages.computed import Computed
 from flankfilm.studies.execution import Execution
 from flankfilm.studies.files import StudyOutcome, study_outcome
 from flankfilm.studies.plan import read_plan
@@ -65,7 +65,7 @@ def verified(source: Path, folder: Path | None) -> Outcome:
 def test_figures_of_a_run_are_known_before_its_files_are(tmp_path):
     said: list[str] = []
 
-    def computed(results: Results) -> None:
+    def computed(results: Computed) -> None:
         assert not [path for path in tmp_path.rglob("*") if path.suffix]
         said.extend(report.figure_lines(results))
 

@@ -58,6 +58,14 @@ def test_variables_have_names_axes_units_and_errors(made, tmp_path):
         assert np.array_equal(found.dry_stiffness.values, made.stiffness)
 
 
+def test_variables_keep_their_order(tmp_path):
+    data = xr.Dataset({name: ("row", [1.0]) for name in ("torque", "load", "stiffness")})
+    write_netcdf(tmp_path / "results.nc", data)
+    for engine in ("h5netcdf", "netcdf4"):  # a figure's curves and a study's columns follow it
+        with xr.open_dataset(tmp_path / "results.nc", engine=engine) as found:
+            assert list(found.data_vars) == ["torque", "load", "stiffness"]
+
+
 def test_columns_carry_units_and_read_back_exactly(made, tmp_path):
     table = columns(of_record("dry", made), "dry", axis="position")
     write_csv(tmp_path / "dry.csv", table)
