@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import KW_ONLY, replace
 from typing import Self
 
+import numpy as np
+
 from base import Array, described, part, quantity, record
 from base.results import EXACT, ITSELF
 from flankfilm.coupling.films.along_path import FORMULA, FilmAlongPath
@@ -57,6 +59,12 @@ class LubricatedCycle(MeshCycle):
         measured = super().against(reference, bore_inertia)
         others = {name: cycle.against(reference, bore_inertia) for name, cycle in self.otherwise.items()}
         return replace(measured, dry=self.dry.against(reference, bore_inertia), otherwise=others)
+
+    @property
+    def film_compliance(self) -> Array:
+        """What films yield by the mean load beyond dry teeth, over that load (positions,) [m/N]."""
+        teeth = np.interp(self.position, self.dry.position, 1.0 / self.dry.secant_stiffness, period=1.0)
+        return np.asarray(1.0 / self.secant_stiffness - teeth)
 
     @described("m", shown="um", error="thinnest_film_error", no_error=FORMULA)
     def thinnest_film(self) -> float:

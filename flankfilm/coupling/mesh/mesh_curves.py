@@ -159,6 +159,11 @@ class MeshCycle(MeshFigures):
         """What lines of contact across the face carry; None of spur pairs, and of other models."""
         return None if self.contact is None else self.contact.lines
 
+    @property
+    def film_compliance(self) -> Array:
+        """What films yield by the mean load beyond dry teeth, over that load (positions,) [m/N]: nothing."""
+        return np.zeros(self.position.size)
+
     def curve(self, kind: str) -> Array:
         """Curve of a kind of stiffness, ``"secant"`` or ``"tangent"`` (positions,) [N/m]."""
         return {"secant": self.secant_stiffness, "tangent": self.stiffness}[kind]

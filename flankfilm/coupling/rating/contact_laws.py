@@ -20,11 +20,11 @@ import fem
 from base import Array, RangeWarning
 from dynamics.motion.gridded_motion import GriddedContact
 from fem.laws.mesh_setup import MeshSetup
-from flankfilm.coupling.drive.pair_drive import PairDrive
 from flankfilm.coupling.mesh.require_converged import believed
 from flankfilm.coupling.rating.unequal_pitches import contact_of
 
 if TYPE_CHECKING:
+    from flankfilm.coupling.drive.pair_drive import PairDrive
     from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth
     from flankfilm.coupling.mesh.mesh_curves import MeshCycle
     from flankfilm.coupling.vibration.oscillator import PairOscillator
@@ -173,8 +173,8 @@ def gridded(
 ) -> GriddedContact:
     """Put a law of the contact on a grid in the units of a motion.
 
-    What else yields in the motion's stiffness, films and modes that are not retained, is in series as a spring of the
-    mean load.
+    Films are in series as a spring of the mean load. What shafts of a drive train give way is no part of the law: all
+    of it, that of modes which are not retained too, is in the displacements of the train.
 
     Parameters
     ----------
@@ -205,17 +205,10 @@ def _straight(grid: Array, depths: Array, forces: Array) -> Array:
 
 
 def _in_series(laws: ContactLaws, motion: PairOscillator | PairDrive) -> Array:
-    """Compliance of a motion's stiffness beyond that of dry teeth (positions,), in its units."""
-    scales, rigid = motion.scales, motion.rigid
+    """Compliance of a motion's films under the mean load (positions,), in its units; none of dry teeth."""
+    scales, cycle = motion.scales, motion.rigid.series.cycle
     assert scales is not None
     place = (np.arange(laws.secant.size) + 0.5) / laws.secant.size
-    more = np.zeros(place.size)
-    cycle = rigid.series.cycle
-    if cycle is not None and cycle.contact is not None:
-        film = np.interp(place, cycle.position, 1.0 / cycle.secant_stiffness, period=1.0)
-        more += scales.mean_stiffness * (film - 1.0 / laws.secant)
-    if isinstance(motion, PairDrive):
-        angle = 2.0 * np.pi * place
-        more += 1.0 / motion.oscillator.contact_stiffness(angle)
-        more -= 1.0 / rigid.oscillator.contact_stiffness(angle)
-    return more
+    if cycle is None:
+        return np.zeros(place.size)
+    return scales.mean_stiffness * np.interp(place, cycle.position, cycle.film_compliance, period=1.0)
