@@ -74,13 +74,13 @@ def studied(run: Results, name: str) -> float:
 @pytest.mark.parametrize("begins", CARDS)
 def test_every_display_gives_one_uncertainty(run: Results, begins: str):
     variable, output = CARDS[begins]
-    (card,) = [one for one in headlines(run) if one.name.startswith(begins)]
+    (card,) = [one for one in headlines(run.computed) if one.name.startswith(begins)]
     assert card.uncertainty is not None
     text = off(card.uncertainty, run.scene.tolerance)
     assert card.note.startswith(text)
     (line,) = [line for line in summary(run) if line.startswith(f"{card.name}: ")]
     assert text in line
-    missed = [line for line in misses(run) if line.startswith(f"{card.name}: ")]
+    missed = [line for line in misses(run.computed) if line.startswith(f"{card.name}: ")]
     assert bool(missed) == (not card.uncertainty.met(run.scene.tolerance)) == ("!" in text)
     errors = studied(run, ERROR_OF[output]), MODEL_ERROR_OF.get(output)
     assert errors[0] == card.uncertainty.numerical
@@ -104,7 +104,7 @@ def test_every_display_gives_one_uncertainty(run: Results, begins: str):
 
 def test_the_mark_is_that_of_the_numerical_error(run: Results):
     tighter = replace(run, scene=run.scene.model_copy(update={"tolerance": TOLERANCE}))
-    marked = {one.name for one in headlines(tighter) if "!" in one.note}
+    marked = {one.name for one in headlines(tighter.computed) if "!" in one.note}
     assert "minimum film on the path" in marked
     assert not any(name.startswith(("mean", "loaded")) for name in marked)
 
@@ -113,7 +113,7 @@ def test_the_table_has_the_models_errors_of_the_cards(run: Results):
     cycle = run.values["film"]
     table = stiffness(None, None, [cycle], (), run.values["pair"].face_width, run.dataset).tables[0]
     (column,) = [i for i, head in enumerate(table.heads) if str(head).startswith("model error of secant")]
-    cards = {one.name: one.uncertainty for one in headlines(run)}
+    cards = {one.name: one.uncertainty for one in headlines(run.computed)}
     known = [one for name, one in cards.items() if name.startswith(tuple(list(CARDS)[:3]))]
     assert table.rows[0][column] == ", ".join(percent(one.model) for one in known if one is not None)
 
@@ -134,7 +134,7 @@ def test_entries_are_of_figures_and_have_a_page(key: tuple[str, str]):
 
 
 def test_what_is_not_known_says_so(run: Results):
-    shown = {one.name: one for one in headlines(run)}
+    shown = {one.name: one for one in headlines(run.computed)}
     assert "(numerical; model not estimated)" in shown["minimum film on the path"].note
     closed = [one for one in run.values["other cycles"] if one.contact is None]
     assert all(MODEL_ERRORS[("MeshFigures", "mean_stiffness")].of(one) is None for one in closed)
