@@ -24,9 +24,12 @@ def between(forces: FloatArray, lowest: float, spacing: float, place: float, dep
 @plain_kernel
 def step_through(
     forces: FloatArray, figures: FloatArray, places: FloatArray, errors: FloatArray, rates: FloatArray,
-    over: FloatArray, constant: FloatArray, state: FloatArray, room: FloatArray, skip: int, periods: int,
-) -> tuple[int, float]:  # fmt: skip
-    """Follow a state through equal steps of a period; returns the flag and the maximum force after `skip` periods.
+    over: FloatArray, constant: FloatArray, state: FloatArray, room: FloatArray, skip: int, peaks: FloatArray,
+    periods: int,
+) -> int:  # fmt: skip
+    """Follow a state through equal steps of a period; returns the flag.
+
+    `peaks` gets the maximum forces of windows of so many `periods`, one after the other, after `skip` periods.
 
     The linear part moves exactly, z = `over` z + `constant`; the mesh pushes the first coordinate before and after
     each step by half of what it does in one. `figures`: lowest depth and spacing of the grid, half the backlash, 1 if
@@ -38,12 +41,13 @@ def step_through(
     lowest, spacing, half_backlash, back, push, damping, freed = figures
     size, steps = len(state), len(rates)
     middle = size // 2
-    greatest = 0.0
+    peaks[:] = 0.0
     y = state[0] - errors[0]
     force = between(forces, lowest, spacing, places[0, 0], y - half_backlash)
     if back > 0.0:
         force -= between(forces, lowest, spacing, places[0, 1], -y - half_backlash)
-    for period in range(skip + periods):
+    for period in range(skip + len(peaks) * periods):
+        window, greatest = (period - skip) // periods, 0.0
         for step in range(steps):
             drag = damping * rates[step, 0]
             if force == 0.0:
@@ -64,8 +68,9 @@ def step_through(
             if force == 0.0:
                 drag += freed * (state[middle] - rates[step, 1])
             state[middle] += push * (drag - force)
-            if period >= skip and force > greatest:
-                greatest = force
+            greatest = max(greatest, force)
         if not abs(y) < 1e150:
-            return DIVERGED, greatest
-    return FINE, greatest
+            return DIVERGED
+        if window >= 0:
+            peaks[window] = max(peaks[window], greatest)
+    return FINE

@@ -29,8 +29,8 @@ PER_SAMPLE = 2
 LEAST_SETTLING = 10
 """Periods that a motion has at least before its maximum force is taken."""
 
-KEPT = 32
-"""Periods over which the maximum force is taken."""
+WINDOWS, KEPT = 4, 8
+"""Windows of a motion after it has settled, of so many periods each, over all of which the maximum force is taken."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +57,20 @@ class GriddedContact:
 
 
 class GriddedMotions(NamedTuple):
-    """Maximum force of settled motions at some frequencies, nan where one grew without bound."""
+    """Maximum force of settled motions at some frequencies, nan where one grew without bound.
+
+    Attributes
+    ----------
+    force : ndarray, shape (frequencies,)
+    followed : bool
+        Whether none grew without bound.
+    unsettled : ndarray, shape (frequencies,)
+        Estimated error of the force by the time for which a motion settles, relative to it (`unsettled`).
+    """
 
     force: Array
     followed: bool
+    unsettled: Array
 
 
 class Linear(NamedTuple):
@@ -133,13 +143,49 @@ def gridded_motions(
     pushed = part.load.copy()
     pushed[0] += part.gain * oscillator.contact_stiffness.mean * oscillator.half_backlash
     state[:m] = np.linalg.lstsq(soft, pushed, rcond=None)[0]
-    rest, forces = state.copy(), []
+    rest, forces, late = state.copy(), [], []
     for frequency in frequencies:
         moved = cast("GearOscillator", oscillator.with_parameter("frequency", float(frequency)))
-        forces.append(_settled(moved, part, contact, state, steps))
+        peaks = _settled(moved, part, contact, state, steps)
+        forces.append(float(peaks.max()))
+        late.append(unsettled(peaks, math.exp(-KEPT * moved.decay * moved.period)))
         if not math.isfinite(forces[-1]):
             state[:] = rest
-    return GriddedMotions(np.array(forces), bool(np.isfinite(forces).all()))
+    return GriddedMotions(np.array(forces), bool(np.isfinite(forces).all()), np.array(late))
+
+
+def unsettled(peaks: Array, decay: float) -> float:
+    """Error of the largest of a motion's maximum forces in windows one after the other, relative to it.
+
+    A periodic motion, of one period of the mesh or of several, has the same maximum in all of them. Their spread is
+    what a motion that settles has changed since the first, and what chance leaves in the maximum of one that never
+    repeats. Where maxima change in one direction, the motion still settles: changes go on as a geometric series, of
+    the ratio of the last two, or of that by damping where they do not shrink, and what it has left is added, at most
+    the maximum itself.
+
+    Parameters
+    ----------
+    peaks : ndarray, shape (windows,)
+        At least three.
+    decay : float
+        By which damping shrinks a disturbance from one window to the next, 1 without any.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> unsettled(2.0 - np.array([0.5, 0.25, 0.125, 0.0625]), 0.1)  # on to 2
+    0.25806451612903225
+    """
+    top = float(peaks.max())
+    if not top > 0.0:  # nan where it was not followed
+        return math.nan if math.isnan(top) else 0.0
+    steps = np.diff(peaks)
+    before, last = float(steps[-2]), float(steps[-1])
+    left = 0.0
+    if before * last > 0.0:
+        ratio = last / before if abs(last) < abs(before) else decay
+        left = min(abs(last) * ratio / (1.0 - ratio), top) if ratio < 1.0 else top
+    return (float(np.ptp(peaks)) + left) / top
 
 
 def _settled(
@@ -148,8 +194,8 @@ def _settled(
     contact: GriddedContact,
     state: Array,
     fine: float,
-) -> float:
-    """Maximum force of the settled motion from a state, which goes on; nan where it grew without bound."""
+) -> Array:
+    """Maximum forces of the settled motion in windows, from a state which goes on; nan where it grew without bound."""
     from scipy.linalg import expm
 
     from dynamics.kernels.compiling import FINE
@@ -183,7 +229,8 @@ def _settled(
     figures = np.array(
         [contact.lowest, contact.spacing, oscillator.half_backlash, sides, push, within, within - without]
     )
-    flag, greatest = step_through(
+    peaks = np.zeros(WINDOWS)
+    flag = step_through(
         np.ascontiguousarray(contact.forces),
         figures,
         places,
@@ -194,9 +241,10 @@ def _settled(
         state,
         np.empty(2 * m),
         settling_periods(oscillator, LEAST_SETTLING),
+        peaks,
         KEPT,
     )
-    return float(greatest) if flag == FINE else math.nan
+    return peaks if flag == FINE else np.full(WINDOWS, math.nan)
 
 
 def _error(oscillator: GearOscillator | DriveOscillator, tau: Array) -> tuple[Array, Array]:

@@ -9,7 +9,8 @@ import pytest
 
 import dynamics
 from dynamics.flow.motions import mesh_force, trajectory
-from dynamics.motion.gridded_motion import GriddedContact, gridded_motions
+from dynamics.motion import gridded_motion
+from dynamics.motion.gridded_motion import GriddedContact, gridded_motions, unsettled
 from dynamics.motion.sweeps import sweep
 
 SERIES = dynamics.FourierStiffness(1.0, (0.18, 0.05), (0.0, 0.4))
@@ -102,3 +103,65 @@ def test_what_grows_without_bound_has_no_force():
     found = gridded_motions(wild, pushed, [0.02])
     assert not found.followed
     assert np.isnan(found.force).all()
+
+
+def slowly_settling(frequency: float, amplitude: float) -> dynamics.GearOscillator:
+    """Teeth that stay in contact, of a stiffness that swings."""
+    series = dynamics.FourierStiffness(1.0, (amplitude,), (0.0,))
+    return dynamics.GearOscillator(series, 0.05, 0.1, 0.003, frequency, half_backlash=0.0, error_phase=0.7)
+
+
+@pytest.mark.parametrize("amplitude", [0.17, 0.19, 0.197])
+def test_a_motion_that_has_not_settled_says_by_how_much(monkeypatch, amplitude):
+    """Near parametric resonance a disturbance shrinks far more slowly than by damping: truth by 300 times as long."""
+    slow = slowly_settling(2.0, amplitude)
+    grid = springs(48, series=slow.stiffness)
+    monkeypatch.setattr(gridded_motion, "LEAST_SETTLING", 6000)
+    true = gridded_motions(slow, grid, [2.0])
+    assert true.unsettled[0] < 1e-6
+    monkeypatch.setattr(gridded_motion, "LEAST_SETTLING", 10)
+    monkeypatch.setattr(gridded_motion, "settling_periods", lambda *_: 20)
+    found = gridded_motions(slow, grid, [2.0])
+    error = abs(found.force[0] / true.force[0] - 1.0)
+    assert error > 1e-3
+    assert 0.5 * error < found.unsettled[0] < 50.0 * error
+
+
+@pytest.mark.parametrize(("frequency", "damping"), [(1.0, 0.005), (0.98, 0.003), (0.5, 0.004)])
+def test_ten_periods_near_resonance_are_not_enough(monkeypatch, frequency, damping):
+    linear = replace(
+        PAIR, stiffness=dynamics.FourierStiffness(1.0), error_amplitude=3e-4, error_phase=0.0, damping_ratio=damping
+    )  # fmt: skip
+    spring = springs(24, series=linear.stiffness)
+    true = gridded_motions(linear, spring, [frequency])
+    assert true.unsettled[0] < 1e-5
+    monkeypatch.setattr(gridded_motion, "settling_periods", lambda *_: 10)
+    found = gridded_motions(linear, spring, [frequency])
+    error = abs(found.force[0] / true.force[0] - 1.0)
+    assert error > 1e-4
+    assert found.unsettled[0] > 0.5 * error
+
+
+def test_periodic_motions_have_settled_and_chaos_has_a_spread(monkeypatch):
+    """At 1.6 the largest exponent is 0.07: what fifty times as many periods change is less than the error."""
+    wild = replace(
+        PAIR, stiffness=dynamics.FourierStiffness(1.0, (0.18,), (0.0,)), error_amplitude=0.2, error_phase=0.0
+    )
+    grid = springs(96, series=wild.stiffness)
+    for frequency in (0.5, 0.6, 1.4):
+        assert gridded_motions(wild, grid, [frequency]).unsettled[0] < 1e-5
+    found = gridded_motions(wild, grid, [1.6])
+    monkeypatch.setattr(gridded_motion, "KEPT", 400)
+    change = abs(gridded_motions(wild, grid, [1.6]).force[0] / found.force[0] - 1.0)
+    assert 1e-3 < change < found.unsettled[0]
+
+
+def test_a_geometric_approach_has_what_is_left_of_it():
+    for ratio in (0.2, 0.8, 0.99):
+        for start in (0.3, -0.3):
+            peaks = 2.0 + start * ratio ** np.arange(5.0)
+            error = abs(peaks.max() / 2.0 - 1.0)
+            assert error * (1.0 - 1e-9) <= unsettled(peaks, 0.1) * peaks.max() / 2.0 <= 0.151
+    assert unsettled(np.full(4, 1.5), 1.0) == 0.0
+    assert unsettled(np.array([1.0, 1.1, 1.2, 1.3]), 0.5) == pytest.approx(0.4 / 1.3)
+    assert unsettled(np.array([1.0, 1.1, 1.0, 1.1]), 0.5) == pytest.approx(0.1 / 1.1)

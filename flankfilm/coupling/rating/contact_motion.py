@@ -36,7 +36,8 @@ def followed(
     """Follow settled motions at some frequencies, of several in sweeps up and down; of all that are made the larger.
 
     The error is what half as many steps in time, forces, positions and depths change, each alone, of the law with the
-    larger maximum.
+    larger maximum, and what its motion has left to settle (`dynamics.motion.gridded_motion.unsettled`). Motions that
+    never repeat have the maximum over the periods that are looked at, and the spread of its parts as an error.
 
     Parameters
     ----------
@@ -47,14 +48,17 @@ def followed(
     values : ndarray
         Rising mesh frequencies over the natural one.
     """
-    each = [_forces(motion, gridded(laws, which, motion), values) for which in chosen]
+    runs = [_forces(motion, gridded(laws, which, motion), values) for which in chosen]
+    each = [forces for forces, _ in runs]
     peaks = [_peak(forces) for forces in each]
     worse = int(np.argmax(peaks))
     coarse = (
-        _peak(_forces(motion, contact, values, steps))
+        _peak(_forces(motion, contact, values, steps)[0])
         for contact, steps in _coarser(motion, laws, chosen[worse])
     )
+    forces, late = runs[worse]
     error = sum(abs(peak / peaks[worse] - 1.0) for peak in coarse)
+    error += float(late[np.argmax(np.nan_to_num(forces, nan=-np.inf))])
     return Followed(np.maximum.reduce(each), error, bool(np.isfinite(each).all()))
 
 
@@ -70,13 +74,19 @@ def _coarser(
 
 def _forces(
     motion: PairOscillator | PairDrive, contact: GriddedContact, values: Array, steps: float = PER_OSCILLATION
-) -> Array:
-    """Maximum forces over the mean one at frequencies; of several those of sweeps up and down, the larger."""
+) -> tuple[Array, Array]:
+    """Maximum forces over the mean one at frequencies, and their errors by settling.
+
+    Of several frequencies those of sweeps up and down, the larger.
+    """
     oscillator, frequencies = motion.oscillator, values.tolist()
-    up = gridded_motions(oscillator, contact, frequencies, steps).force
+    up = gridded_motions(oscillator, contact, frequencies, steps)
+    force, late = up.force, up.unsettled
     if len(frequencies) > 1:
-        up = np.maximum(up, gridded_motions(oscillator, contact, frequencies[::-1], steps).force[::-1])
-    return np.asarray(up / motion.mean_force)
+        down = gridded_motions(oscillator, contact, frequencies[::-1], steps)
+        late = np.where(down.force[::-1] > force, down.unsettled[::-1], late)
+        force = np.maximum(force, down.force[::-1])
+    return force / motion.mean_force, late
 
 
 def _peak(forces: Array) -> float:

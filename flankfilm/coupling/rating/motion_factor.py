@@ -95,7 +95,8 @@ def motion_factor(
     """Dynamic factor of a pair at a speed, with a base pitch deviation.
 
     By laws of the contact its error adds what half as many steps in time, forces, positions and depths change, each
-    alone; by the sawtooth what half as many samples of a period and twice as many harmonics do.
+    alone, and what the motion has left to settle; by the sawtooth what half as many samples of a period and twice as
+    many harmonics do.
 
     Parameters
     ----------
