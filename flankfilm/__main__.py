@@ -2,6 +2,8 @@
 
 import os
 
+from flankfilm.processes.garbage import collect_rarely
+
 
 def main() -> None:
     """Run the command line with one thread of linear algebra, unless the environment says otherwise."""
@@ -11,6 +13,7 @@ def main() -> None:
     # Before numpy is loaded, which reads it once. The matrices are small: two threads take up to ten times the time
     # of one where another program works beside them.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    collect_rarely()
     from flankfilm.cli import main as commands
 
     commands()

@@ -27,6 +27,8 @@ from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
 from typing import Any
 
+from flankfilm.processes.garbage import collect_rarely
+
 ENDS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 """Signals that ask for an end; the first is Ctrl-C."""
 
@@ -180,6 +182,7 @@ def _or_again(note: Callable[[Any], object]) -> Callable[[Any], object]:
 
 def work_until_told(told: Connection) -> None:
     """Start of a worker: Ctrl-C is the parent's to answer; end when the other end of the pipe is closed."""
+    collect_rarely()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     killed_with_parent()  # also one that is stopped, which answers no other signal
     _end_when_closed(told)
@@ -215,6 +218,7 @@ def killed_with_parent() -> None:
 
 def dask_setup(_worker: Any) -> None:
     """Start of a worker of dask that we started: this module is what it loads first."""
+    collect_rarely()
     killed_with_parent()
     for name in ("distributed.worker", "distributed.core"):
         logging.getLogger(name).addFilter(_is_no_lost_connection)
@@ -239,6 +243,7 @@ def end_with(parent: int) -> None:
 
 
 if __name__ == "__main__":
+    collect_rarely()
     end_with(int(sys.argv[1]))
     del sys.argv[:2]
     runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
