@@ -45,8 +45,9 @@ class Workers:
 
         An executor of the caller lives on: rows at work there are not waited for.
         """
-        for future in self._waiting:
-            future.cancel()
+        if isinstance(self.kind, Executor):  # one that was started here cancels them as it ends
+            for future in self._waiting:
+                future.cancel()
         self._open.__exit__(kind, error, trace)
 
     def computed(self, rows: Iterable[Row]) -> Iterator[RowResult]:
