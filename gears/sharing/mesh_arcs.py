@@ -176,14 +176,16 @@ class MeshArcs:
     def _harmonics(self, name: str, orders: Integers, over_mean: bool) -> tuple[Array, Array | None]:
         """Complex amplitudes, and what each part of their errors changes (orders, parts); None where one is unknown.
 
-        Parts are what a much finer mesh would change, arcs leave out, and other models change.
+        Parts are what a much finer mesh would change, arcs leave out, and other models change. What cells and free
+        ends change of a harmonic may vanish by chance: it counts at least as what cells change at positions (root
+        mean square), and as a part V/(n + 1) of the range V that free ends move; a range V is that of an amplitude V/2.
         """
 
         def figure(arcs: Arcs) -> Array:
             return arcs.harmonics(name, orders)[0] / (arcs.mean(name)[0] if over_mean else 1.0)
 
         value, off = self.arcs.harmonics_and_parts(name, orders)
-        parts = [off]
+        parts, mean = [off], 1.0
         if over_mean:
             mean, less = self.arcs.mean(name)
             value = value / mean
@@ -194,13 +196,13 @@ class MeshArcs:
         before = () if self.before is None else ((self.before, 1.0 / self.gain),)
         parts += [share * (value - figure(arcs))[:, None] for arcs, share in (*before, *self.varied)]
         if self.fewer is not None:
-            # what cells change has a phase by chance: half of its square is along the harmonic, half across
-            change = self.fewer.share * np.abs(value - figure(self.fewer.arcs)) / sqrt(2.0)
-            parts.append(_phase(value)[:, None] * change[:, None] * np.array([1.0, 1j]))
+            few = figure(self.fewer.arcs)
+            least = np.full(len(orders), self._scatter(name).varying / mean)
+            parts.append(_of_any_phase(value, np.maximum(self.fewer.share * np.abs(value - few), least)))
             if self.fewer.ends is not None:
                 of_ends, share = self.fewer.ends
-                change = share * np.abs(figure(of_ends) - figure(self.fewer.arcs)) / sqrt(2.0)
-                parts.append(_phase(value)[:, None] * change[:, None] * np.array([1.0, 1j]))
+                least = self._ends_scatter(name).varying / mean / (orders + 1.0)
+                parts.append(_of_any_phase(value, np.maximum(share * np.abs(figure(of_ends) - few), least)))
         return value, np.concatenate(parts, axis=1)
 
     def _scatter(self, name: str) -> Scatter:
@@ -237,9 +239,14 @@ class MeshArcs:
             few = figure(self.fewer.arcs)
             varied.append(max(self.fewer.share * abs(value - few), least))
             if self.fewer.ends is not None and ends is not None:
-                off, share = self.fewer.ends
-                varied.append(max(share * abs(figure(off) - few), ends))
+                of_ends, share = self.fewer.ends
+                varied.append(max(share * abs(figure(of_ends) - few), ends))
         return Estimate(value, hypot(sampling, mesh, other, *varied))
+
+
+def _of_any_phase(value: Array, change: Array) -> Array:
+    """Change of complex amplitudes (orders, 2), whose phase is chance: half of its square along them, half across."""
+    return _phase(value)[:, None] * change[:, None] * np.array([1.0, 1j]) / sqrt(2.0)
 
 
 def _phase(value: Array) -> Array:
