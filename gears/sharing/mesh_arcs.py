@@ -201,7 +201,7 @@ class MeshArcs:
             parts.append(_of_any_phase(value, np.maximum(self.fewer.share * np.abs(value - few), least)))
             if self.fewer.ends is not None:
                 of_ends, share = self.fewer.ends
-                least = self._ends_scatter(name).varying / mean / (orders + 1.0)
+                least = self._ends_scatter(name).varying / mean / np.maximum(orders + 1.0, 3.0)
                 parts.append(_of_any_phase(value, np.maximum(share * np.abs(figure(of_ends) - few), least)))
         return value, np.concatenate(parts, axis=1)
 

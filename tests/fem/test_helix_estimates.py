@@ -109,20 +109,22 @@ def test_free_ends_change_ranges_and_harmonics_but_no_mean(spur: MeshCycle) -> N
 
 
 def test_harmonics_that_do_not_change_by_chance_are_as_doubtful_as_positions(spur: MeshCycle) -> None:
-    """A range V is that of an amplitude V/2; what cells change at positions is at least their error too."""
+    """A part of the range that free ends move, and what cells change at positions."""
     arcs, orders, name = spur.arcs, np.array([1, 2, 5]), "transmission_error"
     assert arcs is not None
     assert arcs.fewer is not None
     none = Scatter(0.0, 0.0, 0.0)
     quiet = replace(arcs, fewer=replace(arcs.fewer, scatter={name: none}, ends=(arcs.fewer.arcs, 4.0)))
     ends = replace(quiet, fewer=replace(quiet.fewer, ends_scatter={name: Scatter(9e-6, 6e-6, 1e-6)}))
-    cells = replace(quiet, fewer=replace(quiet.fewer, arcs=arcs.arcs, scatter={name: Scatter(9e-6, 6e-6, 0.0)}))
+    cells = replace(
+        quiet, fewer=replace(quiet.fewer, arcs=arcs.arcs, scatter={name: Scatter(9e-6, 6e-6, 0.0)})
+    )
     known, told = (each.harmonics(name, orders)[1] for each in (quiet, ends))
-    assert np.allclose(told, np.hypot(known, 6e-6 / (orders + 1)), rtol=1e-12)
+    assert np.allclose(told, np.hypot(known, 6e-6 / np.array([3, 3, 6])), rtol=1e-12)
     assert np.all(cells.harmonics(name, orders)[1] >= 6e-6)
     mean = arcs.mean(name).value
     known, told = (each.over_mean(name, orders)[1] for each in (quiet, ends))
-    assert np.allclose(told, np.hypot(known, 6e-6 / mean / (orders + 1)), rtol=1e-12)
+    assert np.allclose(told, np.hypot(known, 6e-6 / mean / np.array([3, 3, 6])), rtol=1e-12)
 
 
 @pytest.fixture(scope="module")
