@@ -92,9 +92,15 @@ def losses(oil: ThermalOil) -> dict[str, float]:
 
 
 def _carried_off(oil: ThermalOil) -> float:
-    """Heat that leaves with the oil at both ends of the cells where it is followed [W/m]."""
-    k, T, weights = oil.last, oil.temperature, oil.across.weights
+    """Heat that leaves with the oil at both ends of the cells where it is followed [W/m].
+
+    Oil enters at the undisturbed temperature and runs back at that of the first cell. All of it counts from the mean
+    bulk temperature: between surfaces of other temperatures the undisturbed oil carries heat too, which changes along
+    the gap with the profile of the flow.
+    """
+    k, T, mean = oil.last, oil.temperature, oil.bulk.mean()
     near = oil.lengths[k] / (oil.lengths[k] + oil.lengths[k - 1])
-    behind = T[k] + near * (T[k] - T[k - 1]) - oil.undisturbed
-    ahead = np.minimum(oil.carried[oil.first], 0.0) * (T[oil.first] - oil.undisturbed)
-    return float((oil.carried[k + 1] * behind - ahead) @ weights)
+    behind = T[k] + near * (T[k] - T[k - 1])
+    ahead = np.where(oil.carried[oil.first] < 0.0, T[oil.first], oil.undisturbed)
+    off = oil.carried[k + 1] * (behind - mean) - oil.carried[oil.first] * (ahead - mean)
+    return float(off @ oil.across.weights)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ehl import Solid, ThermalFilm, solve_thermal
+from ehl import STEEL, Solid, ThermalFilm, solve_thermal
 from ehl.kernels.heat_kernels import compression_response
 from tests.ehl.test_thermal import OIL, SLIDING
 
@@ -108,3 +108,19 @@ def test_oil_warms_as_it_is_compressed_and_cools_as_it_expands():
         assert wanted > 0.5
         assert rise == pytest.approx(wanted, rel=0.03)
     assert abs(film.losses.closure) < 0.012  # that of compression is 0.021
+
+
+@pytest.mark.parametrize("load", [2e5, 20e3, 8e3])
+@pytest.mark.parametrize("sliding", [-2.0, 1.0])
+def test_heat_closes_between_bodies_of_unequal_temperatures(load, sliding):
+    """Oil that runs back in the inlet carries heat at the temperature of its layer, the hot body's or the cold one's.
+
+    Without it 3 to 20 % of the heat that goes through were missing; what is left settles last.
+    """
+    contact = replace(SLIDING, load=load, sliding=sliding)
+    for bulk in ((383.0, 343.0), (343.0, 383.0)):
+        film = solve_thermal(contact, (STEEL, STEEL), bulk, 0.02)
+        assert film.converged, film.message
+        through = abs(film.losses.first_body) + abs(film.losses.second_body)
+        missing = film.losses.closure * (film.losses.dissipation + film.losses.compression)
+        assert abs(missing) < 0.02 * through
