@@ -123,7 +123,9 @@ class LineContact(CellContact):
             whole, _ = flanks.corner_laws.at(flanks.candidates.on_cells(cells, cosine), tooth_apart=True)
             return LawOnLines(whole, cells.faces(self.pair.face_width, cosine).reshape(positions, -1))
         length = np.broadcast_to(cells.length[..., None], cells.z.shape) / cosine
-        law = self.bodies.hertz(np.clip(self.lines.places(cells), *self.setup.ends), cosine, length)
+        place = self.lines.places(cells)
+        curvature = cosine * self.lines.curvatures(place)
+        law = self.bodies.hertz(np.clip(place, *self.setup.ends), curvature, length)
         return PairLaws(
             replace(
                 law,
@@ -135,17 +137,12 @@ class LineContact(CellContact):
     def levers(self, face: FaceSetting) -> tuple[Array, Array]:
         """As of ``CellContact``, and what friction adds in every cell.
 
-        Forces at edges of the pinion stand on the wheel's flank, which shortens their lever.
+        Forces at edges of the pinion stand on the wheel's flank, which shortens their lever; relief turns the normal.
         """
         reach, levers = super().levers(face)
-        edge = self._edge_levers(self.lines.places(self.lines.divided(face.cells))).reshape(reach.shape)
+        turned = self.lines.levers(self.lines.places(self.lines.divided(face.cells)))[0].reshape(reach.shape)
         further = further_levers(self.setup, self.lines, face.cells).reshape(levers.shape)
-        return reach * edge, levers + np.repeat(self.sides.sign, face.cells) * further
-
-    def _edge_levers(self, place: Array) -> Array:
-        """Levers of forces about the pinion's axis over those on flanks, at places of the line of action."""
-        edges = self.lines.edges
-        return np.ones_like(place) if edges is None else edges.levers(place)[0]
+        return reach * turned, levers + np.repeat(self.sides.sign, face.cells) * further
 
     def tilts(self, face: FaceSetting) -> Array:
         """Places z of cells, moved along their lines to the pitch point (positions, n) [m]."""
@@ -271,7 +268,7 @@ class LineContact(CellContact):
         gaps = self._gaps_within(cells, np.array([-0.5, 0.0, 0.5])) @ np.array([1.0, 4.0, 1.0]) / 6.0
         nearest = self.sides.flanks[0].candidates.gap.min(axis=-1)
         apart = self.pair.helix.base_cosine * np.maximum(gaps - nearest[..., None, None], 0.0)
-        apart = apart * self._edge_levers(self.lines.places(cells))
+        apart = apart * self.lines.levers(self.lines.places(cells))[0]
         return np.where(cells.used, apart, np.inf).reshape(*apart.shape[:-2], -1)
 
     def _gaps_within(self, cells: LineCells, within: Array) -> Array:
@@ -288,7 +285,7 @@ class LineContact(CellContact):
         teeth = candidates.teeth.reshape(2, -1, *z.shape[:2])
         rolling = self.setup.rolling_gap(self.lines.middle)
         gaps = line_gaps(self.setup, z, self.lines.rho(place), teeth) + rolling[..., None]
-        return gaps if self.lines.edges is None else gaps + self.lines.edge_gaps(place)
+        return gaps + self.lines.further_gaps(place)
 
     def at(self, torque: int, pitch: int, position: int) -> Self:
         """The same at a single torque and position, with the teeth that meet there."""

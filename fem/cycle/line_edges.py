@@ -134,8 +134,7 @@ class LoadedLines:
         cells, (positions, pairs) = lines.divided(count), self.candidates.place.shape
         rho = np.moveaxis(cells.rho, -1, 1).reshape(2, -1, pairs)
         used = np.moveaxis(cells.used, -1, 0).reshape(-1, pairs)
-        edge = np.zeros_like(cells.used) if lines.edges is None else lines.edges.beyond(lines.places(cells))
-        edges = np.moveaxis(edge, -1, 0).reshape(-1, pairs) & used
+        edges = np.moveaxis(lines.edge_touches(lines.places(cells)), -1, 0).reshape(-1, pairs) & used
         sections = replace(self.candidates, rho=rho, touchable=used, edge=edges)
         moves, shape = contact_moves(self.bodies, sections), (count, 1, positions, pairs)
         return ContactMoves(
@@ -166,7 +165,8 @@ class LoadedLines:
         held, further = (self._maximum_line_load(state) for state in (ends, goes_on))
         lines, forces = goes_on.candidates.lines, goes_on.cell_forces(0)
         assert lines is not None
-        outside = edges.beyond(lines.places(lines.divided(forces.shape[-1])))
+        place, (start, end) = lines.places(lines.divided(forces.shape[-1])), edges.path
+        outside = (place < start) | (place > end)
         return BeyondPath(
             np.maximum(ends.deflection(0) - goes_on.deflection(0), 0.0).ravel(),
             compliance[0].ravel(),

@@ -11,7 +11,7 @@ import numpy as np
 from base import Array, Booleans, Faults, Integers, record
 from fem.laws.line_candidates import ContactLines, LineCells, contact_lines, line_offsets
 from fem.laws.mesh_setup import Deviations, MeshSetup
-from fem.laws.relieved_flanks import gentle, touch
+from fem.laws.relieved_flanks import gentle, relieved_lines, touch
 from fem.laws.tip_edges import edges_at, edges_of_lines
 from fem.pair.face_setting import EVEN, FREE_ENDS, face_setting
 
@@ -121,14 +121,14 @@ class ContactCandidates:
         lines = self.lines
         assert lines is not None
         shape, place = (len(self.place), -1), lines.places(cells)
-        edge = cells.used & (lines.edges.beyond(place) if lines.edges is not None else False)
+        edge = cells.used & lines.edge_touches(place)
         return replace(
             self,
             place=place.reshape(shape),
             rho=cells.rho.reshape(2, *shape),
             touchable=cells.used.reshape(shape),
             edge=edge.reshape(shape),
-            curvature=np.full(place.shape, curvature).reshape(shape),
+            curvature=(curvature * lines.curvatures(place)).reshape(shape),
             lines=None,
         )
 
@@ -235,10 +235,10 @@ def _lines(setup: MeshSetup, reach: float) -> ContactCandidates:
     pair, edges = setup.pair, None
     if setup.beyond_path:
         edges = edges_of_lines(setup, min(reach, LINES_REACH))
-    offset = line_offsets(pair, 0.0 if edges is None else float(edges.distance.max()))
+    offset = line_offsets(pair, 0.0 if edges is None else edges.beyond_path)
     position, within, turned = _standing(setup)
     middle = pair.points.A + (within[:, None] + offset) * pair.base_pitch
-    lines = contact_lines(pair, setup.line_slope, setup.ends, middle, edges)
+    lines = contact_lines(pair, setup.line_slope, setup.ends, middle, edges, relieved_lines(setup))
     touchable = lines.touches
     place = np.where(touchable, lines.place, 0.5 * (pair.points.A + pair.points.E))
     rho = lines.rho(place)
@@ -250,10 +250,10 @@ def _lines(setup: MeshSetup, reach: float) -> ContactCandidates:
     teeth, other = setup.teeth(steps), setup.opposite
     cells = lines.divided(SEEN_ALONG)
     seen = line_gaps(setup, cells.z, cells.rho, teeth) + setup.rolling_gap(middle)[..., None]
-    seen = seen + lines.edge_gaps(lines.places(cells))
+    seen = seen + lines.further_gaps(lines.places(cells))
     gap = np.where(cells.used, seen, np.inf).min(axis=-1)
     numbers = np.array([pair.pinion.teeth, pair.wheel.teeth])[:, None, None]
-    none, tiles = np.zeros_like(touchable), (1, setup.pitches, 1)
+    tiles = 1, setup.pitches, 1
     # the other flanks of these teeth stand at the mirrored place, where it touches at all
     beyond = 0.5 * pair.face_width * abs(setup.line_slope)
     mirrored = 2.0 * pair.points.A + setup.mirror * pair.base_pitch - middle
@@ -266,7 +266,7 @@ def _lines(setup: MeshSetup, reach: float) -> ContactCandidates:
         place=place,
         rho=rho,
         touchable=touchable,
-        edge=none if edges is None else touchable & edges.beyond(place),
+        edge=touchable & lines.edge_touches(place),
         curvature=np.ones_like(place),
         lacking=np.where(touchable, 0.0, np.inf),
         lever=np.tile(np.full_like(rho, pair.helix.base_cosine), tiles),
@@ -275,7 +275,7 @@ def _lines(setup: MeshSetup, reach: float) -> ContactCandidates:
         gap=gap,
         teeth=teeth.reshape(2, -1, len(offset)) % numbers,
         back_gap=(setup.backlash + gap.min(axis=-1) + behind + other.face.least_gap(pair)).ravel(),
-        chamfered=none,
+        chamfered=np.zeros_like(touchable),
         reach_gap=np.inf if edges is None else float(edges.gap[:, -1].min()),
         lines=lines,
     )

@@ -18,6 +18,7 @@ from base import Array, Booleans, Integers, record
 
 if TYPE_CHECKING:
     from fem.laws.edges_of_lines import EdgesOfLines
+    from fem.laws.relieved_lines import RelievedLines
     from gears import GearPair
 
 __all__ = ["ContactLines", "LineCells", "contact_lines", "line_offsets", "part_on_path"]
@@ -115,6 +116,8 @@ class ContactLines:
         [m]
     edges : EdgesOfLines or None
         Tip edges beyond the path, up to which lines go on; None where they end at its ends.
+    relieved : RelievedLines or None
+        Where flanks with relief touch; None where they do so as involutes.
     """
 
     start: Array
@@ -124,6 +127,7 @@ class ContactLines:
     line_of_action: float
     face_width: float
     edges: EdgesOfLines | None = None
+    relieved: RelievedLines | None = None
 
     def at(self, rows: slice) -> ContactLines:
         """Lines at some positions."""
@@ -149,7 +153,7 @@ class ContactLines:
         """Of what touches along the face between the ends of the path (n, pairs) [m]."""
         if self.edges is None:
             return np.where(self.touches, self.length, 0.0)
-        low, high = self.edges.ends
+        low, high = self.edges.path
         ends = self.middle + self.slope * np.stack([self.start, self.stop])
         return np.asarray(np.ptp(np.clip(ends, low, high), axis=0) / abs(self.slope))
 
@@ -173,13 +177,13 @@ class ContactLines:
         if self.edges is None:
             return cells.used.astype(np.float64)
         across = abs(self.slope) * cells.length[..., None]
-        return np.where(cells.used, part_on_path(self.places(cells), across, self.edges.ends), 0.0)
+        return np.where(cells.used, part_on_path(self.places(cells), across, self.edges.path), 0.0)
 
     def film_places(self, cells: LineCells) -> Array:
         """rho1 of films on cells [m], as many; nan of those beyond the path, which are dry."""
         if self.edges is None:
-            return np.where(cells.used, cells.rho[0], np.nan)
-        place = np.clip(self.places(cells), *self.edges.ends)
+            return np.where(cells.used, self.places(cells), np.nan)
+        place = np.clip(self.places(cells), *self.edges.path)
         return np.where(self.on_path(cells) > 0.0, place, np.nan)
 
     def _places(self, z: Array, used: Booleans) -> Array:
@@ -191,12 +195,37 @@ class ContactLines:
     def rho(self, place: Array) -> Array:
         """Curvature radii where pinion and wheel touch at places of the line of action (2, ...) [m]."""
         if self.edges is None:
-            return np.stack([place, self.line_of_action - place])
-        return self.edges.rho(place, self.line_of_action)
+            rho = np.stack([place, self.line_of_action - place])
+        else:
+            rho = self.edges.rho(place, self.line_of_action)
+        if self.relieved is None:
+            return rho
+        return np.where(self.relieved.on_flanks(place), self.relieved.rho(place), rho)
 
-    def edge_gaps(self, place: Array) -> Array:
-        """Gaps of tip edges at places of the line of action [m]; 0 on the path."""
-        return np.zeros_like(place) if self.edges is None else self.edges.gaps(place)
+    def further_gaps(self, place: Array) -> Array:
+        """Gaps at places of the line of action beyond what the flanks lack where they touch [m].
+
+        Of tip edges and of relieved flanks; 0 of involutes.
+        """
+        gaps = np.zeros_like(place) if self.edges is None else self.edges.gaps(place)
+        if self.relieved is None:
+            return gaps
+        return np.where(self.relieved.on_flanks(place), self.relieved.gaps(place), gaps)
+
+    def levers(self, place: Array) -> Array:
+        """Levers about both axes in the section, over base radii (2, ...); 1 of involutes."""
+        levers = np.ones((2, *place.shape)) if self.edges is None else self.edges.levers(place)
+        if self.relieved is None:
+            return levers
+        return np.where(self.relieved.on_flanks(place), self.relieved.levers(place), levers)
+
+    def curvatures(self, place: Array) -> Array:
+        """Of the flanks in the section over that of the involutes (...)."""
+        return np.ones_like(place) if self.relieved is None else self.relieved.curvatures(place)
+
+    def edge_touches(self, place: Array) -> Booleans:
+        """Where a tip edge touches (...)."""
+        return np.zeros(place.shape, dtype=bool) if self.edges is None else self.edges.beyond(place)
 
 
 def part_on_path(place: Array, across: Array, ends: tuple[float, float]) -> Array:
@@ -235,7 +264,12 @@ def line_offsets(pair: GearPair, farther: float = 0.0) -> Integers:
 
 
 def contact_lines(
-    pair: GearPair, slope: float, ends: tuple[float, float], middle: Array, edges: EdgesOfLines | None = None
+    pair: GearPair,
+    slope: float,
+    ends: tuple[float, float],
+    middle: Array,
+    edges: EdgesOfLines | None = None,
+    relieved: RelievedLines | None = None,
 ) -> ContactLines:
     """Lines of contact whose middles stand at some places.
 
@@ -251,8 +285,10 @@ def contact_lines(
         rho1 of each line at mid-face [m].
     edges : EdgesOfLines, optional
         Tip edges beyond the path, up to which lines go on.
+    relieved : RelievedLines, optional
+        Where flanks with relief touch.
     """
     (start, end), half = ends if edges is None else edges.reached, 0.5 * pair.face_width
     along = np.sort(np.stack([(start - middle) / slope, (end - middle) / slope]), axis=0)
     first, last = np.clip(along, -half, half)
-    return ContactLines(first, last, middle, slope, pair.line_of_action, pair.face_width, edges)
+    return ContactLines(first, last, middle, slope, pair.line_of_action, pair.face_width, edges, relieved)

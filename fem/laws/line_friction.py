@@ -42,7 +42,7 @@ def rubbed_arms(pair: GearPair, rho1: Array, width: Array) -> Array:
 
 
 def further_levers(setup: MeshSetup, lines: ContactLines, cells: int) -> Array:
-    """What friction and tip edges add to levers about the pinion, over r_b1 (positions, pairs, cells).
+    """What friction, tip edges and relief add to levers about the pinion, over r_b1 (positions, pairs, cells).
 
     Parameters
     ----------
@@ -56,6 +56,6 @@ def further_levers(setup: MeshSetup, lines: ContactLines, cells: int) -> Array:
     first, _ = rubbed_arms(pair, parts.rho[0], abs(lines.slope) * parts.length[..., None])
     turning = -setup.friction if setup.back else setup.friction
     rubbing = np.asarray(turning * first / pair.base_radii[0])
-    if lines.edges is None:
+    if lines.edges is None and lines.relieved is None:
         return rubbing
-    return np.asarray(rubbing + pair.helix.base_cosine * (lines.edges.levers(lines.places(parts))[0] - 1.0))
+    return np.asarray(rubbing + pair.helix.base_cosine * (lines.levers(lines.places(parts))[0] - 1.0))

@@ -8,6 +8,7 @@ import numpy as np
 
 from base import Array, Booleans, record
 from fem.laws.edges_of_lines import EdgesOfLines
+from fem.laws.relieved_flanks import ends_of_flanks
 from fem.laws.tip_contact import nearest_gap
 from fem.laws.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_gap
 
@@ -70,9 +71,10 @@ def edges_of_lines(setup: MeshSetup, reach: float) -> EdgesOfLines:
     setup : MeshSetup
         Of a helical pair; its roundings are those of the section.
     reach : float
-        Base pitches.
+        Base pitches beyond the ends of the flanks, which are those of the path but for relief.
     """
-    pair, (start, end) = setup.pair, setup.ends
+    pair, ends = setup.pair, ends_of_flanks(setup)
+    start, end = ends
     away = np.linspace(0.0, reach * pair.base_pitch, STEPS + 1)
     tables = []
     for corner, place in ((1, start - away), (0, end + away)):
@@ -86,4 +88,4 @@ def edges_of_lines(setup: MeshSetup, reach: float) -> EdgesOfLines:
         known, number = np.linspace(0.0, last, STEPS + 1), np.arange(STEPS + 1.0)
         columns = away, np.where(np.isfinite(gap), gap, 0.0), at.touched_rho, at.lever
         tables.append([np.interp(known, number, values) for values in columns])
-    return EdgesOfLines(setup.ends, *(np.stack(values) for values in zip(*tables, strict=True)))
+    return EdgesOfLines(setup.ends, ends, *(np.stack(values) for values in zip(*tables, strict=True)))
