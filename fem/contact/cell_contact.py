@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Self, TypeAlias
@@ -88,11 +88,14 @@ class CellContact:
         Torques over the base radius [N].
     sides : ContactSides
         Contacts of whole pairs, on one side of the teeth or both.
+    brought : mapping of int to (1, pitches, positions, pairs, cells) array, optional
+        Forces that have brought the shafts where they are held, by the number of cells [N]; else the load shared does.
     """
 
     bodies: PairCompliance
     whole: Array
     sides: ContactSides
+    brought: Mapping[int, Array] | None = None
 
     @property
     def pair(self) -> GearPair:
@@ -139,13 +142,14 @@ class CellContact:
         apart, film = self._apart(face), self.films(face)
         ahead, (reach, levers) = np.repeat(self.sides.sign > 0.0, cells), self.levers(face)
         start, laws = _flat(self.spread(face, near)), self.laws(face)
-        shafts = self.shafts(face)
+        shafts, parting = self.shafts(face), self._parting(face, len(near))
+        apart = apart if parting is None else apart + parting
 
         @lru_cache(maxsize=1)  # large ones are kept nowhere else
         def coupling(strip: float) -> tuple[CellCoupling, CellCoupling]:
             """Of the bodies, and with the shafts."""
             own = self.coupling(replace(face, strip=strip))
-            return own, self._on_shafts(own, shafts)
+            return own, self._on_shafts(own, shafts if parting is None else None)
 
         @lru_cache(maxsize=1)
         def law(strip: float, torques: tuple[int, ...]) -> JointLaw:
@@ -156,7 +160,8 @@ class CellContact:
         def share(strip: float, torques: Integers) -> LoadShare:
             alone, stiff = coupling(strip)
             own = law(strip, tuple(torques.tolist()))
-            first = apart if rise is None else apart - _flat(rise)[torques]
+            first = apart if parting is None else apart[torques]
+            first = first if rise is None else first - _flat(rise)[torques]
             # the turn is counted from the first touch, so that small ones keep their digits beside gaps
             least = (first / reach)[..., ahead].min(axis=-1)
             contacts = StayingContacts(stiff, own, film, first - reach * least[..., None], reach, levers)
@@ -191,11 +196,18 @@ class CellContact:
         remaining_gaps = bends + apart - reach * load_share.transmission_error[..., None]
         if film is not None:
             remaining_gaps = remaining_gaps - film.approach(np.zeros_like(load_share.forces))
+        bends = bends if parting is None else bends + parting
         bends, remaining_gaps = _by_cells(bends, cells), _by_cells(remaining_gaps, cells)
         reached = None
         if held and shafts is not None:
             load_share, reached = shafts.held(
-                load_share, self.sides.lever_ratios, self.sides.gaps, slopes, levers, self.sides.count
+                load_share,
+                self.sides.lever_ratios,
+                self.sides.gaps,
+                slopes,
+                levers,
+                self.sides.count,
+                None if self.brought is None else _flat(self.brought[cells]),
             )
         return CellShare(
             load_share,
@@ -219,6 +231,14 @@ class CellContact:
     def shafts(self, face: FaceSetting) -> UnderShafts | None:
         """Shafts under the cells of a face; None where both are rigid."""
         return shafts_under_face(face, self.pair)
+
+    def _parting(self, face: FaceSetting, torques: int) -> Array | None:
+        """What held shafts part cells by along the normals (torques, ..., pairs cells) [m]; None of others."""
+        shafts = self.shafts(face)
+        if self.brought is None or shafts is None:
+            return None
+        parting = shafts.parting(_flat(self.brought[face.cells]), self.sides.count)
+        return np.broadcast_to(parting, (torques, *parting.shape[1:]))
 
     def tilts(self, face: FaceSetting) -> Array | None:
         """What a turn across the line of action closes of D at each cell (positions, n) [m]; None if not looked at."""
@@ -335,9 +355,10 @@ class CellContact:
             D, with what shafts give way [m].
         """
         loads, (reach, _) = _flat(forces), self.levers(face)
-        wanted, shafts = np.ones(loads.shape[:-1], dtype=bool), self.shafts(face)
-        coupling = self._on_shafts(self.coupling(face), shafts)
+        wanted, parting = np.ones(loads.shape[:-1], dtype=bool), self._parting(face, len(loads))
+        coupling = self._on_shafts(self.coupling(face), self.shafts(face) if parting is None else None)
         bends = coupling.applied(loads, wanted, np.zeros_like(loads))
+        bends = bends if parting is None else bends + parting
         gaps, film = bends + self._apart(face) - reach * approach[..., None], self.films(face)
         if film is not None:
             gaps = gaps - film.approach(np.zeros_like(loads))
@@ -381,7 +402,9 @@ class CellContact:
         """The same at a single torque and position."""
         whole = np.broadcast_to(self.whole, (len(self.whole), *self.sides.gaps.shape[:-1]))
         single = whole[torque, pitch, position].reshape(1, 1, 1)
-        return replace(self, whole=single, sides=self.sides.at(pitch, position))
+        here = slice(pitch, pitch + 1), slice(position, position + 1)
+        brought = self.brought and {cells: forces[:, *here] for cells, forces in self.brought.items()}
+        return replace(self, whole=single, sides=self.sides.at(pitch, position), brought=brought)
 
 
 def _settled(contacts: StayingContacts, coupling: CellCoupling, whole: Array, start: Array) -> LoadShare:

@@ -94,7 +94,7 @@ def _given_way(alone: ContactState, other: FlanksInPlace) -> Array | float:
     shafts = shafts_under_face(alone.setup.face, alone.setup.pair)
     if shafts is None:
         return 0.0
-    forces = alone.contacts.forces
+    forces = alone.contacts.bending
     give = shafts.bent(forces, forces.shape[-2], 1).sum(axis=-2).min(axis=-1)
     turn = alone.contacts.turn - alone.share.transmission_error
     return np.asarray(other.lever_ratios * turn[..., None] + give[..., None])

@@ -30,6 +30,9 @@ class Rolling(ContactForces, Protocol):
     def bent_by(self, give: Array) -> Rolling:
         """The same where shafts have given way at the cells (..., n) [m]."""
 
+    def parted(self, give: Array) -> Rolling:
+        """The same with gaps that are so much larger at the cells (..., n) [m], along the normals."""
+
     def plus(self, more: Array) -> Rolling:
         """With a further compliance (2, 2, cells, cells) [m/N]."""
 
@@ -72,6 +75,13 @@ def moved_share(
         deflection is far beyond the first order.
     """
     whole = whole + np.zeros_like(stays.share.stiffness)
+    brought, before, reference = None, None, stays.reference
+    held_under = flanks.sides[0].setup.face.held_under
+    if reference is not None and held_under is not None:
+        brought = moved_share(flanks, bodies, np.full((1, 1, 1), held_under), reference)
+        if brought is None:
+            return None
+        before = reference.forces, brought.forces
     forces, remaining_gaps, lost = (
         np.zeros_like(array) for array in (stays.forces, stays.remaining_gaps, stays.lost)
     )
@@ -82,7 +92,7 @@ def moved_share(
         contacts = flanks.contacts(bodies, rise, float(strip))
         solved: _Solved | None
         if stays.shafts is not None:
-            solved = _on_shafts(flanks, contacts, asked, near)
+            solved = _on_shafts(flanks, contacts, asked, near, before)
         else:
             solved = _on_rigid_shafts(contacts, asked, near, stays.share.transmission_error[torques])
         if solved is None:
@@ -106,6 +116,7 @@ def moved_share(
         remaining_gaps=remaining_gaps,
         lost=lost,
         shafts=joined(held, back) if held else None,
+        reference=brought,
     )
 
 
@@ -127,15 +138,23 @@ def _on_rigid_shafts(contacts: Rolling, whole: Array, near: Array, approach: Arr
     return _Solved(share, open_gaps(contacts, share), contacts.lever_losses(share))
 
 
-def _on_shafts(flanks: Moving, contacts: Rolling, whole: Array, near: Array) -> _Solved | None:
-    """Solve on shafts that give way, held where the load brings them."""
+def _on_shafts(
+    flanks: Moving, contacts: Rolling, whole: Array, near: Array, brought: tuple[Array, Array] | None
+) -> _Solved | None:
+    """Solve on shafts that give way, held where the load brings them, or where forces on cells have brought them.
+
+    Those forces are of contacts that stay, and of moving ones.
+    """
     first = flanks.sides[0]
     count, shafts = first.lever_ratios.shape[-1], shafts_under_face(first.setup.face, first.setup.pair)
     assert shafts is not None
     # corners touch at the approach of the flanks, to which shafts do not contribute
-    give = shafts.give(near, count)
+    give = shafts.give(near if brought is None else brought[0], count)
     contacts = contacts.bent_by(give.reshape(*give.shape[:-2], -1))
-    yielding = contacts.plus(shafts.compliance)
+    held_by = None if brought is None else brought[1].reshape(*brought[1].shape[:-2], -1)
+    if held_by is not None:
+        contacts = contacts.parted(shafts.parting(held_by, count))
+    yielding = contacts.plus(shafts.compliance) if held_by is None else contacts
     share = _solved(yielding, whole, near, None)
     if share is None:
         return None
@@ -147,10 +166,10 @@ def _on_shafts(flanks: Moving, contacts: Rolling, whole: Array, near: Array) -> 
     slopes = at.jacobian.solved(at.own, at.reach, by_tilt, bears, wanted)
     lever_ratios = np.concatenate([side.flanks.lever_ratios for side in flanks.sides], axis=-1)
     gaps = np.concatenate([side.flanks.gaps for side in flanks.sides], axis=-1)
-    share, brought = shafts.held(share, lever_ratios, gaps, slopes, at.further_lever_ratios, count)
+    share, held = shafts.held(share, lever_ratios, gaps, slopes, at.further_lever_ratios, count, held_by)
     share = replace(share, stiffness=share.stiffness - at.stiff)
     lost = yielding.lever_losses(replace(share, transmission_error=turn))
-    return _Solved(share, open_, lost, brought)
+    return _Solved(share, open_, lost, held)
 
 
 def open_gaps(contacts: Rolling, share: LoadShare) -> Array:

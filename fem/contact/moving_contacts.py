@@ -114,6 +114,10 @@ class MovingContacts:
         """The same where shafts have given way at the cells (..., n) [m]."""
         return replace(self, along=self.along + give)
 
+    def parted(self, give: Array) -> MovingContacts:
+        """The same with gaps that are so much larger at the cells (..., n) [m], along the normals."""
+        return replace(self, clear=self.clear + give)
+
     def plus(self, more: Array) -> MovingContacts:
         """With a further compliance between cells, as of ``fem.contact.cell_coupling.CellCoupling.plus``."""
         assert isinstance(self.coupling, CellCoupling)

@@ -138,6 +138,11 @@ class MovingSides:
         front, back = self.split(give)
         return replace(self, front=self.front.bent_by(front), back=self.back.bent_by(back))
 
+    def parted(self, give: Array) -> MovingSides:
+        """As of ``MovingContacts``."""
+        front, back = self.split(give)
+        return replace(self, front=self.front.parted(front), back=self.back.parted(back))
+
     def plus(self, more: Array) -> MovingSides:
         """As of ``MovingContacts``, with what loads on one side do to the other."""
         assert isinstance(self.cross, CellCross)

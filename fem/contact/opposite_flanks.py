@@ -181,12 +181,14 @@ def _beside_nothing(sides: ContactSides, bodies: PairCompliance, loaded: SharedC
     whole = loaded.beside(np.zeros((*leading, more, cells)))
     if face.even_load:
         return loaded.beside(sides.open(whole.share)[..., sides.count :, None])
-    contact = CellContact(bodies, np.zeros((len(loaded.forces), 1, 1)), sides)
+    brought = None if whole.reference is None else {cells: whole.bending}
+    contact = CellContact(bodies, np.zeros((len(loaded.forces), 1, 1)), sides, brought)
     beside = loaded.beside(contact.open(face, whole.forces, loaded.turn)[..., sides.count :, :])
     shafts = shafts_under_face(face, sides.setups[0].pair)
     if shafts is None or beside.shafts is None:
         return beside
-    _, behind = shafts.touches(whole.forces, sides.lever_ratios, sides.gaps, sides.count)
+    _, behind = shafts.touches(whole.bending, sides.lever_ratios, sides.gaps, sides.count)
+    behind = np.broadcast_to(behind, beside.shafts.behind.shape)
     return replace(beside, shafts=replace(beside.shafts, behind=behind))
 
 

@@ -13,10 +13,10 @@ all.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -62,6 +62,8 @@ class SharedContacts:
         Of forces on cells by D, of lines of contact, without shafts [N/m].
     tilting : (2, torques, pitches, positions, 2, 2) array or None
         Stiffness of their mesh against approach and tilt, and that with half as many cells; as of ``LineLoads``.
+    reference : SharedContacts or None
+        Under the single load that has brought the shafts where they are held; None where every load bends them.
     """
 
     share: LoadShare
@@ -75,6 +77,12 @@ class SharedContacts:
     fewer: Array | None = None
     slopes: Array | None = None
     tilting: Array | None = None
+    reference: SharedContacts | None = None
+
+    @property
+    def bending(self) -> Array:
+        """Forces that have brought the shafts where they are: of each torque, or of all (1, ...) [N]."""
+        return self.forces if self.reference is None else self.reference.forces
 
     @property
     def errors(self) -> CellErrors:
@@ -120,6 +128,7 @@ class SharedContacts:
             rise=rise,
             lost=self.lost[..., pairs],
             shafts=shafts,
+            reference=self.reference and replace(self.reference, forces=self.reference.forces[..., pairs, :]),
         )
 
     def beside(self, remaining_gaps: Array) -> SharedContacts:
@@ -136,6 +145,7 @@ class SharedContacts:
             remaining_gaps=np.concatenate([self.remaining_gaps, remaining_gaps], axis=-2),
             rise=np.concatenate([self.rise, nothing], axis=-2),
             lost=np.concatenate([self.lost, np.zeros((2, 2, *nothing.shape[:-1]))], axis=-1),
+            reference=self.reference and self.reference.beside(remaining_gaps[:1]),
         )
 
     def with_kept(self, kept: SharedContacts, clear: Booleans) -> SharedContacts:
@@ -166,7 +176,7 @@ class SharedContacts:
 
 
 def share_staying(bodies: PairCompliance, whole: Array, sides: ContactSides) -> SharedContacts:
-    """Share forces over pairs and cells that stay.
+    """Share forces over pairs and cells that stay, on shafts that each load bends or that are held where one has.
 
     Parameters
     ----------
@@ -176,21 +186,38 @@ def share_staying(bodies: PairCompliance, whole: Array, sides: ContactSides) -> 
     sides : ContactSides
         Contacts of whole pairs, on one side of the teeth or both.
     """
-    face = sides.setups[0].face
+    face, brought, reference = sides.setups[0].face, None, None
     whole = whole + np.zeros(sides.gaps.shape[:-1])
+    if face.held_under is not None:
+        bent = _shares(bodies, np.full_like(whole[:1], face.held_under), sides)
+        reference = _of_cells(face, *bent)
+        brought = {share.forces.shape[-1]: share.forces for share in bent[1:]}
+    if face.even_load:
+        even = sides.share(whole)
+        return SharedContacts.even(even, sides.open(even))
+    return replace(_of_cells(face, *_shares(bodies, whole, sides, brought)), reference=reference)
+
+
+def _shares(
+    bodies: PairCompliance, whole: Array, sides: ContactSides, brought: Mapping[int, Array] | None = None
+) -> tuple[CellContact, CellShare, CellShare]:
+    """What is shared over the face, its share over half as many cells, and over all."""
+    face = sides.setups[0].face
     few, _ = half_as_many(face)
     if sides.setups[0].helical:
         over: CellContact
-        over = lines = LineContact(bodies, whole, sides)
-        coarse = over.shared(few, lines.even, held=False)
+        over = lines = LineContact(bodies, whole, sides, brought)
+        start = lines.even
     else:
-        even = sides.share(whole)
-        if face.even_load:
-            return SharedContacts.even(even, sides.open(even))
-        over = CellContact(bodies, whole, sides)
-        coarse = over.shared(few, even.forces[..., None], held=False)
+        over, start = CellContact(bodies, whole, sides, brought), sides.share(whole).forces[..., None]
+    coarse = over.shared(few, start, held=False)
     coarse = over.shared(few, coarse.forces, over.gap_drops(few, coarse))
-    fine = over.shared(face, coarse.forces, over.gap_drops(face, coarse))
+    return over, coarse, over.shared(face, coarse.forces, over.gap_drops(face, coarse))
+
+
+def _of_cells(face: FaceSetting, over: CellContact, coarse: CellShare, fine: CellShare) -> SharedContacts:
+    """Contacts of pairs, from the shares of their cells."""
+    few, _ = half_as_many(face)
     share = of_pairs(fine.share, face.cells)
     return SharedContacts(
         share,
@@ -201,13 +228,13 @@ def share_staying(bodies: PairCompliance, whole: Array, sides: ContactSides) -> 
         np.zeros((2, 2, *share.forces.shape)),
         cache(partial(cell_errors, over, face, fine, coarse)),
         fine.shafts,
-        **(_of_lines(lines, (face, few), (fine, coarse)) if sides.setups[0].helical else {}),
+        **(_of_lines(over, (face, few), (fine, coarse)) if isinstance(over, LineContact) else {}),
     )
 
 
 def _of_lines(
     over: LineContact, faces: tuple[FaceSetting, FaceSetting], shares: tuple[CellShare, CellShare]
-) -> dict[str, Array]:
+) -> dict[str, Any]:
     """What lines of contact have beside: forces on fewer cells, slopes by a turn and by tilt."""
     (fine, coarse), tilting = shares, []
     for face, share in zip(faces, shares, strict=True):

@@ -55,6 +55,8 @@ def solve_contact(
         Laws of the tip edges of gears that are set up likewise, to be used again.
     """
     corner_laws = corner_laws or CornerLaws(setup, bodies)
+    if setup.face.held_under is not None:  # what has brought the shafts there must find its contacts as well
+        force = np.append(force, setup.face.held_under)
     state: ContactState | None = None
     # without a torque overlap alone says how far contacts reach
     for reach in _reaches(setup, bodies, force):

@@ -55,6 +55,7 @@ def mesh_cycle(
     cells: int | None = None,
     face_model: str = FREE_ENDS,
     shafts: tuple[Shaft | None, Shaft | None] | None = None,
+    shafts_held_under: float | None = None,
     options: Options = USUAL_OPTIONS,
 ) -> tuple[MeshCycle, ...]:
     """Share the load among all pairs at midpoints of equal intervals of base pitches, from A.
@@ -122,6 +123,10 @@ def mesh_cycle(
         Shafts of pinion and wheel, left ends at the same side: they bend and twist under the loads on the cells, and
         open the flanks by as much (``gears.pair.shaft_face``). The transmission error counts it, stiffness is that of
         the mesh on shafts that are held where the load has brought them (``fem.pair.face_shafts``).
+    shafts_held_under : float, optional
+        Torque that has brought the shafts where they are held under all others, at each position [N m]: the
+        transmission error then counts the give of the shafts under this torque alone, and its slope by the force is the
+        stiffness. Every torque bends the shafts unless it is given.
     options : fem.Options
         Numerical settings: arcs, thresholds of warnings, and the mesh unless a compliance is given.
 
@@ -164,7 +169,10 @@ def mesh_cycle(
         face=face_setting(pair, alignment, cells, face_model, shafts) or EVEN,
         options=options,
     )
-    _check(setup, torque, compliance, film, reference, plane)
+    _check(setup, torque, compliance, film, reference, plane, shafts_held_under)
+    if shafts_held_under is not None:
+        held = replace(setup.face, held_under=abs(shafts_held_under) / pair.base_radii[0])
+        setup = replace(setup, face=held)
     watch = Stopwatch()
     bodies = (
         compliance
@@ -217,6 +225,7 @@ def _check(
     film: Film | None,
     reference: str | None,
     plane: str,
+    held_under: float | None,
 ) -> None:
     faults = Faults()
     ready = faults.instance("compliance", compliance, PairCompliance, "as of fem.compliance", optional=True)
@@ -245,6 +254,8 @@ def _check(
     if film is not None and not callable(film):
         faults.add("film", shorten(film), "must be a function of places and forces", "see fem.Film")
     setup.check(faults)
+    if held_under is not None:
+        _check_held(faults, setup, torque, faults.number("shafts_held_under", held_under, TORQUE))
     faults.raise_if_any()
     if np.any(torque == 0.0):  # needs a setting without faults
         play = float(np.max(contact_candidates(setup).back_gap))
@@ -253,3 +264,13 @@ def _check(
             remedy = "leave it out, or give less backlash; unloaded_transmission_error is that of rigid gears"
             faults.add("torque", "0", allowed, remedy)
     faults.raise_if_any()
+
+
+def _check_held(faults: Faults, setup: MeshSetup, torque: Array, held_under: float) -> None:
+    """Note a torque that no shaft is bent by, or that bends it under other flanks than the torques load."""
+    value = f"{held_under:g} N m"
+    if not setup.face.on_shafts:
+        faults.add("shafts_held_under", value, "requires shafts", "give shafts, or leave it out")
+    elif held_under == 0.0 or np.any(torque * held_under <= 0.0):
+        allowed = "must be of the sign of every torque, so that it loads the same flanks"
+        faults.add("shafts_held_under", value, allowed, "give the mean torque")

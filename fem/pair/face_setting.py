@@ -46,6 +46,8 @@ class FaceSetting:
         Half-width of strips of pressure over a cell's length, where cells are narrow (``wide_contact``); else 0.
     shafts : (Shaft or None, Shaft or None)
         Of pinion and wheel, which bend and twist; None is rigid.
+    held_under : float or None
+        Force that has brought the shafts where they are held under all others [N]; None where each load bends them.
     """
 
     cells: int
@@ -54,6 +56,7 @@ class FaceSetting:
     model: str = FREE_ENDS
     shafts: tuple[Shaft | None, Shaft | None] = (None, None)
     strip: float = 0.0
+    held_under: float | None = None
 
     @property
     def even_load(self) -> bool:

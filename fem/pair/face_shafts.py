@@ -19,6 +19,9 @@ by the approach delta + psi z of the flanks. Its first entry is the tangent. Wha
 
 so that no shaft makes a mesh stiffer. u = a + phi z + r, r orthogonal to 1 and z: f . u = F a + M phi + f . r.
 
+Where shafts stay held where a load f_0 has brought them, whatever bears now, u = S f_0 is a gap as any other:
+C f + law(f) + g + S f_0 = D is the force of the mesh over the approach of its bodies, with the slope 1^T J^-1 1 at f_0.
+
 Where flanks on both sides of the teeth bear, a load on one side bends the shafts along its own line of action and
 twists them its own way. The normals of both sides, away from the flanks, are n and n' with n.n' = -cos 2 alpha_w, and
 the torques are opposed: with S = B + T of bending and twist,
@@ -162,6 +165,11 @@ class ShaftsUnderFace:
         first, second = sides
         return np.asarray(np.where(np.arange(forces.shape[-2])[:, None] < count, first, second))
 
+    def parting(self, forces: Array, count: int) -> Array:
+        """What both give way by at cells along the normals (..., pairs cells) [m], by forces on cells alike [N]."""
+        moved = self.give(forces.reshape(*forces.shape[:-1], -1, len(self.middles)), count)
+        return moved.reshape(forces.shape)
+
     def held(
         self,
         share: LoadShare,
@@ -170,8 +178,9 @@ class ShaftsUnderFace:
         slopes: tuple[Array, Array],
         levers: Array,
         count: int,
+        brought: Array | None = None,
     ) -> tuple[LoadShare, HeldShafts]:
-        """Measure a share from the first touch on shafts that are held where its loads bring them; no force changes.
+        """Measure a share from the first touch on shafts that are held where loads bring them; no force changes.
 
         Parameters
         ----------
@@ -187,10 +196,13 @@ class ShaftsUnderFace:
             Levers of further forces over those for which F is given, below 0 on the other side.
         count : int
             Pairs on the loaded side.
+        brought : (..., pairs cells) array, optional
+            Forces that have brought the shafts where they are [N]; those of the share unless given.
         """
         rows = levers, self.levers(lever_ratios.shape[-1], count)
         mesh = [[np.sum(row * slope, axis=-1) for slope in slopes] for row in rows]
-        forces = share.forces.reshape(*share.forces.shape[:-1], -1, len(self.middles))
+        forces = share.forces if brought is None else np.broadcast_to(brought, share.forces.shape)
+        forces = forces.reshape(*forces.shape[:-1], -1, len(self.middles))
         bent = self.bent(forces, count)
         touch, behind = self.touches(forces, lever_ratios, gaps, count)
         held_shafts = HeldShafts(

@@ -157,6 +157,18 @@ class ShaftsUnderLines:
                     )
         return np.asarray(moved / self.cosine)
 
+    def parting(self, forces: Array, count: int) -> Array:
+        """What both give way by at the cells along the normals (..., n, m) [m], by forces on them [N].
+
+        Parameters
+        ----------
+        forces : (..., n, m) array
+        count : int
+            Lines on the loaded side: all.
+        """
+        del count
+        return np.asarray(self.cosine * self.give(forces, self.cells).sum(axis=-2))
+
     def levers(self, pairs: int, count: int) -> Array:
         """Cos(beta_b) z of the cells of all lines (n, m) [m]: what a slope over the face closes, moments of forces.
 
@@ -176,17 +188,19 @@ class ShaftsUnderLines:
         slopes: tuple[Array, Array],
         levers: Array,
         count: int,
+        brought: Array | None = None,
     ) -> tuple[LoadShare, HeldShafts]:
-        """Measure a share from the first touch on shafts that are held where its loads bring them.
+        """Measure a share from the first touch on shafts that are held where loads bring them.
 
         Parameters and result as of ``fem.pair.face_shafts.ShaftsUnderFace.held``; deflection and tilt are the straight
         line, of least squares over the lengths of all lines, through what they give way by.
         """
         rows = levers, self.levers(lever_ratios.shape[-1], count)
         mesh = [[np.sum(row * slope, axis=-1) for slope in slopes] for row in rows]
-        bent = self.give(share.forces, self.cells)
+        forces = share.forces if brought is None else np.broadcast_to(brought, share.forces.shape)
+        bent = self.give(forces, self.cells)
         deflection, tilt = self._straight(bent)
-        touch = self._touch(share.forces)
+        touch = self._touch(forces)
         held_shafts = HeldShafts(
             deflection,
             tilt,

@@ -227,3 +227,18 @@ def test_cells_settle_within_the_errors_of_what_shafts_do(bodies: PairCompliance
     for name, error in (("shaft_deflection", few.shaft_error), ("shaft_misalignment", few.tilt_error)):
         found, better = getattr(few, name), getattr(many, name)
         assert np.abs(found - better).max() < error * np.abs(better).max(), name
+
+
+@pytest.mark.slow
+def test_force_over_the_turn_on_held_shafts_has_the_slope_of_the_stiffness(bodies):
+    """Under the load that has brought them there nothing changes, at every position with the lines that are there."""
+    given = {"cells": 8, "beyond_path": False, "shafts": BOTH}
+    bent = mesh_cycle(SMALL, TORQUE, 6, bodies, **given)
+    for share in (0.5, 1.0):
+        torques = [step * share * TORQUE for step in (0.999, 1.0, 1.001)]
+        less, held, more = mesh_cycle(SMALL, torques, 6, bodies, shafts_held_under=TORQUE, **given)
+        slope = (more.force - less.force) / (more.transmission_error - less.transmission_error)
+        np.testing.assert_allclose(slope, held.stiffness, rtol=1e-3 if share < 1.0 else 1e-6)
+    for name in ("transmission_error", "stiffness", "secant_stiffness", "forces"):
+        np.testing.assert_allclose(getattr(held, name), getattr(bent, name), rtol=1e-9)
+    np.testing.assert_allclose(held.lines.shaft_deflection, bent.lines.shaft_deflection, rtol=1e-9)

@@ -5,7 +5,9 @@ pairs bear depends on the force of the moment: they come into contact as the mot
 
     F(x, t) with D(F, t; f_pb) - e(t) = x,    e = D - F/k at the mean load without the deviation,
 
-by loaded contacts at several torques, so that slow teeth stand where the loaded contact has them.
+by loaded contacts at several torques, so that slow teeth stand where the loaded contact has them. Shafts under the
+face are held where the mean load has brought them at each position, as in the stiffness of the mesh cycle: what they
+give way by more is displacement of the drive train.
 """
 
 from __future__ import annotations
@@ -128,13 +130,18 @@ def contact_laws(
     """
     contact = contact_of(even, deviation)
     positions = _usual_positions(contact) if positions is None else positions
+    held_under = None if teeth.flanks.shafts in (None, (None, None)) else teeth.torque
     own, shares = teeth.flanks.base_pitch_difference, np.array(SHARES[:: 1 if contact.lines is None else 2])
     torques = (shares * teeth.torque).tolist()
 
     def cycles(difference: float) -> list[fem.MeshCycle]:
         flanks = replace(teeth.flanks, base_pitch_difference=own + difference)
         loaded = fem.mesh_cycle(
-            teeth.pair, torques, positions=positions, **replace(teeth, flanks=flanks).setting
+            teeth.pair,
+            torques,
+            positions=positions,
+            shafts_held_under=held_under,
+            **replace(teeth, flanks=flanks).setting,
         )
         return [
             _taken(cycle, float(share)).against(even.reference, contact.bore_inertia)
@@ -173,8 +180,8 @@ def gridded(
 ) -> GriddedContact:
     """Put a law of the contact on a grid in the units of a motion.
 
-    Films are in series as a spring of the mean load. What shafts of a drive train give way is no part of the law: all
-    of it, that of modes which are not retained too, is in the displacements of the train.
+    Films are in series as a spring of the mean load. What shafts of a drive train give way beyond the mean load is no
+    part of the law: all of it, that of modes which are not retained too, is in the displacements of the train.
 
     Parameters
     ----------
