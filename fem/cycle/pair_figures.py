@@ -127,7 +127,7 @@ class PairFigures:
     def wheel_torque(self) -> Array:
         """Torque on the wheel of the normal forces, tilted by friction if there is any; of the loaded flanks alone.
 
-        Where a tip edge presses it differs from the torque of the pinion times the ratio even without
+        Where a tip edge presses, and on relief, it differs from the torque of the pinion times the ratio even without
         friction, because the yielding teeth store energy; over a cycle that evens out.
         """
         slip = np.sign(self.sliding())
@@ -137,7 +137,7 @@ class PairFigures:
         total = np.sum(self.forces * arm, axis=1, where=np.isfinite(arm))
         if self.lines is not None:
             turning = self.friction if self.flank == "front" else -self.friction
-            total = total + turning * self.lines.rubbed[1] + self._on_edges()
+            total = total + turning * self.lines.rubbed[1] + self._by_levers()
         return np.asarray(total if self.flank == "front" else -total)
 
     def edge_sliding(self, speed: float = 1.0) -> Array:
@@ -160,23 +160,25 @@ class PairFigures:
         beyond = np.where(np.isfinite(cells.z), 1.0 - cells.on_path, 0.0)
         return np.asarray(np.sum(beyond * cells.force * slip, axis=(-2, -1)))
 
-    def edge_levers(self) -> Array:
-        """Levers about both axes of cells on lines of contact over those on the path (2, n, pairs, cells)."""
+    def cell_levers(self) -> Array:
+        """Levers about both axes of cells on lines of contact over those of involutes (2, n, pairs, cells).
+
+        Other than 1 at tip edges, and where relief turns the common normal.
+        """
         lines, cells = self.candidates.lines, self.lines
         assert cells is not None
-        shape = (2, *cells.z.shape)
-        if lines is None or lines.edges is None:
-            return np.ones(shape)
-        return lines.edges.levers(np.nan_to_num(cells.travel) + self.pair.points.A)
+        if lines is None:
+            return np.ones((2, *cells.z.shape))
+        return lines.levers(np.nan_to_num(cells.travel) + self.pair.points.A)
 
-    def _on_edges(self) -> Array | float:
-        """What levers of tip edges on lines of contact add to the wheel's torque (positions,) [N m]."""
+    def _by_levers(self) -> Array | float:
+        """What levers other than those of involutes add to the wheel's torque on lines of contact (n,) [N m]."""
         lines, cells = self.candidates.lines, self.lines
-        if lines is None or lines.edges is None or cells is None:
+        if lines is None or cells is None or (lines.edges is None and lines.relieved is None):
             return 0.0
-        shorter = self.edge_levers()[1] - 1.0
+        longer = self.cell_levers()[1] - 1.0
         arm = self.pair.helix.base_cosine * self.pair.base_radii[1]
-        return np.asarray(arm * np.sum(cells.force * shorter, axis=(-2, -1)))
+        return np.asarray(arm * np.sum(cells.force * longer, axis=(-2, -1)))
 
     def friction_loss(self, speed: float) -> Array:
         """Power lost by sliding (n,) [W], sum of ``mu F_i |u1 - u2|``; speed of the pinion [rad/s]."""

@@ -246,7 +246,7 @@ class MeshArcs:
 
 def _of_any_phase(value: Array, change: Array) -> Array:
     """Change of complex amplitudes (orders, 2), whose phase is chance: half of its square along them, half across."""
-    return _phase(value)[:, None] * change[:, None] * np.array([1.0, 1j]) / sqrt(2.0)
+    return np.asarray(_phase(value)[:, None] * change[:, None] * np.array([1.0, 1j]) / sqrt(2.0))
 
 
 def _phase(value: Array) -> Array:

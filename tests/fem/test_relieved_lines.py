@@ -164,5 +164,8 @@ def test_a_small_helix_has_the_transmission_error_of_the_spur_pair(edges: bool) 
         error = (spur.error + helix.error) * spur.transmission_error.max()
         assert helix.transmission_error == pytest.approx(spur.transmission_error, abs=error)
         assert helix.stiffness == pytest.approx(spur.stiffness, rel=2.0 * (spur.error + helix.error))
+        # relief turns the normal, which shifts torque to the wheel and back by some per cent
+        assert np.ptp(spur.wheel_torque) > 0.01 * spur.wheel_torque.mean()
+        assert helix.wheel_torque == pytest.approx(spur.wheel_torque, rel=5e-4)
     light = straight[0]
     assert np.ptp(light.transmission_error) > 100.0 * light.error * light.transmission_error.max()

@@ -140,6 +140,6 @@ def spatial_mesh(cycle: fem.MeshCycle) -> SpatialMesh:
     moved = np.stack([there, cell_wrenches(pair, pitch_point, np.array(1.0)) - there]) / cosine
     fine, coarse = np.einsum("ai,npab,bj->npij", moved, lines.tilting, moved)
     wrench = cell_wrenches(pair, np.nan_to_num(lines.rho[0]), np.nan_to_num(lines.z))
-    # forces at tip edges along the line of action, as large as the torque about the pinion makes them
-    load = np.einsum("plc,plci->pi", lines.force * cycle.edge_levers()[0], wrench)
+    # forces at tip edges and on relief along the line of action, as large as the torque about the pinion makes them
+    load = np.einsum("plc,plci->pi", lines.force * cycle.cell_levers()[0], wrench)
     return SpatialMesh(fine, load, cycle.transmission_error, pair, cycle.torque, coarse)
