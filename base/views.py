@@ -8,7 +8,6 @@ from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from functools import cache
 from importlib import import_module
-from importlib.metadata import entry_points
 from typing import TYPE_CHECKING, Any
 
 from base.faults import InputError
@@ -190,5 +189,7 @@ def _named(place: str) -> Callable[[Any], Any]:
 @cache
 def _ask() -> None:
     """Let installed packages above register their views, once: each has an entry point that is a function."""
+    from importlib.metadata import entry_points  # 20 ms, which the command line has no use for
+
     for entry in entry_points(group=GROUP):
         entry.load()()

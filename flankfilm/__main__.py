@@ -13,6 +13,8 @@ def main() -> None:
     # Before numpy is loaded, which reads it once. The matrices are small: two threads take up to ten times the time
     # of one where another program works beside them.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # pydantic seeks plug-ins among all installed packages, whose lists it reads: the scene's schema has none.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     collect_rarely()
     from flankfilm.cli import main as commands
 

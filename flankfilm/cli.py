@@ -9,7 +9,6 @@ import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -25,10 +24,17 @@ if TYPE_CHECKING:
     from flankfilm.scene import Scene
     from flankfilm.stages.computed import Computed
 
+
+def _version() -> str:
+    from importlib import metadata  # 20 ms, which no other command has a use for
+
+    return metadata.version("flankfilm")
+
+
 app = App(
     name="flankfilm",
     help="Stiffness, oil film and motion of spur-gear pairs; each number with its error and its cost.",
-    version=lambda: metadata.version("flankfilm"),
+    version=_version,
     version_flags=["--version"],
     suppress_keyboard_interrupt=False,  # it says what is kept
 )

@@ -12,10 +12,9 @@ from fem.cycle.line_loads import LineLoads
 from fem.elasticity.plane_elasticity import reduced_modulus
 from fem.laws.contact_candidates import ContactCandidates
 from gears import GearPair, half_width, peak_pressure
+from gears.pair.hertz import HERTZ
 
-__all__ = ["HERTZ", "PairFigures"]
-
-HERTZ = "not estimated: Hertz's law of the contact's force, whose error is not known in single positions"
+__all__ = ["PairFigures"]
 
 
 class PairFigures:

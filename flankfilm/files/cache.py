@@ -21,7 +21,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
-from importlib import metadata, util
+from importlib import util
 from pathlib import Path
 from typing import Any
 
@@ -87,6 +87,8 @@ def own_folder(folder: Path) -> str:
 @cache
 def code_digest(packages: tuple[str, ...]) -> str:
     """Digest of the source files of `packages`, and of Python and the libraries' versions."""
+    from importlib import metadata  # 10 ms, without which a scene is checked
+
     digest = hashlib.sha256(platform.python_version().encode())
     for name in LIBRARIES:
         digest.update(f"{name}=={metadata.version(name)}\n".encode())

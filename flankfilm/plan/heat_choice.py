@@ -10,7 +10,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from base import SolverError
-from flankfilm.coupling.losses.hot_contacts import COARSEST
 from flankfilm.plan.decisions import Decision, per_cent, said, signed, stands
 
 if TYPE_CHECKING:
@@ -38,6 +37,8 @@ def heat_choice(scene: Scene, solved: bool, screen: Callable[[float], HeatScreen
         return Decision(SUBJECT, asked, stands(scene, "film", "heat"), f"{how}; {reason}")
     if why := _not_weighed(scene, solved):
         return Decision(SUBJECT, "off", False, f"not weighed; {why}")
+    from flankfilm.coupling.losses.hot_contacts import COARSEST  # which loads all films
+
     try:
         contact = screen(max(0.5 * scene.tolerance, COARSEST))
     except SolverError as fault:

@@ -8,6 +8,9 @@ import numpy as np
 
 from base import Array, Limit
 
+HERTZ = "not estimated: Hertz's law of the contact's force, whose error is not known in single positions"
+"""Why pressures and widths of single contacts have no error."""
+
 NORMAL_FORCE = Limit.above(0.0, unit="N", remedy="give the normal force on the pair of teeth")
 """What the force between two teeth may be."""
 

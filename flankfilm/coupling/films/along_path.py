@@ -10,12 +10,12 @@ import numpy as np
 import ehl
 import gears
 from base import Array, Cost, described, part, quantity, record
-from fem.cycle.pair_figures import HERTZ
 from flankfilm.coupling.films import film_points
 from flankfilm.coupling.films.films import FilmModel, PathFilms, film_inside
 from flankfilm.coupling.films.least_film import least_of, least_sampled
 from flankfilm.coupling.mesh.extreme_errors import of_greatest, of_sampled_greatest
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
+from gears.pair.hertz import HERTZ
 
 FORMULA = "unknown: Dowson's formula"
 

@@ -11,10 +11,10 @@ import ehl
 import gears
 from base import Array, Cost, Faults, Limit, SolverError, Stopwatch, described, part, quantity, record
 from base.results import EXACT
-from fem.cycle.pair_figures import HERTZ
 from flankfilm.coupling.films.films import contacts_of
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 from flankfilm.coupling.mesh.warn_once import warned_once
+from gears.pair.hertz import HERTZ
 
 INSTANTS = 80
 """Times at which films are given, at most."""

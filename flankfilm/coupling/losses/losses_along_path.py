@@ -10,9 +10,9 @@ import ehl
 import gears
 from base import Array, described, quantity, record
 from base.results import EXACT, ITSELF
-from fem.cycle.pair_figures import HERTZ
 from flankfilm.coupling.losses.heated_films import HeatedFilms
 from flankfilm.coupling.mesh.extreme_errors import of_greatest, of_least, of_sampled_greatest
+from gears.pair.hertz import HERTZ
 
 _CLOSED_FORM = "unknown: a closed form"
 

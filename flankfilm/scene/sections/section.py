@@ -20,7 +20,7 @@ Limits = Mapping[str, Limit]
 class Section(BaseModel):
     """Common rules: unknown keys refused, no silent conversion, no NaN or infinity, frozen."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False, defer_build=True)
 
     called: ClassVar[str] = "the scene"
     """What faults call the file of which this is the whole."""
