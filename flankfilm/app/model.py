@@ -137,6 +137,11 @@ class Model:
             document = document.with_value(other, text)
         self._change(document.with_value(path, typed))
 
+    def resume(self, other: Model) -> None:
+        """Go on with the scene of another window, and with the edits that it could take back."""
+        self._take(other._opened)
+        self._before, self._sliders = other._before, other._sliders
+
     def undo(self) -> None:
         """Take the last edit back."""
         if self._before:

@@ -24,7 +24,7 @@ from wslink import register
 from wslink.websocket import LinkProtocol
 
 from flankfilm.app.scene_files import SceneFiles
-from flankfilm.app.window import Window
+from flankfilm.app.window import Tabs, Window
 from flankfilm.files.folder import PAGE
 
 __all__ = ["serve"]
@@ -37,8 +37,8 @@ WWW = Path(__file__).with_name("www")
 FILES = {"scripts": ("charts.js", "results.js", "studies.js", "page.js"), "styles": ("page.css",)}
 
 LOST = (
-    "<p class='lost'>The connection to flankfilm is lost, and what this window started has ended. Load the page again; "
-    "if nothing comes, start flankfilm again, and open the address that it prints.</p>"
+    "<p class='lost'>The connection to flankfilm is lost, and what this window started has ended. Load the page again, "
+    "which continues with your edits; if nothing comes, start flankfilm again, and open the address that it prints.</p>"
 )
 
 THEME = {
@@ -59,6 +59,7 @@ class Windows(LinkProtocol):
         super().__init__()
         self._files, self._name = files, name
         self._windows: dict[str, Window] = {}
+        self._tabs: Tabs = {}
         self.server: Any = None
 
     @register("flankfilm.call")
@@ -67,7 +68,7 @@ class Windows(LinkProtocol):
         client = self.server.last_active_client_id
         if client not in self._windows:
             tell = partial(self._tell, asyncio.get_running_loop(), client)
-            self._windows[client] = Window(self._files, self._name, tell)
+            self._windows[client] = Window(self._files, self._name, tell, self._tabs)
         return self._windows[client].call(method, *arguments)
 
     def onClose(self, client_id: str) -> None:

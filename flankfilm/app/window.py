@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, MutableMapping
 from typing import Any
 
 from base import FlankfilmError, InputError
@@ -13,10 +13,17 @@ from flankfilm.app.model import Model
 from flankfilm.app.scene_files import SceneFiles
 from flankfilm.app.studies import rows_files
 
-__all__ = ["Window"]
+__all__ = ["Tabs", "Window"]
 
 LONGEST = 1_000_000
 """Characters of an argument."""
+
+
+Tabs = MutableMapping[str, Model]
+"""Last window of each tab of a browser, by the key that the tab keeps while its page is loaded again."""
+
+MOST_TABS = 32
+"""Tabs whose edits are kept; those of the one that was loaded first go."""
 
 
 class Window:
@@ -29,10 +36,18 @@ class Window:
         Scene to open; the template if empty.
     tell : callable
         Takes what comes later, in another thread.
+    tabs : mutable mapping, optional
+        In which the page, loaded again, finds the scene that its tab was at.
     """
 
-    def __init__(self, files: SceneFiles, name: str, tell: Callable[[str, Mapping[str, Any]], None]) -> None:
-        self._first = ""
+    def __init__(
+        self,
+        files: SceneFiles,
+        name: str,
+        tell: Callable[[str, Mapping[str, Any]], None],
+        tabs: Tabs | None = None,
+    ) -> None:
+        self._first, self._tabs = "", {} if tabs is None else tabs
         try:
             self._model = Model(files, tell, name)
         except InputError as error:
@@ -92,7 +107,13 @@ class Window:
         """End all that the window has started."""
         self._model.close()
 
-    def _start(self) -> dict[str, Any]:
+    def _start(self, tab: str = "") -> dict[str, Any]:
+        if (before := self._tabs.pop(tab, None)) is not None:
+            self._model.resume(before)
+        if tab:
+            self._tabs[tab] = self._model
+            for oldest in list(self._tabs)[:-MOST_TABS]:
+                del self._tabs[oldest]
         sections = [{**vars(section), "keys": [vars(key) for key in section.keys]} for section in form()]
         return {"form": sections, **self._listed()}
 

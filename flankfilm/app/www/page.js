@@ -203,10 +203,16 @@
       setInterval(() => { this.stalled = !!this.asked && performance.now() - this.asked > STALLED; }, 500);
       setInterval(() => { this.waited = this.running ? (performance.now() - this.runTold) / 1000 : 0; }, 500);
       await loaded("flankfilmCharts");
-      const answer = await this.call("start");
+      const answer = await this.call("start", this.tab());
       if (answer) this.form = Vue.markRaw(answer.form);
     },
     methods: {
+      // The browser keeps this while the page is loaded again: the program then goes on with the edits.
+      tab() {
+        const kept = sessionStorage.getItem("flankfilm-tab") || crypto.randomUUID();
+        sessionStorage.setItem("flankfilm-tab", kept);
+        return kept;
+      },
       async call(method, ...texts) {
         let answer;
         this.asked = this.asked || performance.now();

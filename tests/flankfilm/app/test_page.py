@@ -271,9 +271,14 @@ def test_two_windows_do_not_disturb_each_other_and_one_that_is_closed_ends_what_
     while len(served.children) > 1 and time.monotonic() < until:
         time.sleep(0.1)
     assert len(served.children) == 1
+    browser.run("window.before = true")
     browser.call("Page.reload")
-    browser._until("Page.loadEventFired")
-    wait(browser, f"!!document.querySelector('.ff-sliders input') && {SOLVED}")  # by the cookie
+    wait(
+        browser, f"!window.before && !!document.querySelector('.ff-sliders input') && {SOLVED}"
+    )  # by the cookie
+    assert browser.run("document.querySelector('.ff-sliders output').innerText").startswith("300")
+    browser.run(PRESS.format("Undo"))  # the edits of before can be taken back
+    wait(browser, "!document.querySelector('.ff-sliders output').innerText.startsWith('300')")
 
 
 def test_a_connection_that_stalls_is_said_and_continues_and_a_browser_that_comes_back_has_a_window(
@@ -299,7 +304,8 @@ def test_a_connection_that_stalls_is_said_and_continues_and_a_browser_that_comes
     assert len(before) == 1
     assert served.children == []  # what the window started has ended with it
     opened(browser, served)
-    assert browser.run("document.querySelector('.ff-sliders output').innerText").startswith("600")
+    shown = browser.run("document.querySelector('.ff-sliders output').innerText")
+    assert shown.startswith("450")  # the scene of its tab
     assert browser.logged == []
 
 

@@ -13,7 +13,7 @@ from flankfilm.app.command import app
 from flankfilm.app.document import Document
 from flankfilm.app.scene_files import SceneFiles
 from flankfilm.app.sliders import STEPS, sliders
-from flankfilm.app.window import Window
+from flankfilm.app.window import MOST_TABS, Window
 from tests.flankfilm.app.test_model import ARTICLE, Still
 
 ROOT = Path(__file__).parents[3]
@@ -68,6 +68,31 @@ def test_helix_angles_through_zero_are_answered(window):
     for angle in ("-1", "-0.1", "0", "-0", "0.1", "1"):
         answer = window.call("drag", "pair.helix_angle_deg", angle)
         assert answer["problem"] == ""
+
+
+def test_a_page_that_is_loaded_again_goes_on_with_the_edits_of_its_tab(tmp_path, monkeypatch):
+    monkeypatch.setattr("flankfilm.app.model.Live", Still)
+    (tmp_path / "article.toml").write_text(ARTICLE, encoding="utf-8")
+    tabs = {}
+
+    def loaded(tab: str) -> Window:
+        window = Window(SceneFiles(tmp_path), "article.toml", lambda kind, content: None, tabs)
+        window.view = window.call("start", tab)["view"]
+        return window
+
+    first = loaded("a")
+    assert first.view["saved"]
+    first.call("edit", "pair.module_mm", "3")
+    first.close()
+    again, other = loaded("a"), loaded("b")
+    assert (again.view["values"]["pair.module_mm"], again.view["saved"]) == ("3", False)
+    assert (other.view["values"]["pair.module_mm"], other.view["saved"]) == ("2.0", True)
+    back = again.call("undo")["view"]
+    assert (back["values"]["pair.module_mm"], back["saved"]) == ("2.0", True)
+    for k in range(MOST_TABS):
+        loaded(f"further {k}")
+    assert len(tabs) == MOST_TABS
+    assert "a" not in tabs
 
 
 @pytest.mark.parametrize(
