@@ -26,6 +26,9 @@ PARTS = {
 }
 """What carries, its figure and how that is called."""
 
+DIRECTIONS = {"": "", "across": ",\nacross", "axial": ",\naxial"}
+"""Endings of names of forces that are not along the line of action, each with its panel's addition."""
+
 
 def drive_sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     """Draw the maximum mesh force, and what every bearing, shaft and coupling carries at most, over the speed.
@@ -151,9 +154,18 @@ def _rows(results: xr.Dataset, prefix: str) -> list[Row]:
         if f"{prefix}_{part}s" in results.variables:
             readings = {way: read(results, f"{prefix}_{figure}_{way}") for way in WAYS}
             names = tuple(str(name) for name in results[f"{prefix}_{part}s"].values)
-            ways = {way: reading.values for way, reading in readings.items()}
-            rows.append(Row(readings["up"].named(label), names, ways))
+            for ending, direction in DIRECTIONS.items():
+                kept = [k for k, name in enumerate(names) if _ending(name) == ending]
+                ways = {way: reading.values[:, kept] for way, reading in readings.items()}
+                if kept:
+                    shown = tuple(names[k].removesuffix(f" {ending}") for k in kept)
+                    rows.append(Row(readings["up"].named(label + direction), shown, ways))
     return rows
+
+
+def _ending(name: str) -> str:
+    """Direction in a part's name; empty along the line of action."""
+    return next((ending for ending in DIRECTIONS if ending and name.endswith(f" {ending}")), "")
 
 
 class Row(NamedTuple):

@@ -1,7 +1,7 @@
 """What a scene cannot give of a helical pair: one table, of which a row goes when its model takes a helix.
 
 Helical pairs have every want. `KEYS_OF_SPUR` lists keys, each with the wants beside which it is refused: any, those of
-loaded teeth, or those of motion.
+loaded teeth, or single ones.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any
 
 from base import Fault, InputError, shorten
 from flankfilm.scene.traits import given_keys, named
-from flankfilm.scene.wants import MOTIONS, RATED, UNLOADED, WANTS
+from flankfilm.scene.wants import RATED, UNLOADED, WANTS
 
 if TYPE_CHECKING:
     from flankfilm.scene.schema import Scene
 
-__all__ = ["HELIX", "KEYS_OF_SPUR", "faults_of_helix", "refuse_helix", "wants_load"]
+__all__ = ["HELIX", "KEYS_OF_SPUR", "faults_of_helix", "helix_angle", "refuse_helix", "wants_load"]
 
 HELIX = "pair.helix_angle_deg"
 """Key of the helix."""
@@ -103,12 +103,6 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
         'Take "strain"',
         _other_than("strain"),
     ),
-    SpurKey(
-        "shafts.*.segments",
-        "motion on shafts that bend, whose axial forces and tilting moments count",
-        remedy="Leave it out; inertias of motor and load, behind couplings or not, may stay",
-        beside=frozenset(MOTIONS),
-    ),
     SpurKey("pair.tight", "twisted teeth that bear on both sides", "must be false", "Give more backlash"),
     SpurKey("pair.*.blank", "webs of twisted bodies"),
     SpurKey(
@@ -124,7 +118,7 @@ KEYS_OF_SPUR: tuple[SpurKey, ...] = (
 
 def faults_of_helix(raw: Mapping[str, Any], listed: set[str]) -> Iterator[Fault]:
     """Faults of a helical pair for what only spur pairs have; of the unchecked file, and of what it wants."""
-    angle = _helix_angle(raw)
+    angle = helix_angle(raw)
     if not angle:
         return
     lacking = f"at {HELIX} = {angle:g}: helical pairs have no"
@@ -146,7 +140,7 @@ def wants_load(wants: Iterable[str]) -> bool:
     return not LOADED.isdisjoint(wants)
 
 
-def _helix_angle(raw: Mapping[str, Any]) -> float:
+def helix_angle(raw: Mapping[str, Any]) -> float:
     """Helix angle of an unchecked scene [deg]; 0 where there is none, or no number."""
     pair = raw.get("pair")
     angle = pair.get("helix_angle_deg") if isinstance(pair, Mapping) else None

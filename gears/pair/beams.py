@@ -12,6 +12,7 @@ Static stiffness follows the static deflection (Guyan, AIAA J. 3, 1965, 380, doi
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -122,19 +123,35 @@ def rotary(shaft: Shaft, nodes: Array) -> Array:
 
 def torsion(shaft: Shaft, nodes: Array) -> tuple[Array, Array]:
     """Stiffness and inertia of turns at nodes and midway between them, from the left, shape (2 n - 1, 2 n - 1)."""
+    return _bar(shaft, nodes, shaft.material.shear_modulus, lambda segment: 2.0 * segment.second_moment)
+
+
+def tension(shaft: Shaft, nodes: Array) -> tuple[Array, Array]:
+    """Stiffness and mass of axial displacements at the same places as `torsion`, axial springs of bearings included."""
+    stiffness, mass = _bar(shaft, nodes, shaft.material.youngs_modulus, lambda segment: segment.area)
+    for bearing in shaft.bearings:
+        at = 2 * node_at(nodes, bearing.position)
+        stiffness[at, at] += bearing.axial_stiffness
+    return stiffness, mass
+
+
+def _bar(
+    shaft: Shaft, nodes: Array, modulus: float, section: Callable[[ShaftSegment], float]
+) -> tuple[Array, Array]:
+    """Stiffness and inertia of a bar by quadratic elements, of a modulus and of each step's section."""
     size = 2 * len(nodes) - 1
     stiffness, inertia = np.zeros((size, size)), np.zeros((size, size))
     for i, length in enumerate(np.diff(nodes)):
-        segment = shaft.segment_at(0.5 * float(nodes[i] + nodes[i + 1]))
-        polar, at = 2.0 * segment.second_moment, slice(2 * i, 2 * i + 3)
-        stiffness[at, at] += shaft.material.shear_modulus * polar / (3.0 * length) * BAR
-        inertia[at, at] += shaft.material.density * polar * length / 30.0 * BAR_MASS
+        own = section(shaft.segment_at(0.5 * float(nodes[i] + nodes[i + 1])))
+        at = slice(2 * i, 2 * i + 3)
+        stiffness[at, at] += modulus * own / (3.0 * length) * BAR
+        inertia[at, at] += shaft.material.density * own * length / 30.0 * BAR_MASS
     return stiffness, inertia
 
 
 BAR = np.array([[7.0, -8.0, 1.0], [-8.0, 16.0, -8.0], [1.0, -8.0, 7.0]])
 BAR_MASS = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]])
-"""Quadratic bar: stiffness times 3 L / (G J), mass times 30 / (rho J L)."""
+"""Quadratic bar: stiffness times 3 L / (G J), mass times 30 / (rho J L); in tension E and the area for G and J."""
 
 
 def shaft_nodes(shaft: Shaft, elements: int = ELEMENTS) -> Array:

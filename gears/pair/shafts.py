@@ -19,6 +19,7 @@ BEARING = {
     "position": Limit(0.0, 1e4, "m", "count from the left end of the shaft"),
     "stiffness": Limit.above(0.0, 1e13, "N/m", "give the radial stiffness, 1e8 to 1e9 for rolling bearings"),
     "damping": Limit(0.0, 1e9, "N s/m", "give the radial damping, or leave it out"),
+    "axial_stiffness": Limit(0.0, 1e13, "N/m", "0 for a bearing that is free to slide"),
 }
 
 SAME = 1e-9
@@ -54,7 +55,7 @@ class ShaftSegment:
 
 @dataclass(frozen=True)
 class Bearing:
-    """Radial bearing, a spring and a damper to ground.
+    """Bearing: springs to ground across and along the shaft, and a damper across it.
 
     Parameters
     ----------
@@ -64,11 +65,14 @@ class Bearing:
         Radial [N/m].
     damping : float
         Radial [N s/m].
+    axial_stiffness : float
+        [N/m]; one bearing of a shaft holds it against the axial force of helical gears.
     """
 
     position: float  # m
     stiffness: float  # N/m
     damping: float = 0.0  # N s/m
+    axial_stiffness: float = 0.0  # N/m
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import math
-from contextlib import nullcontext
 from fnmatch import fnmatchcase
 
 import numpy as np
@@ -218,7 +217,6 @@ class TestTable:
         ("stiffness.moving_contact", True, True),
         ("operating.friction", 0.05, "space"),
         ("stiffness.plane", "stress", False),
-        ("shafts.wheel.segments", [{"length_mm": 200.0, "diameter_mm": 40.0}], "motion"),
         ("pair.tight", True, False),
         ("pair.pinion.blank", {"rim_thickness_mm": 6.0, "web_thickness_mm": 12.0}, False),
         ("pair.wheel.tip_rounding_um", 20.0, False),
@@ -227,7 +225,7 @@ class TestTable:
     @pytest.mark.parametrize(("path", "value", "always"), GIVEN)
     def test_each_key_is_refused_beside_loaded_teeth(self, path, value, always):
         beside = (
-            (["stiffness"], always not in ("motion", "space")),
+            (["stiffness"], always != "space"),
             (["sweep"], always != "space"),
             (["bearing-forces"], True),
             (["geometry", "closed-forms"], always is True),
@@ -246,9 +244,7 @@ class TestTable:
                 assert "must be" in found[path]
                 assert found[path].endswith("or give pair.helix_angle_deg = 0")
         spur = put(put(raw, HELIX, 0.0), "wants", ["stiffness"])
-        with pytest.raises(InputError) if path == "shafts.wheel.segments" else nullcontext() as caught:
-            validated(spur)
-        assert "helical" not in str(caught.value if caught is not None else "")
+        validated(spur)
 
     @pytest.mark.parametrize(
         "braking", ["power_kW = -12.5", "pinion_torque_Nm = -600", "torques_Nm = [100, -300]"]
@@ -330,6 +326,20 @@ gear_position_mm = 100
         assert check_scene(parse_scene(text))
         assert parse_scene(text).face != parse_scene(SCENE.replace("WANTS", '"stiffness"')).face
         assert "shafts" not in face(parse_scene(text.replace("deg = 20", "deg = 0")))
+
+    def test_motion_on_shafts_that_bend_asks_for_a_bearing_that_holds_them(self):
+        shaft = """[shafts.pinion]
+segments = [{ length_mm = 200, diameter_mm = 40 }]
+bearings = [{ position_mm = 20, stiffness_N_per_m = 4e8 }, { position_mm = 180, stiffness_N_per_m = 4e8 }]
+gear_position_mm = 100
+"""
+        text = SCENE.replace("WANTS", '"sweep"') + MOTION + shaft
+        with pytest.raises(
+            InputError, match=r"shafts\.pinion\.bearings.*along its axis.*axial_stiffness_N_per_m"
+        ):
+            parse_scene(text)
+        assert check_scene(parse_scene(text.replace("180, ", "180, axial_stiffness_N_per_m = 1e8, ")))
+        parse_scene(text.replace("deg = 20", "deg = 0"))
 
     def test_films_of_every_model_are_taken(self):
         for film in (

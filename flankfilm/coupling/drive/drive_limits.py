@@ -8,6 +8,7 @@ import numpy as np
 
 from base import Faults, Limit
 from flankfilm.coupling.drive.train import SIDES
+from gears import Shaft
 
 INERTIA = Limit(0.0, 1e9, "kg m2", "0 where nothing is coupled")
 COUPLING = Limit.above(0.0, 1e15, "N m/rad", "None for a rigid coupling")
@@ -23,6 +24,17 @@ RAYLEIGH = (
     Limit(0.0, 1e9, "1/s", "10 to 100 damps the lowest modes"),
     Limit(0.0, 10.0, "s", "1e-6 to 1e-5 damps the highest modes"),
 )
+
+
+def held_along_axis(shafts: Sequence[Shaft | None]) -> None:
+    """Refuse shafts of a helical pair that nothing holds against its axial force; every fault is listed."""
+    with Faults() as faults:
+        for side, shaft in zip(SIDES, shafts, strict=True):
+            if shaft is not None and not any(bearing.axial_stiffness for bearing in shaft.bearings):
+                allowed = "must hold the shaft along its axis: helical gears push along it"
+                faults.add(
+                    f"shafts.{side}.bearings", "", allowed, "give axial_stiffness of one of the bearings"
+                )
 
 
 def checked_arguments(

@@ -12,6 +12,7 @@ import numpy.typing as npt
 import dynamics
 import gears
 from base import Array
+from flankfilm.coupling.drive.bent_shaft import GearBody
 from flankfilm.coupling.drive.reduction import MeshExcitation, Reduction
 from flankfilm.coupling.drive.train import ShaftDamping, Train
 from flankfilm.coupling.vibration.oscillator import PairOscillator
@@ -27,6 +28,21 @@ def gear_masses(pair: gears.GearPair) -> tuple[float, float]:
         2.0 * inertia / (tooth.reference_radius**2 + tooth.bore_radius**2)
         for inertia, tooth in zip(pair.moments_of_inertia, pair.teeth_profiles, strict=True)
     )
+    return first, second
+
+
+def gear_bodies(pair: gears.GearPair, inertias: tuple[float, float]) -> tuple[GearBody, GearBody]:
+    """Gears as rigid bodies, with moments of inertia about their axes that hold what is fixed to them [kg m2]."""
+    pitch_point, lean = pair.points.C, pair.helix.base_tangent
+    levers = pitch_point, pitch_point - pair.line_of_action
+    first, second = (
+        GearBody(
+            radius, mass, inertia, 0.5 * alone + mass * width**2 / 12.0, 0.5 * pair.face_width, lean, lever
+        )
+        for radius, mass, inertia, alone, width, lever in zip(
+            pair.base_radii, gear_masses(pair), inertias, pair.moments_of_inertia, pair.face_widths, levers, strict=True
+        )
+    )  # fmt: skip
     return first, second
 
 

@@ -1,4 +1,4 @@
-"""Half of a drive train: gear, shaft, bearings, coupling, and motor or load, as matrices along the line of action."""
+"""Half of a drive train: gear, shaft, bearings, coupling, and motor or load, as matrices."""
 
 from __future__ import annotations
 
@@ -9,31 +9,8 @@ import numpy as np
 
 import gears
 from base import Array
-from gears.pair.beams import ReducedShaft, bending, halved, node_at, reduced, rotary, shaft_nodes, torsion
-
-
-class GearBody(NamedTuple):
-    """Gear as a rigid body.
-
-    Attributes
-    ----------
-    radius : float
-        Of the base circle [m].
-    mass : float
-        [kg]
-    inertia : float
-        About the axis, with what is fixed to it [kg m2].
-    tilting : float
-        About a diameter through the middle of the face [kg m2].
-    half_face : float
-        Half the face width [m]; measures tilts as displacements.
-    """
-
-    radius: float
-    mass: float
-    inertia: float
-    tilting: float
-    half_face: float
+from flankfilm.coupling.drive.bent_shaft import GearBody, bent_shaft
+from gears.pair.beams import ReducedShaft, halved, node_at, reduced, shaft_nodes, torsion
 
 
 class Carried(NamedTuple):
@@ -46,14 +23,14 @@ class Carried(NamedTuple):
 
 
 class Side(NamedTuple):
-    """Half of the train: turns times base radius, then deflections along the line of action and slopes of the shaft.
+    """Half of the train: turns times base radius, then what the shaft has besides (`BentShaft`).
 
     Attributes
     ----------
     mass, stiffness, damping : ndarray, shape (n, n)
         Damping is that of the bearings' dampers.
     mesh, tilt : ndarray, shape (n,)
-        Approach of the gear's flank at mid-face, and tilt of the gear [rad], by the freedoms.
+        Approach of the gear's flank at mid-face, and tilt of the gear in the plane of action [rad], by the freedoms.
     free : ndarray, shape (n,)
         Rotation of the whole side, which nothing but the mesh holds.
     torque : int
@@ -63,7 +40,8 @@ class Side(NamedTuple):
     carried : tuple of Carried
     shaft : ReducedShaft or None
     spin : ndarray, shape (n, n)
-        Polar inertia of shaft and gear as it meets slopes: gyroscopic moments over the speed of turning.
+        Polar inertia of shaft and gear as it meets slopes: gyroscopic moments over the speed of turning. They lead
+        from the plane of action to the one across it; with a helical gear both are in it, and it is skew.
     """
 
     mass: Array
@@ -106,27 +84,22 @@ def drive_side(
     nodes = np.zeros(0) if shaft is None else shaft_nodes(shaft)
     nodes = halved(nodes) if refined and shaft is not None else nodes
     twist, inertia = (np.zeros((1, 1)),) * 2 if shaft is None else torsion(shaft, nodes)
-    bent = (np.zeros((0, 0)),) * 3 if shaft is None else bending(shaft, nodes)
     at_gear, at_end = (0, 0) if shaft is None else (2 * node_at(nodes, x) for x in _places(shaft))
     turns = len(twist) + (coupling is not None)
-    n = turns + len(bent[0])
+    bent = None if shaft is None else bent_shaft(shaft, nodes, gear, way)
+    n = turns + (0 if bent is None else len(bent.mesh))
     k, m, c, spin = (np.zeros((n, n)) for _ in range(4))
     k[: len(twist), : len(twist)], m[: len(twist), : len(twist)] = twist, inertia
     m[at_gear, at_gear] += gear.inertia
     torque = at_end if coupling is None else turns - 1
     m[torque, torque] += end
     carried, points = list[Carried](), {"gear": _unit(n, at_gear)}
-    if shaft is not None:
-        first = turns + at_gear
-        for whole, part in zip((k, m, c), bent, strict=True):
+    if bent is not None:
+        for whole, part in zip((k, m, c, spin), bent[:4], strict=True):
             whole[turns:, turns:] = part
-        m[first, first] += gear.mass
-        m[first + 1, first + 1] += gear.tilting
-        spin[turns:, turns:] = 2.0 * rotary(shaft, nodes)
-        spin[first + 1, first + 1] += gear.inertia
-        for i, bearing in enumerate(shaft.bearings):
-            row = -way * _unit(n, turns + 2 * node_at(nodes, bearing.position))
-            carried.append(Carried(f"bearing {i + 1}", "N", bearing.stiffness * row, bearing.damping * row))
+        for name, firm, damping, row in bent.bearings:
+            moved = np.pad(row, (turns, 0))
+            carried.append(Carried(name, "N", firm * moved, damping * moved))
     felt = None if shaft is None else reduced(shaft)
     springs = {}
     if felt is not None and not math.isinf(felt.torsion_stiffness):
@@ -144,9 +117,9 @@ def drive_side(
     m[:turns, :turns] /= gear.radius**2
     mesh, tilt, free = _unit(n, at_gear), np.zeros(n), np.zeros(n)
     free[:turns] = 1.0
-    if shaft is not None:
-        mesh[first] = tilt[first + 1] = 1.0
-        points["deflection"], points["tilt"] = _unit(n, first), gear.half_face * tilt
+    if bent is not None:
+        mesh[turns:], tilt[turns:] = bent.mesh, bent.tilt
+        points |= {name: np.pad(row, (turns, 0)) for name, row in bent.points.items()}
     return Side(m, k, c, mesh, tilt, free, torque, points, tuple(carried), felt, spin)
 
 

@@ -13,16 +13,16 @@ import dynamics
 import gears
 from base import Array, Cost, Stopwatch, described, part, quantity, record
 from base.results import EXACT, ITSELF
-from flankfilm.coupling.drive.drive_limits import DAMPING_BAND, checked_arguments
+from flankfilm.coupling.drive.drive_limits import DAMPING_BAND, checked_arguments, held_along_axis
 from flankfilm.coupling.drive.drive_reduced import (
-    gear_masses,
+    gear_bodies,
     mesh_excitation,
     mesh_frequencies,
     reduced_change,
     reduced_oscillator,
     reduced_outputs,
 )
-from flankfilm.coupling.drive.drive_side import GearBody, drive_side
+from flankfilm.coupling.drive.drive_side import drive_side
 from flankfilm.coupling.drive.gyroscopic import gyroscopic_change
 from flankfilm.coupling.drive.reduction import MOST_MODES, reduced_train
 from flankfilm.coupling.drive.tilting_mesh import change_over_cycle
@@ -30,7 +30,6 @@ from flankfilm.coupling.drive.train import ShaftDamping, Train, joined, lowest_m
 from flankfilm.coupling.vibration.oscillator import PairOscillator, pair_oscillator
 from flankfilm.coupling.vibration.part_loads import DriveOutput
 from gears.pair.beams import ReducedShaft
-from gears.pair.spur_only import require_spur
 
 if TYPE_CHECKING:
     from flankfilm.coupling.mesh.mesh_curves import MeshCycle
@@ -222,7 +221,8 @@ def pair_drive(
     towards the wheel. Shafts are beams and torsion bars of many elements (`gears.pair.beams`), gears are rigid bodies
     that tilt with them; the train is reduced to modes (`flankfilm.coupling.drive.reduction`). The back flanks press
     along the other line of action; here they press along the same. Free rotation of the train is taken out. Helical
-    pairs twist alone: shafts that bend are refused, whose gears axial forces tilt.
+    pairs bend their shafts across the line of action too, and pull them along the axis (`bent_shaft`); one bearing of
+    each must hold against that.
 
     Parameters
     ----------
@@ -232,7 +232,7 @@ def pair_drive(
     torque, speed : float
         Of the pinion [N m], [rad/s].
     shafts : (Shaft or None, Shaft or None)
-        Of pinion and wheel; None: rigid in rigid bearings, as both must be of a helical pair.
+        Of pinion and wheel; None: rigid in rigid bearings.
     end_inertias : (float, float)
         Of motor and load, or what else is coupled at the shafts' torque positions [kg m2].
     couplings : (float or None, float or None)
@@ -286,8 +286,8 @@ def pair_drive(
     True
     """
     watch = Stopwatch()
-    if shafts != (None, None):
-        require_spur(pair, "shafts that bend, with a mesh that presses across them alone")
+    if pair.helix_angle:
+        held_along_axis(shafts)
     ratios = checked_arguments(
         end_inertias, couplings, shaft_damping_ratio, rayleigh, reduction_tolerance, damping_band, tilt_stiffness,
         load_centre,
@@ -300,12 +300,7 @@ def pair_drive(
     )  # fmt: skip
     scales = rigid.scales
     assert scales is not None  # a pair has them
-    gears_of = [
-        GearBody(radius, mass, inertia, 0.5 * alone + mass * width**2 / 12.0, 0.5 * pair.face_width)
-        for radius, mass, inertia, alone, width in zip(
-            pair.base_radii, gear_masses(pair), rigid.inertias, pair.moments_of_inertia, pair.face_widths, strict=True
-        )
-    ]  # fmt: skip
+    gears_of = gear_bodies(pair, rigid.inertias)
 
     def train_of(refined: bool, tilt: float) -> Train:
         sides = [

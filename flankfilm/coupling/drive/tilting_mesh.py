@@ -12,10 +12,11 @@ from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 
 
 def tilting_mesh(cycle: MeshCycle | None) -> dict[str, Any]:
-    r"""Arguments of `pair_drive` about tilt, of a mesh cycle on shafts with cells over the face; none of any other.
+    r"""Arguments of `pair_drive` about tilt, of a mesh cycle on shafts with cells over the face or along lines.
 
     With the mean matrix M between (approach, tilt) and (force, moment) about mid-face, the force acts at
-    :math:`z = M_{10} / M_{00}`, and :math:`M_{11} - M_{10}^2 / M_{00}` resists tilt about that place.
+    :math:`z = M_{10} / M_{00}`, and :math:`M_{11} - M_{10}^2 / M_{00}` resists tilt about that place. Along lines of
+    contact z has :math:`(\rho_1 - \rho_{1C}) \tan\beta_b` besides. There are none of any other cycle.
 
     Parameters
     ----------
@@ -38,6 +39,8 @@ def tilting_mesh(cycle: MeshCycle | None) -> dict[str, Any]:
     (True, True)
     """
     matrix = None if cycle is None or cycle.face is None else cycle.face.mesh_matrix
+    if cycle is not None and cycle.lines is not None and any(cycle.lines.setting.shafts):
+        matrix = cycle.lines.tilting[0]
     if matrix is None:
         return {}
     resists, place = resistance_and_place(matrix.mean(axis=0))

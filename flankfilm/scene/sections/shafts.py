@@ -38,13 +38,19 @@ class SegmentSection(Section):
 
 
 class BearingSection(Section):
-    """Radial bearing: a spring to the housing, and a damper."""
+    """Bearing: springs to the housing across and along the shaft, and a damper across it."""
 
     ground = BEARING
 
     position_mm: float = key("place, from the left end of the shaft", example=20)
     stiffness_N_per_m: float = key("radial stiffness, 1e8 to 1e9 for rolling bearings", example=4e8)
     damping_N_s_per_m: float = key("radial damping", 0.0)
+    axial_stiffness_N_per_m: float = key(
+        "axial stiffness, 0 for a bearing that is free to slide; for the motion of helical pairs one bearing of each "
+        "shaft must have it",
+        0.0,
+        such_as=1e8,
+    )
 
 
 Segments = Annotated[tuple[SegmentSection, ...], Field(strict=False)]

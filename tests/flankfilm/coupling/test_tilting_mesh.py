@@ -17,7 +17,8 @@ from flankfilm.coupling import (
     pair_drive,
     tilting_mesh,
 )
-from flankfilm.coupling.drive.drive_side import GearBody, drive_side
+from flankfilm.coupling.drive.bent_shaft import GearBody
+from flankfilm.coupling.drive.drive_side import drive_side
 from flankfilm.coupling.drive.tilting_mesh import resistance_and_place
 from flankfilm.coupling.drive.train import joined
 from gears import Bearing, Gear, GearPair, Shaft, ShaftSegment
