@@ -45,3 +45,34 @@ def test_motor_and_load_twist_with_the_pair(tmp_path):
     assert not found.failures
     torque = found.dataset["drive_sweep_shaft_torque_up"]
     assert float(torque.min()) > 600.0
+
+
+def test_shafts_that_bend_carry_the_mesh_in_all_directions(tmp_path):
+    shaft = """
+[shafts.pinion]
+segments = [{ length_mm = 200, diameter_mm = 33.5 }]
+bearings = [
+  { position_mm = 20, stiffness_N_per_m = 3e8 },
+  { position_mm = 180, stiffness_N_per_m = 3e8, axial_stiffness_N_per_m = 1.5e8 },
+]
+gear_position_mm = 90
+"""
+    found = run_scene(parse_scene(text(shaft)), tmp_path, use_cache=False)
+    assert not found.failures
+    data = found.dataset
+    mean = dict(
+        zip(
+            data["drive_sweep_bearings"].values,
+            data["drive_sweep_bearing_force_mean_up"].values[0],
+            strict=True,
+        )
+    )
+    force, lean = 600 / R_B1, math.tan(BETA_B)
+    assert mean["pinion bearing 1"] + mean["pinion bearing 2"] == pytest.approx(force, rel=1e-6)
+    assert mean["pinion bearing 2 axial"] == pytest.approx(force * lean, rel=1e-6)
+    across = [mean[f"pinion bearing {k} across"] for k in (1, 2)]
+    assert [abs(one) for one in across] == pytest.approx(2 * [force * lean * R_B1 / 0.16], rel=1e-6)
+    assert sum(across) == pytest.approx(0.0, abs=1e-6 * force)
+    assert [f"pinion {name}" in data["drive_freedoms"].values for name in ("deflection across", "axial")] == [
+        True
+    ] * 2
