@@ -138,13 +138,13 @@ def local_cubic(known: Array, wanted: Array, points: int = 6, degree: int = 3) -
     points = min(points, len(known))
     degree = min(degree, points - 1)
     first = np.clip(np.searchsorted(known, wanted) - points // 2, 0, len(known) - points)
+    window = first[:, None] + np.arange(points)
+    near = known[window]
+    scale = near[:, -1:] - near[:, :1]
+    # value at x of the least-squares polynomial in (place - x): its constant term
+    powers = np.polynomial.polynomial.polyvander((near - wanted[:, None]) / scale, degree)
     weights = np.zeros((len(wanted), len(known)))
-    for row, (start, x) in enumerate(zip(first, wanted, strict=True)):
-        near = known[start : start + points]
-        scale = near[-1] - near[0]
-        # value at x of the least-squares polynomial in (place - x): its constant term
-        powers = np.vander((near - x) / scale, degree + 1, increasing=True)
-        weights[row, start : start + points] = np.linalg.pinv(powers)[0]
+    np.put_along_axis(weights, window, np.linalg.pinv(powers)[:, 0], axis=1)
     return weights
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from base import record
 from fem.cycle.result import MeshCycle
 from fem.elasticity import flamant
 from fem.elasticity.line_load import flank_points
@@ -25,7 +26,7 @@ from fem.pair.pair_compliance import PairCompliance
 if TYPE_CHECKING:
     from gears import ToothProfile
 
-__all__ = ["corner_contact", "near_corner"]
+__all__ = ["CornerPressure", "corner_contact", "corner_pressure"]
 
 NEAR_CORNER = 1.5
 """Half-widths from a sharp corner within which a contact's pressure is that of strips."""
@@ -35,7 +36,57 @@ UNBOUNDED, LEAST_UNRESOLVED = 1.2, 0.01
 [modules] up to which they are."""
 
 
-def near_corner(
+@record
+class CornerPressure:
+    """Pressure that a corner makes or cuts off, the same on both gears.
+
+    Attributes
+    ----------
+    corner : {0, 1}
+        The gear whose corner is near.
+    pressure : TipPressure
+    unresolved : float
+        Distance from the corner up to which stresses are only indicative [m].
+    """
+
+    corner: int
+    pressure: TipPressure
+    unresolved: float
+
+
+def corner_pressure(
+    cycle: MeshCycle, row: int, column: int, half_width: float, bodies: PairCompliance
+) -> CornerPressure | None:
+    """Pressure of a contact by the strips that bear.
+
+    Parameters
+    ----------
+    cycle : MeshCycle
+    row, column : int
+        Of the cycle.
+    half_width : float
+        Of the contact's pressure, or one that is assumed [m].
+    bodies : PairCompliance
+
+    Returns
+    -------
+    CornerPressure or None
+        None where no corner presses or cuts off the pressure, or its law is another.
+    """
+    corner = _near_corner(cycle, row, column, half_width, bodies)
+    if corner is None:
+        return None
+    pair = bodies.pair
+    place = float(pair.points.A + (cycle.position[row] + cycle.pair_offset[column]) * pair.base_pitch)
+    line_load = float(cycle.forces[row, column]) / pair.face_width
+    pressure = tip_pressure(bodies, corner, place, line_load)
+    radius = pair.path_at(np.clip(place, pair.points.A, pair.points.E)).radius
+    hertz = float(flamant.hertz_half_width(line_load, radius, reduced_modulus(pair, cycle.plane))[0])
+    unresolved = _unresolved(pressure, 2 * line_load / (np.pi * hertz), pair.module)
+    return CornerPressure(corner, pressure, unresolved)
+
+
+def _near_corner(
     cycle: MeshCycle, row: int, column: int, half_width: float, bodies: PairCompliance
 ) -> int | None:
     """Gear whose corner presses or cuts off the pressure; None where it does neither, or its law is another."""
@@ -48,33 +99,23 @@ def near_corner(
 
 
 def corner_contact(
-    cycle: MeshCycle, row: int, column: int, bodies: PairCompliance, ring: Ring, gear: int, corner: int
+    near: CornerPressure, tooth: int, gear: int, ring: Ring, bodies: PairCompliance
 ) -> Contact:
-    """Contact on one gear, by the strips that bear.
+    """Contact on one gear.
 
     Parameters
     ----------
-    cycle : MeshCycle
-    row, column : int
-        Of the cycle.
-    bodies : PairCompliance
+    near : CornerPressure
+    tooth : int
+        Of the gear, counted anticlockwise.
+    gear : {0, 1}
     ring : Ring
         Of the gear.
-    gear, corner : {0, 1}
-        The gear, and the one whose corner is near.
+    bodies : PairCompliance
     """
-    pair, offset = bodies.pair, int(cycle.pair_offset[column])
-    place = float(pair.points.A + (cycle.position[row] + offset) * pair.base_pitch)
-    line_load = float(cycle.forces[row, column]) / pair.face_width
-    pressure = tip_pressure(bodies, corner, place, line_load)
-    profile = held_profiles(pair, bodies.supports)[gear]
-    of = _on_corner if gear == corner else _on_flank
-    contact = of(offset if gear == 0 else -offset, ring, profile, bodies, pressure)
-    radius = pair.path_at(np.clip(place, pair.points.A, pair.points.E)).radius
-    half_width = float(flamant.hertz_half_width(line_load, radius, reduced_modulus(pair, cycle.plane))[0])
-    return replace(
-        contact, unresolved=_unresolved(pressure, 2 * line_load / (np.pi * half_width), pair.module)
-    )
+    of = _on_corner if gear == near.corner else _on_flank
+    contact = of(tooth, ring, held_profiles(bodies.pair, bodies.supports)[gear], bodies, near.pressure)
+    return replace(contact, unresolved=near.unresolved)
 
 
 def _unresolved(pressure: TipPressure, hertz: float, module: float) -> float:

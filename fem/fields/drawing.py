@@ -12,18 +12,22 @@ import numpy as np
 
 from base import Array, Integers, record
 from fem.elasticity import flamant
-from fem.elasticity.line_load import line_loads
+from fem.elasticity.line_load import joined, line_loads
 from fem.elasticity.recovery import NodalStress, nodal_stress
 from fem.elasticity.ring import Ring
 from fem.fields.near_field import Contact, near_field
 from fem.fields.picture import Picture, picture_of
 from fem.fields.tip_sector import carried
+from fem.fields.turn import Turn
 from meshes import SectorMesh
 
 __all__ = ["DrawnSector", "GearDrawing", "gear_drawing"]
 
 FOCUS = 0.35
 """Size of the cells at a contact, in half-widths of its pressure."""
+
+SIDES = "right", "left"
+"""Of a sector: its cuts."""
 
 
 @record
@@ -38,8 +42,8 @@ class DrawnSector:
         [m]
     displacement : (n, 2) array
         [m]
-    stress : (n, 2, 2) array
-        In the plane [Pa].
+    stress : (n, 3) array
+        sigma_xx, sigma_yy, tau_xy [Pa].
     contact : Contact or None
     """
 
@@ -61,45 +65,52 @@ class GearDrawing:
     recovery : NodalStress
     picture : Picture
         Of a sector without contact: coarse.
+    points : (p, 2) array
+        Of that picture [m].
     by_cut : (2n, cut) array
         Displacements of all nodes of a sector by those of its cuts (Cartesian).
     moved_by_cut, stress_by_cut : (2p, cut), (3p, cut) arrays
         The same for displacement and stress at the picture's points.
     seam : (3 side, cut) arrays, two
         The same for the stress at the nodes of the right and of the left cut.
+    from_seam : (p, side) arrays, two
+        Values at the picture's points by those at the nodes of the right and of the left cut.
     """
 
     ring: Ring
     recovery: NodalStress
     picture: Picture
+    points: Array
     by_cut: Array
     moved_by_cut: Array
     stress_by_cut: Array
     seam: tuple[Array, Array]
+    from_seam: tuple[Array, Array]
 
     def sectors(self, contacts: Sequence[Contact]) -> list[DrawnSector]:
         """Fields of all sectors, one tooth after the other."""
         ring, z = self.ring, self.ring.mesh.teeth
+        size = np.array([contact.line_load for contact in contacts])
+        loads = line_loads(ring, joined(*(contact.at for contact in contacts)))
+        forces, own = loads.cut_force * size, loads.own_inner * size
         cuts, loaded = np.zeros((z, len(ring.cut))), {}
-        for contact in contacts:
-            loads = line_loads(ring, contact.at)
-            force = loads.cut_force[:, 0] * contact.line_load
-            cuts += np.roll(ring.all_interfaces(force), contact.tooth, axis=0)
-            loaded[contact.tooth % z] = contact, loads.own_inner[:, 0] * contact.line_load
+        for number, contact in enumerate(contacts):
+            cuts += np.roll(ring.all_interfaces(forces[:, number]), contact.tooth, axis=0)
+            loaded[contact.tooth % z] = contact, own[:, number]
         cuts = cuts @ ring.polar.T
+        nodal = {k: self._loaded(cuts[k], *on_it) for k, on_it in loaded.items()}
+        jumps = self._jumps(cuts, nodal, {k: on_it[0] for k, on_it in loaded.items()})
         moved = (cuts @ self.moved_by_cut.T).reshape(z, -1, 2)
         stress = (cuts @ self.stress_by_cut.T).reshape(z, -1, 3)
-        nodal = {k: self._loaded(cuts[k], *own) for k, own in loaded.items()}
-        jumps = self._jumps(cuts, nodal, {k: own[0] for k, own in loaded.items()})
-        coarse = self.picture.interpolate(ring.mesh.points)
+        stress += sum(spread @ jump for spread, jump in zip(self.from_seam, jumps, strict=True))
         drawn = []
         for k in range(-(z // 2), z - z // 2):
-            if k % z in nodal:
-                drawn.append(self._with_contact(k, loaded[k % z][0], *nodal[k % z], jumps[k % z]))
-                continue
-            corrected = stress[k % z] + self._spread(jumps[k % z], self.picture, ring.mesh)
-            tensor = corrected[:, [[0, 2], [2, 1]]]
-            drawn.append(DrawnSector(k, self.picture, coarse, moved[k % z], tensor, None))
+            i = k % z
+            if i in nodal:
+                jump = jumps[0][i], jumps[1][i]
+                drawn.append(self._with_contact(k, loaded[i][0], *nodal[i], jump))
+            else:
+                drawn.append(DrawnSector(k, self.picture, self.points, moved[i], stress[i], None))
         return drawn
 
     def _loaded(self, cuts: Array, contact: Contact, own_inner: Array) -> tuple[Array, Array]:
@@ -120,37 +131,21 @@ class GearDrawing:
 
     def _jumps(
         self, cuts: Array, nodal: dict[int, tuple[Array, Array]], contacts: dict[int, Contact]
-    ) -> list[tuple[Array, Array]]:
-        """What brings the stress at a sector's right and left cut to the mean of both sides, (z) x (side, 3)."""
+    ) -> tuple[Array, Array]:
+        """What brings the stress at the sectors' right and left cuts to the mean of both sides, (z, side, 3) each."""
         ring, z = self.ring, self.ring.mesh.teeth
-        sides = [ring.mesh.side_nodes(side) for side in ("right", "left")]
-        there = [(cuts @ matrix.T).reshape(z, -1, 3) for matrix in self.seam]
+        right, left = ((cuts @ matrix.T).reshape(z, -1, 3) for matrix in self.seam)
         for k, (_, stress) in nodal.items():
-            for own, nodes, side in zip(there, sides, ("right", "left"), strict=True):
-                sector = contacts[k].sector
+            for there, side in ((right, "right"), (left, "left")):
+                sector, nodes = contacts[k].sector, ring.mesh.side_nodes(side)
                 if sector is not None:
-                    own[k] = carried(stress, sector.mesh, ring.mesh, side)
+                    there[k] = carried(stress, sector.mesh, ring.mesh, side)
                     continue
                 _, near = near_field(ring.mesh.points[nodes], contacts[k], ring.law, ring.mesh.module)
-                own[k] = stress[nodes] + near[:, [0, 1, 0], [0, 1, 1]]
-        c, s = np.cos(2 * np.pi / z), np.sin(2 * np.pi / z)
-        turn = np.array([[c, -s], [s, c]])  # from a tooth's frame to that of the tooth on its right
-        right, left = there[0][:, :, [[0, 2], [2, 1]]], there[1][:, :, [[0, 2], [2, 1]]]
-        ahead = turn @ np.roll(right, -1, axis=0) @ turn.T
-        half = 0.5 * (ahead - left)
-        back = -np.roll(turn.T @ half @ turn, 1, axis=0)
-        pick = (slice(None), [0, 1, 0], [0, 1, 1])
-        return [(back[k][pick], half[k][pick]) for k in range(z)]
-
-    def _spread(self, jumps: tuple[Array, Array], picture: Picture, mesh: SectorMesh) -> Array:
-        """Correction (points, 3) of a picture by corrections at the cuts' nodes, on the ring's mesh or another."""
-        own = self.ring.mesh
-        values = np.zeros((len(mesh.points), 3))
-        for side, jump in zip(("right", "left"), jumps, strict=True):
-            known = np.zeros((len(own.points), 3))
-            known[own.side_nodes(side)] = jump
-            values[mesh.side_nodes(side)] = jump if mesh is own else carried(known, own, mesh, side)
-        return picture.interpolate(values)
+                there[k] = stress[nodes] + near
+        turn = Turn.by(2 * np.pi / z)  # from a tooth's frame to that of the tooth on its right
+        half = 0.5 * (turn.stresses(np.roll(right, -1, axis=0)) - left)
+        return -np.roll(turn.back().stresses(half), 1, axis=0), half
 
     def _with_contact(
         self, tooth: int, contact: Contact, moved: Array, stress: Array, jumps: tuple[Array, Array]
@@ -159,12 +154,21 @@ class GearDrawing:
         mesh = ring if sector is None else sector.mesh
         picture = picture_of(mesh, (contact.at.points[0], FOCUS * contact.half_width))
         points, displacement = picture.interpolate(mesh.points), picture.interpolate(moved)
-        components = picture.interpolate(stress) + self._spread(jumps, picture, mesh)
-        tensor = components[:, [[0, 2], [2, 1]]]
+        stress = picture.interpolate(stress + _along_the_cuts(jumps, ring, mesh))
         if sector is None:
             near_moved, near_stress = near_field(points, contact, self.ring.law, ring.module)
-            displacement, tensor = displacement + near_moved, tensor + near_stress
-        return DrawnSector(tooth, picture, points, displacement, tensor, contact)
+            displacement, stress = displacement + near_moved, stress + near_stress
+        return DrawnSector(tooth, picture, points, displacement, stress, contact)
+
+
+def _along_the_cuts(jumps: tuple[Array, Array], known: SectorMesh, asked: SectorMesh) -> Array:
+    """Corrections (n, 3) at all nodes of a mesh by those at the cuts' nodes of the same one or another."""
+    values = np.zeros((len(asked.points), 3))
+    for side, jump in zip(SIDES, jumps, strict=True):
+        there = np.zeros((len(known.points), 3))
+        there[known.side_nodes(side)] = jump
+        values[asked.side_nodes(side)] = jump if asked is known else carried(there, known, asked, side)
+    return values
 
 
 def gear_drawing(ring: Ring) -> GearDrawing:
@@ -176,12 +180,20 @@ def gear_drawing(ring: Ring) -> GearDrawing:
     recovery = nodal_stress(mesh, ring.law)
     picture = picture_of(mesh)
     cuts = by_cut.shape[1]
+    stress_by_cut = (recovery.matrix @ by_cut).reshape(-1, 3, cuts)
+    right, left = (mesh.side_nodes(side) for side in SIDES)
 
-    def stress_at(nodes: Integers) -> Array:
-        rows = (3 * nodes[:, None] + np.arange(3)).ravel()
-        return np.asarray(recovery.matrix[rows] @ by_cut)
+    def from_nodes(nodes: Integers) -> Array:
+        return picture.interpolate((np.arange(len(mesh.points))[:, None] == nodes).astype(float))
 
-    seam = stress_at(mesh.side_nodes("right")), stress_at(mesh.side_nodes("left"))
-    moved = picture.interpolate(by_cut.reshape(-1, 2, cuts)).reshape(-1, cuts)
-    stress = picture.interpolate((recovery.matrix @ by_cut).reshape(-1, 3, cuts)).reshape(-1, cuts)
-    return GearDrawing(ring, recovery, picture, by_cut, moved, stress, seam)
+    return GearDrawing(
+        ring,
+        recovery,
+        picture,
+        picture.interpolate(mesh.points),
+        by_cut,
+        picture.interpolate(by_cut.reshape(-1, 2, cuts)).reshape(-1, cuts),
+        picture.interpolate(stress_by_cut).reshape(-1, cuts),
+        (stress_by_cut[right].reshape(-1, cuts), stress_by_cut[left].reshape(-1, cuts)),
+        (from_nodes(right), from_nodes(left)),
+    )

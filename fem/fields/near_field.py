@@ -57,7 +57,7 @@ class Contact:
 
 
 def near_field(points: Array, contact: Contact, law: PlaneElasticity, length: float) -> tuple[Array, Array]:
-    """Displacement (n, 2) [m] and stress (n, 2, 2) [Pa] of the contact itself, in the tooth's frame."""
+    """Displacement (n, 2) [m] and xx, yy, xy of the stress (n, 3) [Pa] by the contact itself, in the tooth's frame."""
     load, inward = contact.at.points[0], contact.at.inward[0]
     a, w = contact.half_width, contact.line_load
     r = np.linalg.norm(points - load, axis=1)
@@ -79,7 +79,7 @@ def near_field(points: Array, contact: Contact, law: PlaneElasticity, length: fl
     spread = total * _spread(points[close], load, inward, sources, law, length)
     displacement[close] = (1 - share) * displacement[close] + share * spread
     stress[close] = (1 - share[..., None]) * stress[close] + share[..., None] * pressed
-    return displacement, stress
+    return displacement, stress[:, [0, 1, 0], [0, 1, 1]]
 
 
 def _hertz_sources(half_width: float, count: int = 24) -> Array:

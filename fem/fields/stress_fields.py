@@ -7,7 +7,7 @@ too, and on free edges follow from the tangential strain (``fem.elasticity.recov
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -22,10 +22,11 @@ from fem.elasticity.line_load import flank_points
 from fem.elasticity.plane_elasticity import PlaneElasticity, reduced_modulus
 from fem.elasticity.ring import Ring, mesh_and_factor
 from fem.elasticity.support import held_profiles
-from fem.fields.corner_contacts import corner_contact, near_corner
+from fem.fields.corner_contacts import CornerPressure, corner_contact, corner_pressure
 from fem.fields.drawing import DrawnSector, GearDrawing, gear_drawing
 from fem.fields.loaded_gears import frames
 from fem.fields.near_field import Contact
+from fem.fields.turn import Turn
 from fem.pair.compliance import compliance as _compliance
 from fem.pair.pair_compliance import PairCompliance
 
@@ -149,12 +150,12 @@ def loaded_fields(
     bodies = compliance or _compliance(pair, plane=cycle.plane)
     drawn = drawings or draw_gears(pair, bodies)
     turns = frames(pair, float(pair.points.A + cycle.loaded_position[row] * pair.base_pitch))
-    fields = []
+    loads, fields = _loads(pair, cycle, row, bodies), []
     for gear, (drawing, (angle, centre)) in enumerate(zip(drawn, turns, strict=True)):
-        contacts = _contacts(pair, cycle, row, drawing.ring, gear, bodies)
+        places = cycle.flank_rho[gear][row]
+        contacts = [_contact(load, gear, float(places[load.column]), drawing.ring, bodies) for load in loads]
         sectors = drawing.sectors(contacts)
-        parts = [_Part.of(sector, angle, centre, pair.teeth_profiles[gear]) for sector in sectors]
-        fields.append(_joined(parts, drawing.ring.law))
+        fields.append(_placed(sectors, angle, centre, pair.teeth_profiles[gear], drawing.ring.law))
     return fields[0], fields[1]
 
 
@@ -167,99 +168,87 @@ def contact_half_width(pair: GearPair, cycle: MeshCycle, row: int, column: int) 
     return float(flamant.hertz_half_width(line_load, radius, reduced_modulus(pair, cycle.plane))[0])
 
 
-def _contacts(
-    pair: GearPair, cycle: MeshCycle, row: int, ring: Ring, gear: int, bodies: PairCompliance
-) -> list[Contact]:
-    """List the loads on one gear; at a tip corner those of the strips that bear."""
-    contacts = []
-    flexible = (bodies.pinion, bodies.wheel)[gear]
-    for column in np.flatnonzero(cycle.forces[row] > 0):
-        rho = float(cycle.flank_rho[gear][row, column])
-        offset = int(cycle.pair_offset[column])
-        tooth, line_load = (
-            offset if gear == 0 else -offset,
-            float(cycle.forces[row, column]) / pair.face_width,
-        )
-        at = flank_points(ring.mesh, np.array([min(rho, flexible.rho_range[1])]))
-        half_width, edge = contact_half_width(pair, cycle, row, int(column)), bool(cycle.edge[row, column])
-        corner = near_corner(cycle, row, int(column), half_width, bodies)
-        if corner is None:
-            unresolved = INDICATIVE * pair.module if edge else 0.0
-            contacts.append(Contact(tooth, at, line_load, half_width, unresolved=unresolved))
-        else:
-            contacts.append(corner_contact(cycle, row, int(column), bodies, ring, gear, corner))
-    return contacts
-
-
 @record
-class _Part:
-    """One sector in the common frame."""
+class _Load:
+    """One loaded pair of teeth, as both gears have it."""
 
-    points: Array
-    cells: Integers
-    tooth: Integers
-    region: Integers
-    indicative: Integers
-    moved: Array
-    stress: Array
-
-    @classmethod
-    def of(cls, sector: DrawnSector, angle: float, centre: Array, profile: ToothProfile) -> _Part:
-        """Turn a sector to its place and number its cells."""
-        whole = angle + sector.tooth * profile.pitch_angle
-        c, s = np.cos(whole), np.sin(whole)
-        turn = np.array([[c, -s], [s, c]])
-        cells = sector.picture.cells
-        middle = sector.points[cells[:, :3]].mean(axis=1)
-        circles = np.array([profile.root_radius, profile.form_radius])
-        near = np.zeros(len(cells), dtype=np.int64)
-        if sector.contact is not None:
-            away = np.linalg.norm(middle - sector.contact.sharp, axis=1)
-            near[away < sector.contact.unresolved] = 1
-        return cls(
-            sector.points @ turn.T + centre,
-            cells,
-            np.full(len(cells), sector.tooth),
-            np.searchsorted(circles, np.linalg.norm(middle, axis=1)),
-            near,
-            sector.displacement @ turn.T,
-            turn @ sector.stress @ turn.T,
-        )
+    column: int
+    ahead: int
+    line_load: float
+    half_width: float
+    edge: bool
+    near: CornerPressure | None
 
 
-def _von_mises(plane: Array, law: PlaneElasticity) -> Array:
-    xx, yy, xy = plane[:, 0, 0], plane[:, 1, 1], plane[:, 0, 1]
-    zz = law.out_of_plane_stress(plane)
-    return np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * xy**2)
+def _loads(pair: GearPair, cycle: MeshCycle, row: int, bodies: PairCompliance) -> list[_Load]:
+    """List the pairs that bear; at a tip corner with the strips that do."""
+    loads = []
+    for column in np.flatnonzero(cycle.forces[row] > 0).tolist():
+        half_width = contact_half_width(pair, cycle, row, column)
+        near = corner_pressure(cycle, row, column, half_width, bodies)
+        line_load, edge = float(cycle.forces[row, column]) / pair.face_width, bool(cycle.edge[row, column])
+        loads.append(_Load(column, int(cycle.pair_offset[column]), line_load, half_width, edge, near))
+    return loads
 
 
-def _joined(parts: list[_Part], law: PlaneElasticity) -> GearField:
-    def all_of(name: str) -> Array:
-        return np.concatenate([getattr(part, name) for part in parts])
+def _contact(load: _Load, gear: int, rho: float, ring: Ring, bodies: PairCompliance) -> Contact:
+    """Load on one gear at a curvature radius of its flank [m], or where the strips press."""
+    tooth = load.ahead if gear == 0 else -load.ahead
+    if load.near is not None:
+        return corner_contact(load.near, tooth, gear, ring, bodies)
+    end = (bodies.pinion, bodies.wheel)[gear].rho_range[1]
+    at = flank_points(ring.mesh, np.array([min(rho, end)]))
+    unresolved = INDICATIVE * bodies.pair.module if load.edge else 0.0
+    return Contact(tooth, at, load.line_load, load.half_width, unresolved=unresolved)
 
-    starts = np.cumsum([0, *(len(part.points) for part in parts[:-1])])
-    cells = np.concatenate([part.cells + start for part, start in zip(parts, starts, strict=True)])
-    plane, indicative = all_of("stress"), all_of("indicative").astype(np.int64)
-    # stress that is only indicative is drawn no greater than the maximum elsewhere, which sets the range of colours
-    size = _von_mises(plane, law)
-    plane = (
-        plane * np.minimum(1.0, size[cells[indicative == 0]].max() / np.maximum(size, 1e-300))[:, None, None]
+
+def _placed(
+    sectors: Sequence[DrawnSector], angle: float, centre: Array, profile: ToothProfile, law: PlaneElasticity
+) -> GearField:
+    """Turn all sectors of a gear to their places and number their cells."""
+    counts = [len(sector.points) for sector in sectors]
+    starts = np.cumsum([0, *counts[:-1]])
+    cells = np.concatenate(
+        [sector.picture.cells + start for sector, start in zip(sectors, starts, strict=True)]
     )
-    xx, yy, xy = plane[:, 0, 0], plane[:, 1, 1], plane[:, 0, 1]
-    zz = law.out_of_plane_stress(plane)
+    teeth = np.array([sector.tooth for sector in sectors])
+    turn = Turn.by(np.repeat(angle + teeth * profile.pitch_angle, counts))
+    points = np.concatenate([sector.points for sector in sectors])
+    middles = points[cells[:, :3]].mean(axis=1)
+    indicative = np.zeros(len(cells), dtype=np.int64)
+    tooth = np.repeat(teeth, [len(sector.picture.cells) for sector in sectors])
+    for sector in sectors:
+        if sector.contact is not None:
+            own = np.flatnonzero(tooth == sector.tooth)
+            away = np.linalg.norm(middles[own] - sector.contact.sharp, axis=1)
+            indicative[own[away < sector.contact.unresolved]] = 1
+    circles = np.array([profile.root_radius, profile.form_radius])
+    stress = turn.stresses(np.concatenate([sector.stress for sector in sectors]))
+    # stress that is only indicative is drawn no greater than the maximum elsewhere, which sets the range of colours
+    size = _von_mises(stress, law)
+    drawn = np.minimum(size, size[cells[indicative == 0]].max())
+    xx, yy, xy = (stress * (drawn / np.maximum(size, 1e-300))[:, None]).T
+    zz = law.out_of_plane_stress(xx + yy)
     middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
     lean = 0.5 * np.arctan2(2 * xy, xx - yy)
     squares = xx**2 + yy**2 + zz**2 - 2 * law.nu * (xx * yy + yy * zz + zz * xx)
     return GearField(
-        points=all_of("points"),
+        points=turn.vectors(points) + centre,
         cells=cells,
-        tooth=all_of("tooth").astype(np.int64),
-        region=all_of("region").astype(np.int64),
+        tooth=tooth,
+        region=np.searchsorted(circles, np.linalg.norm(middles, axis=1)),
         indicative=indicative,
-        displacement_m=all_of("moved"),
+        displacement_m=turn.vectors(np.concatenate([sector.displacement for sector in sectors])),
         stress_Pa=np.column_stack([xx, yy, zz, xy]),
-        von_mises_Pa=_von_mises(plane, law),
+        von_mises_Pa=drawn,
         principal_Pa=np.column_stack([middle + radius, middle - radius]),
         principal_direction=np.column_stack([np.cos(lean), np.sin(lean)]),
         energy_density_J_per_m3=(squares + 2 * (1 + law.nu) * xy**2) / (2 * law.E),
     )
+
+
+def _von_mises(stress: Array, law: PlaneElasticity) -> Array:
+    """Von Mises stress (n,) of sigma_xx, sigma_yy, tau_xy (n, 3)."""
+    xx, yy, xy = stress.T
+    zz = law.out_of_plane_stress(xx + yy)
+    return np.asarray(np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * xy**2))
