@@ -75,7 +75,7 @@ class NodalStress:
 
 def nodal_stress(mesh: SectorMesh, law: PlaneElasticity) -> NodalStress:
     """Set up the recovery for a sector."""
-    from scipy.sparse import coo_array, csr_array, diags_array, vstack
+    from scipy.sparse import coo_array, csr_array, vstack
 
     nodes, tangents, strains, curves, first = [], [], [], {}, 0
     for name, edges in mesh.free.items():
@@ -95,8 +95,8 @@ def nodal_stress(mesh: SectorMesh, law: PlaneElasticity) -> NodalStress:
         shape=(3 * len(mesh.points), len(listed)),
     )
     averaged = nodal_stress_matrix(mesh.points, mesh.triangles, law, mesh.thickness)
-    inside = diags_array(np.repeat(np.where(count == 0, 1.0, 0.0), 3))
-    matrix = csr_array(inside @ averaged + to_tensor.tocsr() @ vstack(strains, format="csr"))
+    averaged.data[np.repeat(count > 0, np.diff(averaged.indptr))] = 0.0  # rows of the free edges
+    matrix = csr_array(averaged.tocsr() + to_tensor.tocsr() @ vstack(strains, format="csr"))
     return NodalStress(matrix, listed, t, share, curves)
 
 

@@ -134,15 +134,16 @@ class GearDrawing:
     ) -> tuple[Array, Array]:
         """What brings the stress at the sectors' right and left cuts to the mean of both sides, (z, side, 3) each."""
         ring, z = self.ring, self.ring.mesh.teeth
-        right, left = ((cuts @ matrix.T).reshape(z, -1, 3) for matrix in self.seam)
+        right, left = there = [(cuts @ matrix.T).reshape(z, -1, 3) for matrix in self.seam]
         for k, (_, stress) in nodal.items():
-            for there, side in ((right, "right"), (left, "left")):
-                sector, nodes = contacts[k].sector, ring.mesh.side_nodes(side)
-                if sector is not None:
-                    there[k] = carried(stress, sector.mesh, ring.mesh, side)
-                    continue
-                _, near = near_field(ring.mesh.points[nodes], contacts[k], ring.law, ring.mesh.module)
-                there[k] = stress[nodes] + near
+            sector = contacts[k].sector
+            if sector is not None:
+                for own, side in zip(there, SIDES, strict=True):
+                    own[k] = carried(stress, sector.mesh, ring.mesh, side)
+                continue
+            nodes = np.concatenate([ring.mesh.side_nodes(side) for side in SIDES])
+            _, near = near_field(ring.mesh.points[nodes], contacts[k], ring.law, ring.mesh.module)
+            right[k], left[k] = np.split(stress[nodes] + near, 2)
         turn = Turn.by(2 * np.pi / z)  # from a tooth's frame to that of the tooth on its right
         half = 0.5 * (turn.stresses(np.roll(right, -1, axis=0)) - left)
         return -np.roll(turn.back().stresses(half), 1, axis=0), half

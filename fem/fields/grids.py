@@ -30,6 +30,8 @@ LEVEL, BLOCK = 1, 1 << 22
 """zlib's fastest, since more effort saves no more than some per cent of digits that are nearly random; and bytes that
 are packed at once."""
 
+STORED = "displacement_m", "stress_Pa", "von_mises_Pa", "principal_Pa", "energy_density_J_per_m3"
+"""Fields of a gear's points; the principal direction follows from the stress, and would add an eighth to the file."""
 
 COMPONENTS = {"stress_Pa": ("xx", "yy", "zz", "xy"), "principal_Pa": ("larger", "smaller")}
 
@@ -51,16 +53,15 @@ def _gear_grid(field: GearField, gear: int) -> pyvista.UnstructuredGrid:
     grid = pyvista.UnstructuredGrid(
         {pyvista.CellType.QUADRATIC_TRIANGLE: field.cells}, single_precision(field.points)
     )
-    for name, values in field.point_data.items():
-        if name == "principal_direction":  # it follows from the stress, and would add an eighth to the file
-            continue
-        stored = single_precision(values, flat=name in COMPONENTS)
+    grid.GetCells().ConvertTo32BitStorage()
+    for name in STORED:
+        stored = single_precision(getattr(field, name), flat=name in COMPONENTS)
         grid.point_data[name] = stored if name == "displacement_m" else rounded(stored)
         for i, label in enumerate(COMPONENTS.get(name, ())):
             grid.GetPointData().GetArray(name).SetComponentName(i, label)
     for name, numbers in field.cell_data.items():
-        grid.cell_data[name] = numbers.astype(np.int32)
-    grid.cell_data["gear"] = np.full(len(field.cells), gear, dtype=np.int32)
+        grid.cell_data[name] = numbers.astype(np.int16)
+    grid.cell_data["gear"] = np.full(len(field.cells), gear, dtype=np.int8)
     return active(grid, "von_mises_Pa", "displacement_m")
 
 
@@ -147,8 +148,9 @@ def single_precision(values: NDArray[Any], flat: bool = False) -> NDArray[np.flo
 
 def rounded(values: NDArray[np.float32]) -> NDArray[np.float32]:
     """Mantissas rounded, in the array itself."""
-    bits, finite = values.view(np.uint32), np.isfinite(values)
-    bits[finite] = (bits[finite] + (1 << (DROPPED - 1))) & ~np.uint32((1 << DROPPED) - 1)
+    bits = values.view(np.uint32)
+    near = (bits + (1 << (DROPPED - 1))) & ~np.uint32((1 << DROPPED) - 1)
+    np.copyto(bits, near, where=np.isfinite(values))
     return values
 
 

@@ -94,10 +94,7 @@ def _spread(
     points: Array, load: Array, inward: Array, sources: Array, law: PlaneElasticity, length: float
 ) -> Array:
     """Flamant's displacement by several loads (3, k): places along the flank, distances above them, and sizes."""
+    place, above, size = sources[:, :, None, None]
     side = np.array([-inward[1], inward[0]])
-    total = np.zeros_like(points)
-    for place, above, size in sources.T:
-        total += size * flamant.displacement(
-            points + above * inward, load + place * side, inward, law, length
-        )
-    return total
+    each = flamant.displacement(points + above * inward, load + place * side, inward, law, length)
+    return np.asarray(np.sum(size * each, axis=0))

@@ -8,7 +8,7 @@ import numpy as np
 
 from base import Array, Booleans, Integers, record
 from meshes import SectorMesh
-from meshes.triangle import shape
+from meshes.triangle import NODES, shape
 
 __all__ = ["Picture", "picture_of"]
 
@@ -21,6 +21,9 @@ _CHILDREN = np.array(
         [[0.5, 0], [0.5, 0.5], [0, 0.5]],
     ]
 )
+# the node at each place of a triangle in halves of its sides; beyond the long side there is none
+_NODE_AT = np.full((3, 3), -1)
+_NODE_AT[tuple((2 * NODES).astype(int).T)] = np.arange(6)
 SPLITS = 8
 
 LONGEST_SIDE = 0.35
@@ -67,11 +70,12 @@ def picture_of(mesh: SectorMesh, focus: tuple[Array, float] | None = None) -> Pi
     longest = LONGEST_SIDE * mesh.module
 
     def large(parent: Integers, place: Array) -> Booleans:
-        side = np.max(np.linalg.norm(place - np.roll(place, -1, axis=1), axis=2), axis=1)
+        x, y = np.moveaxis(place, -1, 0)
+        side = np.hypot(x - np.roll(x, -1, axis=1), y - np.roll(y, -1, axis=1)).max(axis=1)
         to_split = curved[parent] & (side > longest)
         if focus is not None:
-            away = np.min(np.linalg.norm(place - focus[0], axis=2), axis=1)
-            to_split = to_split | (np.sqrt(np.abs(_area(place))) > np.maximum(focus[1], 0.5 * away))
+            away = np.hypot(x - focus[0][0], y - focus[0][1]).min(axis=1)
+            to_split = to_split | (np.sqrt(np.abs(_area(x, y))) > np.maximum(focus[1], 0.5 * away))
         return np.asarray(to_split)
 
     return _split(mesh, large)
@@ -111,21 +115,20 @@ def _places(mesh: SectorMesh, parent: Integers, corners: Array) -> Array:
     return np.asarray(np.einsum("mkc,mca->mka", weight, x))
 
 
-def _area(place: Array) -> Array:
-    d, e = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
-    return np.asarray(d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0])
+def _area(x: Array, y: Array) -> Array:
+    d, e = (x[:, 1] - x[:, 0], y[:, 1] - y[:, 0]), (x[:, 2] - x[:, 0], y[:, 2] - y[:, 0])
+    return np.asarray(d[0] * e[1] - d[1] * e[0])
 
 
 def _merged(mesh: SectorMesh, parent: Integers, local: Array) -> Picture:
     """Points at the same place of the same element, and points that are nodes, are shared."""
-    values = shape(local[..., 0], local[..., 1]).reshape(-1, 6)
-    nodes = np.repeat(mesh.triangles[parent], 6, axis=0)
-    at_node = np.max(values, axis=1) > 1 - 1e-9
-    here = nodes[np.arange(len(nodes)), np.argmax(values, axis=1)]
     # a key per point: its node, else its element and its place on the finest grid that splitting can make
     steps = 2 ** (SPLITS + 1)
-    grid = np.rint(local.reshape(-1, 2) * steps).astype(np.int64)
-    inside = (np.repeat(parent, 6) * (steps + 1) + grid[:, 0]) * (steps + 1) + grid[:, 1]
-    key = np.where(at_node, here, len(mesh.points) + inside)
+    parent, grid = np.repeat(parent, 6), np.rint(local.reshape(-1, 2) * steps).astype(np.int64)
+    halves, between = np.divmod(grid, steps // 2)
+    node = np.where(between.any(axis=1), -1, _NODE_AT[tuple(halves.T)])
+    inside = (parent * (steps + 1) + grid[:, 0]) * (steps + 1) + grid[:, 1]
+    key = np.where(node >= 0, mesh.triangles[parent, node], len(mesh.points) + inside)
     _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
-    return Picture(nodes[first], values[first], inverse.reshape(-1, 6).astype(np.int64))
+    weights = shape(*local.reshape(-1, 2)[first].T)
+    return Picture(mesh.triangles[parent[first]], weights, inverse.reshape(-1, 6).astype(np.int64))

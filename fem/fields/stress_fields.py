@@ -65,13 +65,19 @@ class GearField:
     stress_Pa: Array = quantity("Pa", "sigma_xx, sigma_yy, sigma_zz, tau_xy", "point component")
     von_mises_Pa: Array = quantity("Pa", "von Mises stress", "point")
     principal_Pa: Array = quantity("Pa", "larger and smaller principal stress in the plane", "point which")
-    principal_direction: Array = quantity("1", "unit vector along the larger one", "point axis")
     energy_density_J_per_m3: Array = quantity("J/m3", "strain energy per volume", "point")
 
     @described("Pa", shown="MPa")
     def greatest_von_mises_Pa(self) -> float:
         """Maximum von Mises stress, but for places where stresses are only indicative."""
         return float(self.von_mises_Pa[self.cells[self.indicative == 0]].max())
+
+    @described("1", "point axis")
+    def principal_direction(self) -> Array:
+        """Unit vector along the larger principal stress."""
+        xx, yy, _, xy = self.stress_Pa.T
+        lean = 0.5 * np.arctan2(2 * xy, xx - yy)
+        return np.stack([np.cos(lean), np.sin(lean)], axis=1)
 
     @property
     def point_data(self) -> Mapping[str, Array]:
@@ -230,8 +236,8 @@ def _placed(
     xx, yy, xy = (stress * (drawn / np.maximum(size, 1e-300))[:, None]).T
     zz = law.out_of_plane_stress(xx + yy)
     middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
-    lean = 0.5 * np.arctan2(2 * xy, xx - yy)
-    squares = xx**2 + yy**2 + zz**2 - 2 * law.nu * (xx * yy + yy * zz + zz * xx)
+    # of changes of shape and of volume
+    energy = (1 + law.nu) / (3 * law.E) * drawn**2 + (1 - 2 * law.nu) / (6 * law.E) * (xx + yy + zz) ** 2
     return GearField(
         points=turn.vectors(points) + centre,
         cells=cells,
@@ -242,8 +248,7 @@ def _placed(
         stress_Pa=np.column_stack([xx, yy, zz, xy]),
         von_mises_Pa=drawn,
         principal_Pa=np.column_stack([middle + radius, middle - radius]),
-        principal_direction=np.column_stack([np.cos(lean), np.sin(lean)]),
-        energy_density_J_per_m3=(squares + 2 * (1 + law.nu) * xy**2) / (2 * law.E),
+        energy_density_J_per_m3=energy,
     )
 
 

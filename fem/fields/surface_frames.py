@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial.distance import cdist
 
 from base import Array, Integers, record
 from fem.fields.paraview_state import FILLET
@@ -130,7 +130,7 @@ def _gear(
 ) -> GearSurface:
     """Values of the teeth of one gear that are shown."""
     grid = grids[GEARS[gear]]
-    cells, tooth = grid.cells.reshape(grid.n_cells, -1)[:, 1:], np.asarray(grid["tooth"])
+    cells, tooth = grid.cell_connectivity.reshape(grid.n_cells, -1), np.asarray(grid["tooth"])
     points = np.asarray(grid.points, dtype=float) - np.append(centre, 0.0)
     moved = np.asarray(grid["displacement_m"], dtype=float)
     stress = np.asarray(grid["von_mises_Pa"], dtype=float) if "von_mises_Pa" in grid.point_data else None
@@ -174,7 +174,7 @@ def _fillet_stress(grids: Mapping[str, pyvista.UnstructuredGrid], gear: int) -> 
     grid = grids[GEARS[gear]]
     if "von_mises_Pa" not in grid.point_data:
         return float("nan")
-    cells = grid.cells.reshape(grid.n_cells, -1)[:, 1:]
+    cells = grid.cell_connectivity.reshape(grid.n_cells, -1)
     fillet = (np.asarray(grid["region"]) == FILLET) & (np.asarray(grid["indicative"]) == 0)
     return float(np.asarray(grid["von_mises_Pa"])[cells[fillet]].max())
 
@@ -190,7 +190,7 @@ def _contacts(grids: Mapping[str, pyvista.UnstructuredGrid], width: float) -> Co
     wheel = grids["wheel" if "contacts" in grids else "wheel_flanks"]
     places = np.asarray(wheel.points, dtype=float)
     at = ends.reshape(-1, 3) * ([1.0, 1.0, 0.0] if "contacts" in grids else 1.0)
-    nearest = cKDTree(places, compact_nodes=False, balanced_tree=False).query(at)[1]
+    nearest = cdist(at, places, "sqeuclidean").argmin(axis=1)
     moved = np.asarray(wheel["displacement_m"], dtype=float)[nearest]
     return ContactLoads(ends, moved.reshape(ends.shape), load)
 
@@ -207,14 +207,14 @@ def _of_lines(lines: pyvista.UnstructuredGrid) -> tuple[Array, Array]:
     """Segments that carry load, of the wheel."""
     force = np.asarray(lines["force_N"], dtype=float)
     chosen = (np.asarray(lines["gear"]) == 1) & (np.linalg.norm(force, axis=1) > 0.0)
-    ends = np.asarray(lines.points, dtype=float)[lines.cells.reshape(-1, 3)[chosen, 1:]]
+    ends = np.asarray(lines.points, dtype=float)[lines.cell_connectivity.reshape(-1, 2)[chosen]]
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     return ends, force[chosen] / length[:, None]
 
 
 def _of_flanks(flanks: pyvista.UnstructuredGrid) -> tuple[Array, Array]:
     """Cells of the face that carry load, from the pressures on the pinion's flanks, each at its pressure's middle."""
-    corners = np.asarray(flanks.points, dtype=float)[flanks.cells.reshape(-1, 5)[:, 1:]]
+    corners = np.asarray(flanks.points, dtype=float)[flanks.cell_connectivity.reshape(-1, 4)]
     middle = corners.mean(axis=1)
     area = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     # the pinion pushes the wheel the way it turns, anticlockwise

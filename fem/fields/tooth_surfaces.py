@@ -91,7 +91,7 @@ def tooth_surface(grid: pyvista.UnstructuredGrid, centre: Array, width: float) -
     width : float
         Face width of prisms [m].
     """
-    cells = grid.cells.reshape(grid.n_cells, -1)[:, 1:]
+    cells = grid.cell_connectivity.reshape(grid.n_cells, -1)
     tooth = np.asarray(grid["tooth"])
     names, counts = np.unique(tooth, return_counts=True)
     nodes, local = np.unique(cells[tooth == names[np.argmin(counts)]], return_inverse=True)
