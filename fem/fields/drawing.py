@@ -154,8 +154,8 @@ class GearDrawing:
         ring, sector = self.ring.mesh, contact.sector
         mesh = ring if sector is None else sector.mesh
         picture = picture_of(mesh, (contact.at.points[0], FOCUS * contact.half_width))
-        points, displacement = picture.interpolate(mesh.points), picture.interpolate(moved)
-        stress = picture.interpolate(stress + _along_the_cuts(jumps, ring, mesh))
+        at_nodes = np.column_stack([mesh.points, moved, stress + _along_the_cuts(jumps, ring, mesh)])
+        points, displacement, stress = np.split(picture.interpolate(at_nodes), [2, 4], axis=1)
         if sector is None:
             near_moved, near_stress = near_field(points, contact, self.ring.law, ring.module)
             displacement, stress = displacement + near_moved, stress + near_stress

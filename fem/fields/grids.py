@@ -30,8 +30,10 @@ LEVEL, BLOCK = 9, 1 << 22
 """LZ4's closest packing, and bytes that are packed at once. zlib's fastest makes files of .7 times the size and takes
 ten times as long, half the processor time of a series."""
 
-STORED = "displacement_m", "stress_Pa", "von_mises_Pa", "principal_Pa", "energy_density_J_per_m3"
-"""Fields of a gear's points; the principal direction follows from the stress, and would add an eighth to the file."""
+OF_POINTS = "displacement_m", "stress_Pa", "von_mises_Pa", "principal_Pa", "energy_density_J_per_m3"
+"""Fields of a gear; the principal direction follows from the stress, and would add an eighth to the file."""
+
+OF_CELLS = "tooth", "region", "indicative"
 
 COMPONENTS = {"stress_Pa": ("xx", "yy", "zz", "xy"), "principal_Pa": ("larger", "smaller")}
 
@@ -58,13 +60,13 @@ def _grid(kind: str, cells: Integers, points: NDArray[Any]) -> pyvista.Unstructu
 
 def _gear_grid(field: GearField, gear: int) -> pyvista.UnstructuredGrid:
     grid = _grid("QUADRATIC_TRIANGLE", field.cells, single_precision(field.points))
-    for name in STORED:
+    for name in OF_POINTS:
         stored = single_precision(getattr(field, name), flat=name in COMPONENTS)
         grid.point_data[name] = stored if name == "displacement_m" else rounded(stored)
         for i, label in enumerate(COMPONENTS.get(name, ())):
             grid.GetPointData().GetArray(name).SetComponentName(i, label)
-    for name, numbers in field.cell_data.items():
-        grid.cell_data[name] = numbers.astype(np.int16)
+    for name in OF_CELLS:
+        grid.cell_data[name] = getattr(field, name).astype(np.int16)
     grid.cell_data["gear"] = np.full(len(field.cells), gear, dtype=np.int8)
     return active(grid, "von_mises_Pa", "displacement_m")
 

@@ -220,7 +220,7 @@ def _placed(
     teeth = np.array([sector.tooth for sector in sectors])
     turn = Turn.by(np.repeat(angle + teeth * profile.pitch_angle, counts))
     points = np.concatenate([sector.points for sector in sectors])
-    middles = points[cells[:, :3]].mean(axis=1)
+    middles = np.mean([points[corner] for corner in cells[:, :3].T], axis=0)
     indicative = np.zeros(len(cells), dtype=np.int64)
     tooth = np.repeat(teeth, [len(sector.picture.cells) for sector in sectors])
     for sector in sectors:

@@ -32,8 +32,18 @@ if TYPE_CHECKING:
 
     from flankfilm.report.page import Part
 
-LOADED = ("fem.fields.vtk", "pyvista", "flankfilm.runs.dataset", "matplotlib.backends.backend_svg")
-"""What an assistant loads while the scene is computed. Fields for ParaView alone are worth a process."""
+OF_FIELDS = (
+    "fem.fields.vtk",
+    "pyvista",
+    "vtkmodules.vtkIOXML",
+    "gmsh",
+    "skfem.quadrature",
+    "scipy.interpolate",
+)
+
+LOADED = (*OF_FIELDS, "flankfilm.runs.dataset", "matplotlib.backends.backend_svg")
+"""What an assistant loads while the scene is computed, also what fields load where they first need it. Fields for
+ParaView alone are worth a process."""
 
 FILES = "vtk files", "fields for ParaView"
 """Name and title of their part of the costs."""
