@@ -228,10 +228,13 @@ def _computed(
     start, fields = time.perf_counter(), None
     engine, wanted = begin(scene, results_cache(use_cache), progress)
     for stage in wanted:
+        if stage is FIELDS and beside is not None and helper.there:
+            with suppress(InputError, SolverError):  # what the stage needs as well, and so the engine keeps
+                fields = begin_fields(beside, engine, helper, "report" in scene.wants)
         with suppress(InputError, SolverError):  # the engine keeps it, and the other stages go on
             engine[stage]
-            if stage is FIELDS and beside is not None and helper.there:
-                fields = begin_fields(beside, engine, helper, "report" in scene.wants)
+    if FIELDS.name in engine.failures:
+        fields = None
     failures = tuple(engine.failures.values())
     asked = {stage.name for stage in wanted} - PREPARATIONS
     if failures and asked <= set(engine.failures):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import nullcontext
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -15,13 +16,14 @@ from base import PartWarning, SolverError
 from flankfilm import cli, coupling
 from flankfilm.files.cache import Cache
 from flankfilm.output.uncertainty import Uncertainty
+from flankfilm.processes.assistant import Assistant
 from flankfilm.processes.exit_status import guarded
 from flankfilm.report.page import Headline
 from flankfilm.runs.report import headlines, misses, summary
 from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import parse_scene
 from flankfilm.stages.engine import Engine, Stage, StageRun
-from flankfilm.stages.mesh import DRY_CYCLE, FILM, PAIR
+from flankfilm.stages.mesh import DRY_CYCLE, FIELDS, FILM, PAIR
 from flankfilm.stages.motion import FOURIER
 from flankfilm.studies.row import Row, compute_row
 from tests.flankfilm.scenes import CLOSED_FORMS_WITH_FILM as SCENE
@@ -126,6 +128,33 @@ def test_fields_that_cannot_be_written_leave_the_rest(tmp_path, monkeypatch):
     assert [one.title for one in found.failures] == ["fields for ParaView"]
     with xr.open_dataset(tmp_path / "results.nc", engine="h5netcdf") as data:
         assert "no field" in data.attrs["not_computed_json"]
+
+
+def test_fields_are_begun_before_their_stage_and_not_written_where_it_fails(tmp_path, monkeypatch):
+    from flankfilm.runs import begin
+    from flankfilm.runs import run_scene as running
+
+    order = []
+
+    def fail(run):
+        order.append("stage")
+        raise SolverError("no field; refine")
+
+    def begin_fields(*_):
+        order.append("files")
+        return SimpleNamespace(written=lambda *_: pytest.fail("fields of a stage that failed"))
+
+    fields = Stage(FIELDS.name, FIELDS.title, fail, lambda scene: {})
+    monkeypatch.setattr(running, "FIELDS", fields)
+    monkeypatch.setattr(running, "begin_fields", begin_fields)
+    monkeypatch.setattr(running, "assistant", lambda _: nullcontext(Assistant()))
+    monkeypatch.setattr(Assistant, "there", True)
+    monkeypatch.setattr(begin, "goals", lambda _: (PAIR, fields))
+    text = ISHIKAWA.replace("[WANTS]", '["geometry", "vtk"]')
+    scene = parse_scene(text.replace('"ishikawa"', '"fem"').replace('"independent"', '"coupled"'))
+    found = run_scene(scene, tmp_path, use_cache=False)
+    assert order == ["files", "stage"]
+    assert [one.title for one in found.failures] == [FIELDS.title]
 
 
 def test_a_stage_that_failed_is_not_computed_again():
