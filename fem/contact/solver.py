@@ -20,7 +20,6 @@ from fem.laws.contact_candidates import LINES_REACH, REACHES
 from fem.laws.corner_laws import CornerLaws
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
-from fem.laws.tip_edges import edges_of_lines
 
 if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
@@ -81,7 +80,7 @@ def _reaches(setup: MeshSetup, bodies: PairCompliance, force: Array) -> tuple[fl
         return REACHES if np.all(force) else REACHES[-1:]
     softest = min(gear.law.plane_modulus for gear in (bodies.pinion, bodies.wheel))
     deflection = float(np.max(force)) / (STIFF * softest * setup.pair.face_width)
-    edges = edges_of_lines(setup, LINES_REACH)
+    edges = setup.flanks.edges(LINES_REACH)
     near = [edges.closed_by(times * deflection) / setup.pair.base_pitch for times in (1.0, 2.0, 4.0)]
     return (*near, LINES_REACH)
 

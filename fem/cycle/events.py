@@ -17,7 +17,7 @@ from fem.influence.helix_ends import BETWEEN, OFF_BY
 from fem.laws.corner_laws import CornerLaws
 from fem.laws.local_law import Film
 from fem.laws.mesh_setup import MeshSetup
-from fem.laws.relieved_flanks import ends_of_flanks, starts_of_relief
+from fem.laws.relieved_flanks import starts_of_relief
 from fem.pair.pair_compliance import PairCompliance
 from gears.sharing.arcs import Arcs
 from gears.sharing.events import Division, Sampled, Sampler, arcs_alike, arcs_between_events
@@ -157,8 +157,9 @@ class ContactProblem:
             if first > 0.0:
                 steps = first * GRADING ** np.arange(3)
                 places += (at + sign * steps[steps < 0.25 * pair.base_pitch]).tolist()
-        if self.setup.removed is not None:
-            places += [*ends_of_flanks(self.setup), *starts_of_relief(self.setup)]
+        flanks = self.setup.flanks
+        if flanks.removed is not None:
+            places += [*flanks.touching_ends, *(starts_of_relief(flanks) if flanks.gentle else [])]
         if self.setup.moving_contact:  # beyond these ends the flanks' motion stays the same
             pinion, wheel = bodies.motions
             places += [*pinion.rho_range, *(pair.line_of_action - rho for rho in wheel.rho_range)]

@@ -22,7 +22,6 @@ from fem.contact.moving_contact import ContactMoves, contact_moves, left_out
 from fem.contact.solver import solve_one_side
 from fem.laws.contact_candidates import LINES_REACH
 from fem.laws.corner_laws import CornerLaws
-from fem.laws.tip_edges import edges_of_lines
 from fem.pair.references import held_turns
 from gears.tooth.errors import LoadSharingError
 
@@ -147,7 +146,7 @@ class LoadedLines:
     def beyond_path(self) -> BeyondPath:
         """What contact beyond the path changes, by solutions without and with it, both dry."""
         pair, count = self.setup.pair, self.forces.shape[-1]
-        edges = edges_of_lines(replace(self.setup, beyond_path=True), LINES_REACH)
+        edges = self.setup.flanks.edges(LINES_REACH)
         try:
             ends = self._solved(self.setup, 0.0)
             farthest = edges.closed_by(FARTHER * float(ends.deflection(0).max()))

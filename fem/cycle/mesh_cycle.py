@@ -17,7 +17,7 @@ from fem.cycle.several_torques import one_or_several
 from fem.laws.contact_candidates import contact_candidates
 from fem.laws.corner_laws import CornerLaws, laws_of_corners
 from fem.laws.local_law import Film
-from fem.laws.mesh_setup import Deviations, MeshSetup
+from fem.laws.mesh_setup import MeshSetup
 from fem.pair.compliance import compliance as _compliance
 from fem.pair.face_setting import EVEN, FREE_ENDS, face_setting
 from fem.pair.options import USUAL_OPTIONS, Options
@@ -25,6 +25,7 @@ from fem.pair.pair_compliance import PairCompliance
 from fem.pair.references import REFERENCES, default_reference
 
 if TYPE_CHECKING:
+    from fem.laws.flank_forms import Deviations
     from gears import Alignment, GearPair, Shaft
 
 __all__ = ["MeshCycle", "mesh_cycle"]

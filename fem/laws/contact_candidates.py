@@ -10,12 +10,13 @@ import numpy as np
 
 from base import Array, Booleans, Faults, Integers, record
 from fem.laws.line_candidates import ContactLines, LineCells, contact_lines, line_offsets
-from fem.laws.mesh_setup import Deviations, MeshSetup
-from fem.laws.relieved_flanks import gentle, relieved_lines, touch
-from fem.laws.tip_edges import edges_at, edges_of_lines
+from fem.laws.mesh_setup import MeshSetup
+from fem.laws.relieved_flanks import touch
+from fem.laws.tip_edges import edges_at
 from fem.pair.face_setting import EVEN, FREE_ENDS, face_setting
 
 if TYPE_CHECKING:
+    from fem.laws.flank_forms import Deviations
     from gears import Alignment, GearPair
 
 __all__ = [
@@ -160,8 +161,8 @@ def contact_candidates(setup: MeshSetup, reach: float = REACHES[0]) -> ContactCa
     lever, arm, leaning = np.ones_like(rho), rho.copy(), np.zeros_like(rho)
     gap, curvature = np.where(touchable, 0.0, np.inf), np.ones_like(place)
     chamfered = np.zeros_like(edge)
-    if setup.removed is not None and gentle(setup):
-        near = touch(setup, place[touchable], setup.removed)
+    if setup.removed is not None and setup.flanks.gentle:
+        near = touch(setup.flanks, place[touchable], setup.removed)
         beyond = np.zeros_like(touchable)
         beyond[touchable] = near.beyond
         edge = (beyond if setup.beyond_path else beyond & outside) & touchable
@@ -174,7 +175,7 @@ def contact_candidates(setup: MeshSetup, reach: float = REACHES[0]) -> ContactCa
     other_place = pair.points.A + setup.mirror * pitch - (place - pair.points.A)
     for corner, chosen in ((1, edge & (place < middle)), (0, edge & (place > middle))):
         if chosen.any():
-            at = edges_at(setup, corner, place[chosen])
+            at = edges_at(setup.flanks, corner, place[chosen])
             rho[1 - corner][chosen], rho[corner][chosen] = at.touched_rho, setup.rounds[corner].rho
             lever[corner][chosen], lever[1 - corner][chosen] = at.lever, 1.0
             arm[corner][chosen], arm[1 - corner][chosen] = at.arm, at.touched_rho
@@ -234,11 +235,11 @@ def _lines(setup: MeshSetup, reach: float) -> ContactCandidates:
     """Candidates of a helical pair: lines of contact, each with its smallest gap."""
     pair, edges = setup.pair, None
     if setup.beyond_path:
-        edges = edges_of_lines(setup, min(reach, LINES_REACH))
+        edges = setup.flanks.edges(min(reach, LINES_REACH))
     offset = line_offsets(pair, 0.0 if edges is None else edges.beyond_path)
     position, within, turned = _standing(setup)
     middle = pair.points.A + (within[:, None] + offset) * pair.base_pitch
-    lines = contact_lines(pair, setup.line_slope, setup.ends, middle, edges, relieved_lines(setup))
+    lines = contact_lines(pair, setup.line_slope, setup.ends, middle, edges, setup.relieved)
     touchable = lines.touches
     place = np.where(touchable, lines.place, 0.5 * (pair.points.A + pair.points.E))
     rho = lines.rho(place)
@@ -307,7 +308,8 @@ def _reach_gap(setup: MeshSetup, reach: float) -> float:
     """Smaller gap of the two contacts at the ends of the reach; farther out gaps are larger."""
     start, end = setup.ends
     apart = reach * setup.pair.base_pitch
-    before, after = edges_at(setup, 1, np.array([start - apart])), edges_at(setup, 0, np.array([end + apart]))
+    outside = ((1, start - apart), (0, end + apart))
+    before, after = (edges_at(setup.flanks, corner, np.array([place])) for corner, place in outside)
     return float(min(before.gap[0], after.gap[0]))
 
 

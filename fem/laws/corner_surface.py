@@ -13,7 +13,7 @@ from fem.elasticity.flamant import hertz_half_width
 from fem.laws.corner_law import CornerSurface
 from fem.laws.cut_off import FAR, FIRST, along, cut_off
 from fem.laws.local_law import Table
-from fem.laws.relieved_flanks import ends_of_flanks, gentle, plain_touch, touch
+from fem.laws.relieved_flanks import plain_touch, touch
 from fem.laws.tip_contact import edge_laws, edge_lever, nearest_gap, rounded_law
 
 if TYPE_CHECKING:
@@ -92,8 +92,8 @@ class _Corner:
         """Contacts on the flank: what they approach further, over the force (n, k) [m/N]."""
         setup, corner = self.setup, self.corner
         gear = (self.bodies.pinion, self.bodies.wheel)[corner]
-        removed, place = setup.removed if gentle(setup) else None, self.place(self.end + z)
-        near = plain_touch(setup.pair, place) if removed is None else touch(setup, place, removed)
+        removed, place = setup.removed if setup.flanks.gentle else None, self.place(self.end + z)
+        near = plain_touch(setup.pair, place) if removed is None else touch(setup.flanks, place, removed)
         more = cut_off(
             self.bodies, corner, near, place, force, setup.rounds[corner], removed, self.slid, self.turned
         )
@@ -138,7 +138,7 @@ class _Corner:
     @cached_property
     def origin(self) -> float:
         """Place at which the contact leaves the flank [m]."""
-        leaves = ends_of_flanks(self.setup)[1 - self.corner]
+        leaves = self.setup.flanks.touching_ends[1 - self.corner]
         return float(self.place(np.array(leaves))) - self.end
 
     @cached_property

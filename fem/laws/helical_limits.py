@@ -8,6 +8,7 @@ from base import Faults
 from fem.pair.face_setting import FREE_ENDS
 
 if TYPE_CHECKING:
+    from fem.laws.flank_forms import FlankForms
     from fem.pair.face_setting import FaceSetting
     from gears import GearPair
 
@@ -22,8 +23,8 @@ class Setting(Protocol):
         """Gears in mesh."""
 
     @property
-    def radii(self) -> tuple[float, ...]:
-        """Of rounded tip edges [m]."""
+    def flanks(self) -> FlankForms:
+        """Forms of the flanks."""
 
     @property
     def beyond_path(self) -> bool:
@@ -43,9 +44,11 @@ def check_helical(faults: Faults, setup: Setting) -> None:
     if setup.pair.tight:
         allowed = "must be False with a helix: flanks on one side of the teeth carry the load"
         faults.add("pair.tight", True, allowed, "give backlash")
-    if not setup.beyond_path and any(radius != 0.0 for radius in setup.radii):
+    if not setup.beyond_path and any(radius != 0.0 for radius in setup.flanks.radii):
         allowed = "must be 0 with a helix whose lines of contact end with the path"
-        faults.add("tip_rounding", setup.radii, allowed, "give beyond_path=True, in which tip edges touch")
+        faults.add(
+            "tip_rounding", setup.flanks.radii, allowed, "give beyond_path=True, in which tip edges touch"
+        )
     if setup.moving_contact:
         allowed = "must be False with a helix: contacts stay where undeformed teeth touch"
         faults.add("moving_contact", True, allowed, "give moving_contact=False")

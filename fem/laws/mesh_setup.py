@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import sin
 from numbers import Integral, Real
@@ -14,18 +14,20 @@ import numpy as np
 from base import Array, Faults, Integers, Limit, rounded_down
 from fem.laws.helical_limits import check_helical
 from fem.laws.line_candidates import SHORT_CELL
-from fem.laws.tip_contact import Removed
-from fem.laws.tip_geometry import TipRound, chamfer_length, tip_round
+from fem.laws.pair_flanks import PairFlanks
+from fem.laws.tip_geometry import chamfer_length
 from fem.pair.face_setting import EVEN, FaceSetting
 from fem.pair.options import USUAL_OPTIONS, Options
 from gears import GearDeviations
 
 if TYPE_CHECKING:
+    from fem.laws.flank_forms import Deviations
+    from fem.laws.relieved_lines import RelievedLines
+    from fem.laws.tip_contact import Removed
+    from fem.laws.tip_geometry import TipRound
     from gears import GearPair
 
-__all__ = ["Deviations", "MeshSetup"]
-
-Deviations = Sequence["GearDeviations | None"]
+__all__ = ["MeshSetup"]
 
 LARGEST_ROUND = 0.2
 """Largest part of the flank [modules] that a rounding of the tip may take."""
@@ -73,6 +75,22 @@ class MeshSetup:
     two_sided: bool = False
     face: FaceSetting = EVEN
     options: Options = USUAL_OPTIONS
+    known_flanks: PairFlanks | None = field(default=None, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Share flanks with the setup that this one was made from, where they are the same: tables are found once."""
+        flanks, known = (
+            PairFlanks(self.pair, self.deviations, self.tip_rounding, self.options),
+            self.known_flanks,
+        )
+        if known is None or not known.same(flanks):
+            object.__setattr__(self, "known_flanks", flanks)
+
+    @property
+    def flanks(self) -> PairFlanks:
+        """Flanks in the section, which all setups of the same gears share."""
+        assert self.known_flanks is not None  # since the setup was made
+        return self.known_flanks
 
     def at(self, position: Array) -> MeshSetup:
         """The same gears at given positions (n,) [base pitches] instead of equal intervals."""
@@ -145,12 +163,12 @@ class MeshSetup:
         numbers = tuple(self.first_teeth) if isinstance(self.first_teeth, Sequence) else ()
         if len(numbers) != 2 or any(isinstance(n, bool) or not isinstance(n, Integral) for n in numbers):
             faults.add("first_teeth", self.first_teeth, "must be two whole numbers", "number from 0")
-        if len(self._by_gear) != 2:
-            gears = f"{len(self._by_gear)} gears"
+        if len(self.flanks.by_gear) != 2:
+            gears = f"{len(self.flanks.by_gear)} gears"
             faults.add("deviations", gears, "must be of pinion and wheel", "give None for a perfect one")
         else:
             for k, (gear, spec) in enumerate(
-                zip(self._by_gear, (self.pair.pinion, self.pair.wheel), strict=True)
+                zip(self.flanks.by_gear, (self.pair.pinion, self.pair.wheel), strict=True)
             ):
                 key = f"deviations[{k}]"
                 if faults.instance(key, gear, GearDeviations, optional=True) and gear is not None:
@@ -159,9 +177,10 @@ class MeshSetup:
 
     def _check_rounding(self, faults: Faults) -> None:
         numbers = [
-            isinstance(r, Real) and not isinstance(r, bool) and np.isfinite(r) and r >= 0 for r in self.radii
+            isinstance(r, Real) and not isinstance(r, bool) and np.isfinite(r) and r >= 0
+            for r in self.flanks.radii
         ]
-        if len(self.radii) != 2 or not all(numbers):
+        if len(self.flanks.radii) != 2 or not all(numbers):
             allowed = "must be a radius of at least 0 m, or one for each gear"
             faults.add("tip_rounding", self.tip_rounding, allowed, "give metres; 0 is sharp")
             return
@@ -188,25 +207,9 @@ class MeshSetup:
             faults.add("tip_rounding", self.tip_rounding, "must leave a contact ratio above 1", remedy)
 
     @property
-    def radii(self) -> tuple[float, ...]:
-        """Of the rounded tip edges, as many as were given [m]."""
-        radii = self.tip_rounding
-        return tuple(radii) if isinstance(radii, Sequence) else (radii, radii)
-
-    @property
-    def _by_gear(self) -> tuple[GearDeviations | None, ...]:
-        if self.deviations is None:
-            return (None, None)
-        return tuple(self.deviations) if isinstance(self.deviations, Sequence) else ()
-
-    @cached_property
     def rounds(self) -> tuple[TipRound, TipRound]:
         """Roundings of pinion's and wheel's tip edges."""
-        first, second = (
-            tip_round(profile, float(r))
-            for profile, r in zip(self.pair.teeth_profiles, self.radii, strict=True)
-        )
-        return first, second
+        return self.flanks.rounds
 
     @property
     def strips_at_corners(self) -> tuple[bool, bool]:
@@ -218,27 +221,22 @@ class MeshSetup:
     @property
     def ends(self) -> tuple[float, float]:
         """rho1 at which contact of the two involutes starts and ends [m]: A and E but for roundings."""
-        first, second = self.rounds
-        return self.pair.line_of_action - second.rho, first.rho
+        return self.flanks.ends
+
+    @property
+    def removed(self) -> tuple[Removed, Removed] | None:
+        """Material missing from pinion's and wheel's flank at curvature radii, mean of their teeth; None if none is."""
+        return self.flanks.removed
+
+    @property
+    def relieved(self) -> RelievedLines | None:
+        """Where relieved flanks touch, as far as lines of contact go; None where they do so as involutes."""
+        return self.flanks.relieved_beyond_path if self.beyond_path else self.flanks.relieved_on_path
 
     @property
     def even(self) -> bool:
         """Whether the flanks are true involutes at equal pitches."""
-        plain = all(deviations is None or deviations.every_tooth_alike for deviations in self._by_gear)
-        return plain and self.removed is None and not self.base_pitch_difference
-
-    @property
-    def teeth_alike(self) -> bool:
-        """Whether all teeth of a gear have one profile."""
-        return all(deviations is None or deviations.profiles_alike for deviations in self._by_gear)
-
-    def kinks(self, gear: int) -> Array:
-        """Curvature radii at which the slope of what a gear's flank lacks changes at once."""
-        profile, deviations = self.pair.teeth_profiles[gear], self._by_gear[gear]
-        relief = [] if profile.tip_relief is None else [profile.flank_rho[1] - profile.tip_relief.length]
-        return np.concatenate(
-            [relief, [] if deviations is None else deviations.kinks(self.options.measured_points)]
-        )
+        return self.flanks.even and not self.base_pitch_difference
 
     @property
     def corners(self) -> Array:
@@ -251,12 +249,8 @@ class MeshSetup:
         line, places = pair.line_of_action, [*self.ends, pair.points.A, pair.points.E]
         if self.helical:
             return self._ends_of_lines
-        for gear, profile in enumerate(pair.teeth_profiles):
-            deviations, rho = self._by_gear[gear], []
-            if profile.tip_relief is not None:
-                rho.append(profile.flank_rho[1] - profile.tip_relief.length)
-            if deviations is not None:
-                rho += deviations.corners(self.options.measured_points).tolist()
+        for gear in (0, 1):
+            rho = self.flanks.corners(gear)
             places += rho if gear == 0 else [line - radius for radius in rho]
         if self.friction:
             places.append(pair.points.C)
@@ -274,29 +268,13 @@ class MeshSetup:
         middles = np.concatenate([start + bends, end + bends, turns])
         return np.unique((middles - self.pair.points.A) / self.pair.base_pitch % 1.0)
 
-    @property
-    def removed(self) -> tuple[Removed, Removed] | None:
-        """Material missing from pinion's and wheel's flank at curvature radii, mean of their teeth; None if none is."""
-        profiles = self.pair.teeth_profiles
-        curves = [deviations is not None and deviations.curved for deviations in self._by_gear]
-        if not any(curves) and all(profile.tip_relief is None for profile in profiles):
-            return None
-
-        def missing(gear: int) -> Removed:
-            deviations, relief = self._by_gear[gear], profiles[gear].relief
-            if deviations is None or not curves[gear]:
-                return relief
-            return lambda rho: np.asarray(relief(rho) - deviations.excess(rho))
-
-        return missing(0), missing(1)
-
     def pitch_gap(self, teeth: Integers) -> Array:
         """Gap along the line of action by pitch deviations of teeth (2, ...) [m].
 
         A tooth of the pinion that comes late opens the gap of its loaded flank, one of the wheel closes it; behind a
         tooth it is the other way round.
         """
-        first, second = self._by_gear
+        first, second = self.flanks.by_gear
         gap = np.zeros(teeth.shape[1:])
         if first is not None:
             gap += first.late(teeth[0])
@@ -311,7 +289,7 @@ class MeshSetup:
         by is taken as even.
         """
         gap = np.zeros(np.broadcast_shapes(teeth.shape[1:], rho.shape[1:]))
-        for deviations, tooth, place in zip(self._by_gear, teeth, rho, strict=True):
+        for deviations, tooth, place in zip(self.flanks.by_gear, teeth, rho, strict=True):
             if deviations is not None:
                 gap -= deviations.of_tooth(tooth, place)
         return gap

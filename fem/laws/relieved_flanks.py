@@ -24,7 +24,7 @@ from fem.laws.tip_geometry import gap_at, opening_at
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fem.laws.mesh_setup import MeshSetup
+    from fem.laws.flank_forms import FlankForms
     from fem.laws.tip_contact import Removed
     from gears import GearPair
 
@@ -87,14 +87,14 @@ def plain_touch(pair: GearPair, place: Array) -> Touch:
     return Touch(rho, nothing[0], even[0], even, nothing, np.zeros(len(place), dtype=bool))
 
 
-def touch(setup: MeshSetup, place: Array, removed: tuple[Removed, Removed]) -> Touch:
+def touch(flanks: FlankForms, place: Array, removed: tuple[Removed, Removed]) -> Touch:
     """Where flanks touch whose unlimited involutes touch at ``place`` (n,) of the line of action [m]."""
-    pair, line = setup.pair, setup.pair.line_of_action
+    pair, line = flanks.pair, flanks.pair.line_of_action
     first, second = pair.base_radii
     other = line - place
     radius = place * other / line
-    low = (other**2 - setup.rounds[1].rho ** 2) / (2 * second)
-    high = (setup.rounds[0].rho ** 2 - place**2) / (2 * first)
+    low = (other**2 - flanks.rounds[1].rho ** 2) / (2 * second)
+    high = (flanks.rounds[0].rho ** 2 - place**2) / (2 * first)
     span = np.minimum(SPAN * pair.module, 0.25 * (high - low))
 
     def rho(sigma: Array) -> tuple[Array, Array]:
@@ -156,20 +156,20 @@ def _least(slope: Callable[[Array], Array], low: Array, high: Array, close: floa
     return least, beyond
 
 
-def gentle(setup: MeshSetup) -> bool:
+def gentle(flanks: FlankForms) -> bool:
     """Whether all teeth of a gear have one profile, without hollows that no single contact fills.
 
     Otherwise flanks are taken to touch where involutes do.
     """
-    removed = setup.removed
-    if removed is None or not setup.teeth_alike:
-        return setup.teeth_alike
-    pair, line = setup.pair, setup.pair.line_of_action
-    place = np.linspace(*setup.ends, HOLLOWS)[1:-1]
+    removed = flanks.removed
+    if removed is None or not flanks.teeth_alike:
+        return flanks.teeth_alike
+    pair, line = flanks.pair, flanks.pair.line_of_action
+    place = np.linspace(*flanks.ends, HOLLOWS)[1:-1]
     span, first, second = SPAN * pair.module, *pair.base_radii
 
-    low = ((line - place) ** 2 - setup.rounds[1].rho ** 2) / (2 * second)
-    high = (setup.rounds[0].rho ** 2 - place**2) / (2 * first)
+    low = ((line - place) ** 2 - flanks.rounds[1].rho ** 2) / (2 * second)
+    high = (flanks.rounds[0].rho ** 2 - place**2) / (2 * first)
     middle = np.clip(0.0, low + span, high - span)  # beyond the ends of flanks curves say nothing
 
     def missing(apart: float) -> Array:
@@ -182,63 +182,70 @@ def gentle(setup: MeshSetup) -> bool:
     return bool(np.all(1 + place * (line - place) / line * bent >= CURVATURES[0]))
 
 
-def ends_of_flanks(setup: MeshSetup) -> tuple[float, float]:
+def ends_of_flanks(flanks: FlankForms, single: bool) -> tuple[float, float]:
     """Places on the line of action [m] between which flanks touch beside their corners, under no load.
 
     A and E, or those of roundings; with relief farther out.
+
+    Parameters
+    ----------
+    flanks : FlankForms
+    single : bool
+        Whether contacts are single ones (`gentle`).
     """
-    start, end = setup.ends
-    removed = setup.removed
-    if removed is None or not gentle(setup):
+    start, end = flanks.ends
+    removed = flanks.removed
+    if removed is None or not single:
         return start, end
-    pitch, ends = setup.pair.base_pitch, []
+    pitch, ends = flanks.pair.base_pitch, []
     for place, outwards in ((start, -1.0), (end, 1.0)):
         apart = place + 0.5 * outwards * pitch * np.array([-1.0, 1.0])
         for _ in range(7):  # 15 places at once
             places = np.linspace(apart[0], apart[1], 17)
-            inside = ~touch(setup, places, removed).beyond
+            inside = ~touch(flanks, places, removed).beyond
             last = int(np.flatnonzero(inside)[-1]) if inside.any() else 0
             apart = places[[min(last, 15), min(last, 15) + 1]]
         ends.append(float(apart.mean()))
     return ends[0], ends[1]
 
 
-def relieved_lines(setup: MeshSetup) -> RelievedLines | None:
-    """Tables of a pair's flanks; None of true involutes, and of waves that no single contact fills.
+def relieved_lines(flanks: FlankForms, ends: tuple[float, float]) -> RelievedLines | None:
+    """Tables of a pair's flanks with single contacts (`gentle`); None of true involutes.
 
     Parameters
     ----------
-    setup : MeshSetup
-        With tip edges the tables go on beyond the path, as far as flanks touch beside their corners.
+    flanks : FlankForms
+    ends : (float, float)
+        Places on the line of action between which flanks are looked at [m].
     """
-    removed = setup.removed
-    if removed is None or not gentle(setup):
+    removed = flanks.removed
+    if removed is None:
         return None
-    place = np.linspace(*(ends_of_flanks(setup) if setup.beyond_path else setup.ends), STEPS + 1)
-    at = touch(setup, place, removed)
+    place = np.linspace(*ends, STEPS + 1)
+    at = touch(flanks, place, removed)
     gap = at.gap - removed[0](at.rho[0]) - removed[1](at.rho[1])
     return RelievedLines(place, gap, at.rho, at.lever, at.curvature)
 
 
-def starts_of_relief(setup: MeshSetup) -> list[float]:
+def starts_of_relief(flanks: FlankForms) -> list[float]:
     """Places on the line of action [m] at which the law of touch changes at kinks, such as starts of tip relief.
 
     A flank stays on such a kink for a while; its slope and curvature, differences over ``SPAN``, know it from before
-    it is touched until after.
+    it is touched until after. Contacts must be single ones (`gentle`).
     """
-    removed = setup.removed
-    if removed is None or not gentle(setup):
+    removed = flanks.removed
+    if removed is None:
         return []
-    span, gears, wanted = SPAN * setup.pair.module, [], []
-    for gear, base in enumerate(setup.pair.base_radii):
+    span, gears, wanted = SPAN * flanks.pair.module, [], []
+    for gear, base in enumerate(flanks.pair.base_radii):
         for apart, slack in ((-span, 0.0), (0.0, -SLACK), (0.0, SLACK), (span, 0.0)):
-            rho = np.sqrt(np.maximum(setup.kinks(gear) ** 2 + 2 * base * apart, 0.0)) + slack
+            rho = np.sqrt(np.maximum(flanks.kinks(gear) ** 2 + 2 * base * apart, 0.0)) + slack
             gears += [gear] * len(rho)
             wanted += rho.tolist()
     which, target = np.array(gears, dtype=np.int64), np.array(wanted)
-    places = np.linspace(setup.ends[0], setup.ends[1], 257) + np.zeros((len(target), 1))
+    places = np.linspace(*flanks.ends, 257) + np.zeros((len(target), 1))
     for _ in range(5):
-        touched = touch(setup, places.ravel(), removed).rho.reshape(2, *places.shape)
+        touched = touch(flanks, places.ravel(), removed).rho.reshape(2, *places.shape)
         above = np.take_along_axis(touched, which[None, :, None], axis=0)[0] > target[:, None]
         change = above[:, 1:] != above[:, :-1]
         met = change.any(axis=1)

@@ -12,7 +12,7 @@ from base import Array, InputError
 from fem import Film, MeshCycle, PairCompliance, compliance, mesh_cycle
 from fem.laws.contact_candidates import contact_candidates
 from fem.laws.mesh_setup import MeshSetup
-from fem.laws.tip_edges import edges_at, edges_of_lines
+from fem.laws.tip_edges import edges_at
 from fem.stress.line_roots import LineRoots
 from gears import Gear, GearPair, TipRelief, contact_lines
 
@@ -43,10 +43,10 @@ def test_lines_go_on_beyond_the_path_as_far_as_tip_edges_are_looked_for():
 
 def test_tables_of_edges_are_the_edges_of_the_section():
     """Gap, touched radius and lever at places between those of the tables; on the path nothing changes."""
-    edges, pitch = edges_of_lines(SETUP, 0.3), SMALL.base_pitch
+    edges, pitch = SETUP.flanks.edges(0.3), SMALL.base_pitch
     away = pitch * np.array([0.0, 0.0123, 0.0777, 0.211, 0.3])
     for corner, place in ((1, SMALL.points.A - away), (0, SMALL.points.E + away)):
-        at = edges_at(SETUP, corner, place)
+        at = edges_at(SETUP.flanks, corner, place)
         largest = at.gap.max()
         assert edges.gaps(place) == pytest.approx(at.gap, abs=1e-5 * largest)
         rho = edges.rho(place, SMALL.line_of_action)
@@ -175,10 +175,10 @@ def test_films_are_on_the_part_of_each_cell_that_is_on_the_path():
 
 def test_tip_edges_slide_as_in_the_section():
     """Arms of both gears at places beyond the path; on it they are the curvature radii."""
-    edges, pitch, line = edges_of_lines(SETUP, 0.3), SMALL.base_pitch, SMALL.line_of_action
+    edges, pitch, line = SETUP.flanks.edges(0.3), SMALL.base_pitch, SMALL.line_of_action
     away = pitch * np.array([0.0123, 0.0777, 0.211])
     for corner, place in ((1, SMALL.points.A - away), (0, SMALL.points.E + away)):
-        at, arms = edges_at(SETUP, corner, place), edges.arms(place, line, SMALL.base_radii)
+        at, arms = edges_at(SETUP.flanks, corner, place), edges.arms(place, line, SMALL.base_radii)
         assert arms[corner] == pytest.approx(at.arm, abs=1e-4 * SMALL.module)
         assert arms[1 - corner] == pytest.approx(at.touched_rho, abs=2e-5 * SMALL.module)
     inside = np.linspace(SMALL.points.A, SMALL.points.E, 7)
@@ -288,10 +288,10 @@ def test_rounded_edges_are_those_of_the_section():
     gaps = []
     for radius in (0.0, 1e-9, 0.05e-3):
         setup = replace(SETUP, tip_rounding=radius)
-        edges = edges_of_lines(setup, 0.3)
+        edges = setup.flanks.edges(0.3)
         assert edges.ends == setup.ends
         gaps.append(edges.gaps(SMALL.points.E + SMALL.base_pitch * np.array([0.05, 0.1, 0.2])))
-        at = edges_at(setup, 0, edges.ends[1] + SMALL.base_pitch * np.array([0.05, 0.1]))
+        at = edges_at(setup.flanks, 0, edges.ends[1] + SMALL.base_pitch * np.array([0.05, 0.1]))
         found = edges.gaps(edges.ends[1] + SMALL.base_pitch * np.array([0.05, 0.1]))
         assert found == pytest.approx(at.gap, rel=1e-3)
     assert gaps[1] == pytest.approx(gaps[0], rel=1e-4)

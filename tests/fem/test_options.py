@@ -67,7 +67,7 @@ def test_measured_points_end_arcs_unless_there_are_too_many(most, corners):
         PAIR, deviations=(GearDeviations(profile=trace), None), options=fem.Options(measured_points=most)
     )
     plain = MeshSetup(PAIR)
-    assert len(measured.kinks(0)) - len(plain.kinks(0)) == corners
+    assert len(measured.flanks.kinks(0)) - len(plain.flanks.kinks(0)) == corners
 
 
 def warned(bodies, **options):

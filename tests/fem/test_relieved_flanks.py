@@ -9,7 +9,7 @@ import pytest
 
 from fem.contact.solver import solve_contact
 from fem.laws.mesh_setup import MeshSetup
-from fem.laws.relieved_flanks import SPAN, ends_of_flanks, gentle, touch
+from fem.laws.relieved_flanks import SPAN, touch
 from fem.laws.tip_geometry import gap_at, lever_ratio
 from gears import Gear, GearPair, TipRelief
 
@@ -41,7 +41,7 @@ def bodies_of(article_bodies):
 @pytest.mark.parametrize(("length", "form"), [(1.5e-3, "linear"), (3e-3, "parabolic")])
 def test_nothing_steps_where_relieved_corners_begin_to_press(bodies_of, amount, length, form):
     pair = relieved(amount, length, form)
-    for end in {*MeshSetup(pair, 1).ends, *ends_of_flanks(MeshSetup(pair, 1))}:
+    for end in {*MeshSetup(pair, 1).ends, *MeshSetup(pair, 1).flanks.touching_ends}:
         for torque in (60.0, 600.0):
             (before, after), tangent = solved(pair, bodies_of(pair), end + np.array([-1e-9, 1e-9]), torque)
             assert after == pytest.approx(before, rel=0.5 * STEP)
@@ -69,7 +69,7 @@ def test_they_touch_where_the_gap_is_least(numbers):
     places = np.concatenate(
         [e + np.linspace(-0.1e-3, 2.5e-3, 14) * s for e, s in zip(given.ends, (1, -1), strict=True)]
     )
-    found = touch(given, places, given.removed)
+    found = touch(given.flanks, places, given.removed)
     for k, place in enumerate(places):
         low, high = line - place - 2e-3, min(line - place + 2e-3, given.rounds[1].rho)
         points = np.linspace(low, high, 40_001)
@@ -84,7 +84,7 @@ def test_the_force_stands_on_the_flank_without_relief():
     pair = relieved(20e-6, 3e-3, "parabolic")
     given = MeshSetup(pair, 1)
     start, end = given.ends
-    near = touch(given, np.array([start, end]) + np.array([0.3e-3, -0.3e-3]), given.removed)
+    near = touch(given.flanks, np.array([start, end]) + np.array([0.3e-3, -0.3e-3]), given.removed)
     np.testing.assert_allclose([near.lever[0, 0], near.lever[1, 1]], 1.0, atol=5e-4)
     assert near.lever[0, 1] < 0.99
     assert near.lever[0, 1] == pytest.approx(lever_ratio(pair, near.rho[1, 1], end - 0.3e-3, 0), abs=1e-4)
@@ -117,7 +117,7 @@ def test_least_gap_is_well_below_that_of_the_nominal_place():
     given = MeshSetup(pair, 1)
     place = np.array([given.ends[0]])
     nominal = given.removed[0](place) + given.removed[1](pair.line_of_action - place)
-    assert 0.5e-6 < float(nominal[0] - touch(given, place, given.removed).gap[0]) < 2e-6
+    assert 0.5e-6 < float(nominal[0] - touch(given.flanks, place, given.removed).gap[0]) < 2e-6
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.1, 0.14])
@@ -127,4 +127,4 @@ def test_flanks_that_begin_at_their_base_circle_have_no_hollow(shift):
     with np.errstate(invalid="raise"):
         for teeth in (17, 34, 40):
             gears = Gear(17, shift, tip_relief=relief), Gear(teeth, tip_relief=relief)
-            assert gentle(MeshSetup(GearPair(*gears, 2e-3, 0.02), 8))
+            assert MeshSetup(GearPair(*gears, 2e-3, 0.02), 8).flanks.gentle

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
 from math import radians
 
@@ -11,7 +12,7 @@ import pytest
 from fem import compliance, mesh_cycle, unloaded_transmission_error
 from fem.laws.contact_candidates import SEEN_ALONG, contact_candidates, line_gaps
 from fem.laws.mesh_setup import MeshSetup
-from fem.laws.relieved_flanks import SPAN, ends_of_flanks, touch
+from fem.laws.relieved_flanks import SPAN, touch
 from fem.laws.tip_edges import edges_at
 from gears import Gear, GearPair, TipRelief
 
@@ -91,9 +92,9 @@ def test_sections_of_lines_are_those_of_a_spur_pair(relief: TipRelief, edges: bo
     lines = contact_candidates(setup).lines
     assert lines is not None
     assert setup.removed is not None
-    start, end = ends_of_flanks(setup) if edges else setup.ends
+    start, end = setup.flanks.touching_ends if edges else setup.ends
     place = np.linspace(start, end, 2998)
-    at, rho = touch(setup, place, setup.removed), lines.rho(place)
+    at, rho = touch(setup.flanks, place, setup.removed), lines.rho(place)
     gap = line_gaps(setup, np.zeros_like(place), rho) + lines.further_gaps(place)
     assert gap == pytest.approx(at.gap, abs=1e-9)
     assert rho == pytest.approx(at.rho, abs=5e-6)
@@ -104,7 +105,7 @@ def test_sections_of_lines_are_those_of_a_spur_pair(relief: TipRelief, edges: bo
         return
     assert start < setup.ends[0] < setup.ends[1] < end  # flanks touch on beyond the path
     for corner, outside in ((1, start - np.linspace(1e-9, 1e-3, 9)), (0, end + np.linspace(1e-9, 1e-3, 9))):
-        edge = edges_at(setup, corner, outside)
+        edge = edges_at(setup.flanks, corner, outside)
         rho = lines.rho(outside)
         gap = line_gaps(setup, np.zeros_like(outside), rho) + lines.further_gaps(outside)
         assert gap == pytest.approx(edge.gap, abs=2e-9)
@@ -112,7 +113,9 @@ def test_sections_of_lines_are_those_of_a_spur_pair(relief: TipRelief, edges: bo
         assert lines.levers(outside)[corner] == pytest.approx(edge.lever, rel=1e-5)
         # nothing steps where flanks give way to edges
         last = start if corner == 1 else end
-        assert gap[0] == pytest.approx(float(touch(setup, np.array([last]), setup.removed).gap[0]), abs=5e-9)
+        assert gap[0] == pytest.approx(
+            float(touch(setup.flanks, np.array([last]), setup.removed).gap[0]), abs=5e-9
+        )
 
 
 def test_lengths_and_films_stay_on_the_path() -> None:
@@ -148,6 +151,36 @@ def test_relief_of_nothing_is_the_plain_pair() -> None:
         assert eased.further_gaps(place) == pytest.approx(plain.further_gaps(place), abs=1e-11)
         assert eased.levers(place) == pytest.approx(plain.levers(place), abs=1e-7)
         assert eased.curvatures(place) == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("edges", [False, True])
+def test_tables_are_found_once_for_all_positions(edges: bool) -> None:
+    """Lines at any positions touch by the same tables; gears that differ have others, and so have copies."""
+    pair = relieved(FORMS[0], radians(20.0))
+    setup = MeshSetup(pair, 4, beyond_path=edges)
+    lines = [
+        contact_candidates(each, 0.3).lines
+        for each in (setup.at(np.array([0.1])), setup.opposite.at(np.ones(2)))
+    ]
+    assert lines[0] is not None
+    assert lines[1] is not None
+    assert lines[0].relieved is lines[1].relieved is setup.relieved
+    assert lines[0].edges is lines[1].edges
+    other = relieved(TipRelief(15e-6, 3e-3), radians(20.0))
+    for differs in (replace(setup, pair=other), replace(setup, tip_rounding=1e-5)):
+        assert differs.flanks is not setup.flanks
+        found, anew = (
+            contact_candidates(differs).lines,
+            contact_candidates(MeshSetup(differs.pair, 4, edges)).lines,
+        )
+        assert found is not None
+        assert anew is not None
+        assert found.relieved is not setup.relieved
+        if not differs.tip_rounding:
+            np.testing.assert_array_equal(found.rho(pair.points.E), anew.rho(pair.points.E))
+    copy = pickle.loads(pickle.dumps(setup))
+    assert copy.relieved is not setup.relieved
+    np.testing.assert_array_equal(copy.relieved.gap, setup.relieved.gap)
 
 
 @pytest.mark.slow

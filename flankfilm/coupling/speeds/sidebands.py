@@ -19,7 +19,7 @@ from base import Array, Cost, InputError, Stopwatch, part, quantity, record
 from base.results import EXACT, ITSELF
 from dynamics.model.protocol import PeriodicOscillator, settling_periods
 from dynamics.model.stiffness import MAX_ORDER
-from fem.laws.mesh_setup import Deviations
+from fem.laws.flank_forms import Deviations
 from flankfilm.coupling.drive.pair_drive import PairDrive
 from flankfilm.coupling.vibration.excitation import ErrorSeries, peak_to_peak, unloaded_error
 from flankfilm.coupling.vibration.oscillator import PairOscillator

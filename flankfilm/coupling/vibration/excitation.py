@@ -21,7 +21,8 @@ import gears
 from base import Array, Cost, Faults, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
 from dynamics.model.stiffness import MAX_ORDER
-from fem.laws.mesh_setup import Deviations, MeshSetup
+from fem.laws.flank_forms import Deviations
+from fem.laws.mesh_setup import MeshSetup
 
 SAMPLES = 4096
 """Samples of a curve that is given at unequal positions, and of a sum of harmonics whose range is looked for."""
