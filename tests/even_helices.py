@@ -12,8 +12,9 @@ import numpy as np
 
 from base import Array
 from fem.elasticity.line_load import flank_points, line_loads
-from fem.elasticity.prism import Face, Section, prism, section
+from fem.elasticity.prism import prism
 from fem.elasticity.ring import ring_of
+from fem.elasticity.section import Face, Section, section
 from fem.influence.gear_shape import GearShape, MeshedShape
 from fem.influence.gear_store import GearStore
 from fem.influence.helix_ends import HelixEnds

@@ -1,4 +1,4 @@
-"""Contact of all cells of the face of whole pairs: one active set, with strips as wide as the contact."""
+"""Contact of all cells of the face of whole pairs: compliances, laws, gaps and levers of cells, put together."""
 
 from __future__ import annotations
 
@@ -21,14 +21,13 @@ from fem.contact.cell_laws import (
     partial_cells,
 )
 from fem.contact.cell_matrix import cell_coupling, cross_coupling
+from fem.contact.cell_share import CellLaw, CellProblem, CellShare, Couplings, by_cells, flat
 from fem.contact.contact_sides import ContactSides
 from fem.elasticity.flamant import hertz_half_width
-from fem.pair.face_shafts import HeldShafts, ShaftsUnderFace, shafts_under_face
+from fem.pair.face_shafts import ShaftsUnderFace, shafts_under_face
 from fem.pair.line_shafts import ShaftsUnderLines
 from fem.pair.wide_contact import shared_by_width
-from gears.sharing.active_set import share_forces
-from gears.sharing.central_path import share_forces_by_path
-from gears.sharing.staying_contacts import DeflectionLaw, JointLaw, StayingContacts
+from gears.sharing.staying_contacts import JointLaw
 
 if TYPE_CHECKING:
     from fem.laws.contact_candidates import ContactCandidates
@@ -36,45 +35,10 @@ if TYPE_CHECKING:
     from fem.pair.pair_compliance import PairCompliance
     from gears import GearPair, LoadShare
 
-__all__ = ["CellContact", "CellShare", "UnderShafts", "along_cells"]
+__all__ = ["CellContact", "UnderShafts", "along_cells"]
 
 UnderShafts: TypeAlias = ShaftsUnderFace | ShaftsUnderLines
 """Shafts under cells that lie along the face, or on lines across it."""
-
-
-@record
-class CellShare:
-    """Share of cells.
-
-    Attributes
-    ----------
-    share : LoadShare
-        (torques, pitches, positions, pairs cells).
-    bends, remaining_gaps : (torques, pitches, positions, pairs, cells) arrays
-        How far bodies bend, and the gap that is so left under load [m]; where a cell bears, minus what the contact's
-        own law yields.
-    strips : (torques,) array
-        Half-widths of strips of pressure over a cell's length (``fem.pair.wide_contact``).
-    rise : (torques, pitches, positions, pairs, cells) array
-        By how much smallest gaps of cells fall short of their mean [m]; 0 where cells touch all over or nowhere.
-    shafts : HeldShafts or None
-        From whose first touch the share is measured; None where they are rigid.
-    slopes : (2, torques, pitches, positions, pairs cells) array or None
-        Of forces on cells by D and by a turn across the line of action (`CellContact.tilts`), without shafts [N/m, N].
-    """
-
-    share: LoadShare
-    bends: Array
-    remaining_gaps: Array
-    strips: Array
-    rise: Array
-    shafts: HeldShafts | None = None
-    slopes: Array | None = None
-
-    @property
-    def forces(self) -> Array:
-        """On cells (torques, pitches, positions, pairs, cells) [N]."""
-        return _by_cells(self.share.forces, self.remaining_gaps.shape[-1])
 
 
 @record
@@ -138,86 +102,66 @@ class CellContact:
         held : bool
             Whether the share is measured from the first touch on shafts that are held; else it counts the shafts.
         """
-        cells = face.cells
-        apart, film = self._apart(face), self.films(face)
-        ahead, (reach, levers) = np.repeat(self.sides.sign > 0.0, cells), self.levers(face)
-        start, laws = _flat(self.spread(face, near)), self.laws(face)
+        apart, (reach, levers) = self._apart(face), self.levers(face)
         shafts, parting = self.shafts(face), self._parting(face, len(near))
-        apart = apart if parting is None else apart + parting
-
-        @lru_cache(maxsize=1)  # large ones are kept nowhere else
-        def coupling(strip: float) -> tuple[CellCoupling, CellCoupling]:
-            """Of the bodies, and with the shafts."""
-            own = self.coupling(replace(face, strip=strip))
-            return own, self._on_shafts(own, shafts if parting is None else None)
-
-        @lru_cache(maxsize=1)
-        def law(strip: float, torques: tuple[int, ...]) -> JointLaw:
-            return (
-                laws if rise is None else partial_cells(laws, coupling(strip)[0], _flat(rise)[list(torques)])
-            )
-
-        def share(strip: float, torques: Integers) -> LoadShare:
-            alone, stiff = coupling(strip)
-            own = law(strip, tuple(torques.tolist()))
-            first = apart if parting is None else apart[torques]
-            first = first if rise is None else first - _flat(rise)[torques]
-            # the turn is counted from the first touch, so that small ones keep their digits beside gaps
-            least = (first / reach)[..., ahead].min(axis=-1)
-            contacts = StayingContacts(stiff, own, film, first - reach * least[..., None], reach, levers)
-            load_share = _settled(contacts, stiff, self.whole[torques], start[torques])
-            load_share = replace(load_share, transmission_error=load_share.transmission_error + least)
-            return _unique(load_share, alone, own, film)
-
-        load_share, strips = self.by_width(face, near, share)
-        bends = np.zeros_like(load_share.forces)
-        slopes = np.zeros_like(bends), np.zeros_like(bends)
-        tilts = self.tilts(face) if held else None
-        responses = None if tilts is None else np.zeros((2, *bends.shape))
-        for strip in np.unique(strips).tolist():
-            torques = np.flatnonzero(strips == strip)
-            forces = load_share.forces[torques]
-            wanted, nothing = np.ones(forces.shape[:-1], dtype=bool), np.zeros_like(forces)
-            alone, stiff = coupling(strip)
-            bends[torques] = stiff.applied(forces, wanted, nothing)
-            if not held or (shafts is None and tilts is None):
-                continue
-            slope = law(strip, tuple(torques.tolist())).slope(forces)
-            slope = slope if film is None else slope - film.slope(forces)
-            if responses is not None and tilts is not None:
-                responses[:, torques] = alone.solved(
-                    slope, reach + nothing, reach * tilts + nothing, forces > 0.0, wanted
-                )
-            if shafts is not None:
-                by_tilt = nothing + shafts.levers(len(self.sides.sign), self.sides.count)
-                slopes[0][torques], slopes[1][torques] = alone.solved(
-                    slope, reach + nothing, by_tilt, forces > 0.0, wanted
-                )
-        remaining_gaps = bends + apart - reach * load_share.transmission_error[..., None]
-        if film is not None:
-            remaining_gaps = remaining_gaps - film.approach(np.zeros_like(load_share.forces))
-        bends = bends if parting is None else bends + parting
-        bends, remaining_gaps = _by_cells(bends, cells), _by_cells(remaining_gaps, cells)
-        reached = None
+        problem = CellProblem(
+            self.whole,
+            flat(self.spread(face, near)),
+            np.broadcast_to(apart if parting is None else apart + parting, (len(near), *apart.shape)),
+            None if rise is None else flat(rise),
+            reach,
+            levers,
+            np.repeat(self.sides.sign > 0.0, face.cells),
+            *self._yielding(face, None if parting is not None else shafts, rise),
+            self.films(face),
+        )
+        load_share, strips = self.by_width(face, near, problem.share)
+        tilts, turns = self.tilts(face) if held else None, []
+        if tilts is not None:
+            turns.append(reach * tilts)
+        if held and shafts is not None:
+            turns.append(shafts.levers(len(self.sides.sign), self.sides.count))
+        bends, slopes = problem.bent(load_share.forces, strips, turns)
+        remaining_gaps = by_cells(problem.left(bends, load_share.transmission_error), face.cells)
+        bends, reached = bends if parting is None else bends + parting, None
         if held and shafts is not None:
             load_share, reached = shafts.held(
                 load_share,
                 self.sides.lever_ratios,
                 self.sides.gaps,
-                slopes,
+                slopes[-1],
                 levers,
                 self.sides.count,
-                None if self.brought is None else _flat(self.brought[cells]),
+                None if self.brought is None else flat(self.brought[face.cells]),
             )
         return CellShare(
             load_share,
-            bends,
+            by_cells(bends, face.cells),
             remaining_gaps,
             strips,
             np.zeros_like(remaining_gaps) if rise is None else rise,
             reached,
-            responses,
+            None if tilts is None else np.stack(slopes[0]),
         )
+
+    def _yielding(
+        self, face: FaceSetting, shafts: UnderShafts | None, rise: Array | None
+    ) -> tuple[Couplings, CellLaw]:
+        """Couplings of cells by strips, without and with shafts, and their laws; large ones are kept nowhere else."""
+        laws = self.laws(face)
+
+        @lru_cache(maxsize=1)
+        def couplings(strip: float) -> tuple[CellCoupling, CellCoupling]:
+            own = self.coupling(replace(face, strip=strip))
+            return own, self._on_shafts(own, shafts)
+
+        @lru_cache(maxsize=1)
+        def law(strip: float, torques: tuple[int, ...]) -> JointLaw:
+            if rise is None:
+                return laws
+            return partial_cells(laws, couplings(strip)[0], flat(rise)[list(torques)])
+
+        return couplings, law
 
     def levers(self, face: FaceSetting) -> tuple[Array, Array]:
         """By how much D closes gaps of cells, below 0 where it opens them, and levers of forces (positions, n).
@@ -237,7 +181,7 @@ class CellContact:
         shafts = self.shafts(face)
         if self.brought is None or shafts is None:
             return None
-        parting = shafts.parting(_flat(self.brought[face.cells]), self.sides.count)
+        parting = shafts.parting(flat(self.brought[face.cells]), self.sides.count)
         return np.broadcast_to(parting, (torques, *parting.shape[1:]))
 
     def tilts(self, face: FaceSetting) -> Array | None:
@@ -273,7 +217,7 @@ class CellContact:
         unit = self.pair.face_width / face.cells
 
         def widest(load_share: LoadShare) -> Array:
-            return self._half_widths(_by_cells(load_share.forces, face.cells).max(axis=-1) / unit)
+            return self._half_widths(by_cells(load_share.forces, face.cells).max(axis=-1) / unit)
 
         mean = self._half_widths(near.sum(axis=-1) / self.pair.face_width)
         return shared_by_width(share, widest, unit, mean)
@@ -354,7 +298,7 @@ class CellContact:
         approach : (torques, pitches, positions) array
             D, with what shafts give way [m].
         """
-        loads, (reach, _) = _flat(forces), self.levers(face)
+        loads, (reach, _) = flat(forces), self.levers(face)
         wanted, parting = np.ones(loads.shape[:-1], dtype=bool), self._parting(face, len(loads))
         coupling = self._on_shafts(self.coupling(face), self.shafts(face) if parting is None else None)
         bends = coupling.applied(loads, wanted, np.zeros_like(loads))
@@ -362,8 +306,8 @@ class CellContact:
         gaps, film = bends + self._apart(face) - reach * approach[..., None], self.films(face)
         if film is not None:
             gaps = gaps - film.approach(np.zeros_like(loads))
-        drops = gap_drops(self._over_sides(face, _gaps_within), _by_cells(bends, face.cells))
-        return np.asarray(_by_cells(gaps, face.cells) - drops)
+        drops = gap_drops(self._over_sides(face, _gaps_within), by_cells(bends, face.cells))
+        return np.asarray(by_cells(gaps, face.cells) - drops)
 
     def _on_shafts(self, coupling: CellCoupling, shafts: UnderShafts | None) -> CellCoupling:
         """A compliance of the bodies with that of the shafts."""
@@ -379,7 +323,7 @@ class CellContact:
     def _apart(self, face: FaceSetting) -> Array:
         """Gaps without load, beyond where the first place of the face touches (pitches, positions, pairs cells) [m]."""
         apart = self.sides.gaps[..., None] + self._over_sides(face, along_cells)
-        return _flat(np.where(self.sides.touchable[..., None], apart, np.inf))
+        return flat(np.where(self.sides.touchable[..., None], apart, np.inf))
 
     def _over_sides(
         self, face: FaceSetting, along: Callable[[FaceSetting, GearPair, ContactCandidates], Array]
@@ -407,21 +351,6 @@ class CellContact:
         return replace(self, whole=single, sides=self.sides.at(pitch, position), brought=brought)
 
 
-def _settled(contacts: StayingContacts, coupling: CellCoupling, whole: Array, start: Array) -> LoadShare:
-    """Share of cells, from forces to begin with; along the central path where cells come and go in circles."""
-    from gears.tooth.errors import LoadSharingError
-
-    whole = whole + np.zeros(start.shape[:-1])
-    share = share_forces(contacts, whole, start, None)
-    if share is None and (share := share_forces_by_path(contacts, whole, start)) is not None:
-        slope, everywhere = contacts.laws(share.forces)[1], np.ones(whole.shape, dtype=bool)
-        share = share if coupling.definite(slope, share.forces > 0.0, everywhere) else None
-    if share is None:
-        allowed = "must have deflections that grow with the force"
-        raise LoadSharingError.at("cells", "no solution", allowed, "give fewer cells, or more torque")
-    return share
-
-
 def along_cells(face: FaceSetting, pair: GearPair, candidates: ContactCandidates) -> Array:
     """Gaps of cells beyond where the first place of the face touches (positions, pairs, cells) [m]."""
     least = np.asarray(face.least_gap(pair, candidates.rho))
@@ -431,34 +360,3 @@ def along_cells(face: FaceSetting, pair: GearPair, candidates: ContactCandidates
 def _gaps_within(face: FaceSetting, pair: GearPair, candidates: ContactCandidates) -> Array:
     """Gaps at equal distances along the face (positions, pairs, places) [m]."""
     return face.gaps_within(pair, candidates.rho, WITHIN)
-
-
-def _unique(
-    load_share: LoadShare, coupling: CellCoupling, laws: DeflectionLaw, film: DeflectionLaw | None
-) -> LoadShare:
-    """Return a share of cells that no other one stands beside, which wider strips else have.
-
-    Laws of contacts that a tip corner cuts off may fall by the load, as far as the tooth in the plane yields more than
-    that; in short waves along the face it yields less.
-    """
-    from gears.tooth.errors import LoadSharingError
-
-    slope, bears = laws.slope(load_share.forces), load_share.forces > 0.0
-    if film is not None:
-        slope = slope - film.slope(load_share.forces)
-    if not coupling.definite(slope, bears, np.any(bears & (slope < 0.0), axis=-1)):
-        allowed = "must yield to short waves of load beside a tip corner, which these do not"
-        raise LoadSharingError.at(
-            "cells", coupling.unknowns, allowed, "reduce the torque, or give fewer cells"
-        )
-    return load_share
-
-
-def _by_cells(values: Array, cells: int) -> Array:
-    """(..., pairs cells) as (..., pairs, cells)."""
-    return values.reshape(*values.shape[:-1], -1, cells)
-
-
-def _flat(values: Array) -> Array:
-    """(..., pairs, cells) as (..., pairs cells)."""
-    return np.asarray(values.reshape(*values.shape[:-2], -1))

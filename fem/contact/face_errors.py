@@ -15,7 +15,8 @@ from fem.pair.face_setting import FREE_ENDS, WALLS
 from gears.sharing.mesh_arcs import Scatter
 
 if TYPE_CHECKING:
-    from fem.contact.cell_contact import CellContact, CellShare
+    from fem.contact.cell_contact import CellContact
+    from fem.contact.cell_share import CellShare
     from fem.pair.face_setting import FaceSetting
     from gears import LoadShare
 

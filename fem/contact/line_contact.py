@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from base import Array, Integers, record
-from fem.contact.cell_contact import CellContact, CellShare
+from fem.contact.cell_contact import CellContact
 from fem.contact.cell_coupling import CellCoupling
 from fem.contact.cell_laws import WITHIN, LawOnLines, drops_within
 from fem.contact.cell_matrix import coupled_by, kept_unless_large
+from fem.contact.cell_share import CellShare
 from fem.elasticity.flamant import hertz_half_width
 from fem.influence.helix_ends import OF_ENDS, OFF_BY
 from fem.laws.contact_candidates import SEEN_ALONG, line_gaps

@@ -24,10 +24,10 @@ from base import Array, Booleans, record
 from fem.contact.cell_coupling import CellCoupling
 from fem.contact.cell_matrix import cross_coupling
 from fem.contact.contact_sides import between
-from fem.contact.cross_coupling import CellCross, CrossCoupling, DenseCross
 from fem.contact.moved_share import open_gaps
 from fem.contact.moved_side import MovedSide
 from fem.contact.moving_contacts import MovingContacts
+from fem.contact.moving_coupling import CellCross, CrossCoupling, DenseCross
 from fem.contact.shared_contacts import SharedContacts
 from gears.sharing.active_set import Linearised, LoadShare
 

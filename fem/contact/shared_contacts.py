@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from base import Array, Booleans, record
-from fem.contact.cell_contact import CellContact, CellShare
+from fem.contact.cell_contact import CellContact
+from fem.contact.cell_share import CellShare
 from fem.contact.face_errors import CellErrors, cell_errors, half_as_many, no_errors
 from fem.contact.line_contact import LineContact
 from fem.laws.local_law import Film, film_yielding
@@ -49,7 +50,7 @@ class SharedContacts:
     remaining_gaps : (torques, pitches, positions, pairs, cells) array
         Gap that is left under load [m]; where a cell bears, minus what the contact's own law yields.
     strips, rise
-        As of ``fem.contact.cell_contact.CellShare``.
+        As of ``fem.contact.cell_share.CellShare``.
     lost : (2, 2, torques, pitches, positions, pairs) array
         Parts of both base radii by which levers of forces, and of further ones, are shorter: 0 of contacts that stay.
     estimate : callable

@@ -20,7 +20,8 @@ from numpy.polynomial import legendre
 
 from base import Array, record
 from fem.elasticity.line_load import FlankPoints
-from fem.elasticity.prism import Face, Section, prism
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face, Section
 
 __all__ = [
     "ORDER",

@@ -20,7 +20,8 @@ from numpy.polynomial import legendre
 from base import Array, Integers, record
 from fem.elasticity.free_ends import ORDER, piece_values, pieces_between
 from fem.elasticity.line_load import FlankPoints
-from fem.elasticity.prism import Face, Section, prism
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face, Section
 
 __all__ = ["FacePieces", "answers"]
 

@@ -22,7 +22,8 @@ import numpy as np
 from base import Array, Integers, record
 from fem.cycle.result import MeshCycle
 from fem.elasticity.line_load import FlankPoints, flank_points
-from fem.elasticity.prism import Face, Prism, prism
+from fem.elasticity.prism import Prism, prism
+from fem.elasticity.section import Face
 from fem.influence.gear_face import between_waves, section_of, solved_waves
 from meshes import SectorMesh
 

@@ -22,7 +22,8 @@ from base import Array, Integers, record
 from fem.elasticity.flank_samples import sample_places
 from fem.elasticity.free_ends import HalfFace, free_ends_across, half_face, over_cells
 from fem.elasticity.line_load import flank_points
-from fem.elasticity.prism import Face, prism
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face
 from fem.influence.back_compliance import teeth_around
 from fem.influence.flank_variable import FlankVariable
 from fem.influence.gear_face import END_PLACES, ENDS_SIZES, PLACES, between_waves, section_of, solved_waves

@@ -16,7 +16,8 @@ from fem.elasticity.fillet import FilletLine, fillet_line, local_cubic
 from fem.elasticity.fillet_strain import FilletStrain, fillet_strains
 from fem.elasticity.free_ends import HalfFace, half_face
 from fem.elasticity.line_load import FlankPoints, flank_points
-from fem.elasticity.prism import Section, prism, section
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Section, section
 from fem.influence.fillet_waves import solid_of
 from fem.influence.flank_variable import FlankVariable, stretched_points
 from fem.influence.series import FlankFit

@@ -18,7 +18,8 @@ import numpy as np
 from base import Array, record
 from fem.elasticity.fillet_strain import FilletStrain, fillet_strains
 from fem.elasticity.line_load import FlankPoints, flank_points
-from fem.elasticity.prism import Face, prism, section
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face, section
 from fem.influence.flank_variable import FlankVariable, stretched_points
 from fem.influence.gear_face import solid_of, solved_waves
 from fem.influence.series import FlankFit, FlankSeries

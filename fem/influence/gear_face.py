@@ -21,7 +21,8 @@ from fem.elasticity.flank_samples import sample_places
 from fem.elasticity.free_ends import HalfFace, free_ends, half_face, over_cells
 from fem.elasticity.line_load import flank_points
 from fem.elasticity.plane_elasticity import PlaneElasticity
-from fem.elasticity.prism import Face, Section, prism, section
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face, Section, section
 from fem.influence.flank_variable import FlankVariable, RootVariable, stretched_points
 from fem.influence.gear_shape import MeshedShape
 from fem.influence.series import CrossSeries, FlankFit, FlankSeries

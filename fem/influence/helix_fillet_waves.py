@@ -24,7 +24,8 @@ from base import Array, record
 from fem.elasticity.fillet import FilletLine, fillet_line
 from fem.elasticity.helix_fillet import HelixFillet, helix_fillets
 from fem.elasticity.line_load import FlankPoints, flank_points
-from fem.elasticity.prism import Face, Prism, prism, section
+from fem.elasticity.prism import Prism, prism
+from fem.elasticity.section import Face, section
 from fem.influence.flank_variable import FlankVariable, stretched_points
 from fem.influence.gear_face import SHORTEST, between_waves, solid_of, solved_waves
 from fem.influence.series import FlankFit, FlankSeries

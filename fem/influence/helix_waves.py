@@ -31,7 +31,8 @@ from numpy.polynomial import chebyshev
 from base import Array, record, unclocked
 from fem.elasticity.flank_samples import sample_places
 from fem.elasticity.line_load import FlankPoints, flank_points
-from fem.elasticity.prism import Face, Section, prism, section
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face, Section, section
 from fem.influence.flank_variable import FlankVariable, RootVariable
 from fem.influence.gear_face import BEND, between_waves, solid_of, solved_waves
 from fem.influence.gear_shape import MeshedShape

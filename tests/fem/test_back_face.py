@@ -14,8 +14,9 @@ from fem.elasticity.flank_samples import sample_places
 from fem.elasticity.free_ends import free_ends_across, half_face, over_cells
 from fem.elasticity.line_load import FlankPoints, flank_points
 from fem.elasticity.plane_elasticity import INTEGRATION, PlaneElasticity, physical_gradients
-from fem.elasticity.prism import Face, Section, prism, section
+from fem.elasticity.prism import prism
 from fem.elasticity.ring import ring_of
+from fem.elasticity.section import Face, Section, section
 from fem.influence.back_compliance import back_compliance
 from fem.influence.back_face import BackHarmonics, back_end_correction, back_harmonics
 from fem.influence.gear_face import section_of

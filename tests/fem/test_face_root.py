@@ -14,7 +14,8 @@ import fem
 from fem.elasticity.fillet_strain import fillet_strains, von_mises
 from fem.elasticity.line_load import flank_points
 from fem.elasticity.plane_elasticity import PlaneElasticity, physical_gradients
-from fem.elasticity.prism import Face, prism, section
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face, section
 from fem.influence.fillet_waves import _stress, solid_of
 from fem.influence.gear_face import between_waves, solved_waves
 from fem.influence.gear_store import GearStore

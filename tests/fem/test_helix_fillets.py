@@ -10,8 +10,9 @@ from fem.elasticity.free_ends import pieces_between
 from fem.elasticity.helix_fillet import ACROSS, ALONG, SHEAR, helix_fillets, principal
 from fem.elasticity.lengthened import FacePieces
 from fem.elasticity.line_load import flank_points
-from fem.elasticity.prism import prism, section
+from fem.elasticity.prism import prism
 from fem.elasticity.ring import ring_of
+from fem.elasticity.section import section
 from fem.influence.fillet_influence import fillet_influence
 from fem.influence.fillet_waves import fillet_waves
 from fem.influence.gear_face import solid_of

@@ -10,7 +10,8 @@ import pytest
 from base import Array
 from fem.elasticity.free_ends import half_face
 from fem.elasticity.line_load import flank_points
-from fem.elasticity.prism import Face, prism, section
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face, section
 from fem.influence.gear_face import ENDS_SIZES, solid_of
 from fem.influence.gear_shape import GearShape, MeshedShape
 from fem.influence.helix_lines import ContactLine, along_line, between_lines

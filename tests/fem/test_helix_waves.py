@@ -9,7 +9,8 @@ import pytest
 
 from base import Array
 from fem.elasticity.line_load import flank_points
-from fem.elasticity.prism import Face, prism, section
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face, section
 from fem.influence.gear_face import axial_harmonics, solid_of
 from fem.influence.gear_shape import GearShape, MeshedShape
 from fem.influence.helix_waves import HelixHarmonics

@@ -14,7 +14,8 @@ from fem.contact.moved_side import moved_side
 from fem.contact.moving_corners import moved_flanks
 from fem.contact.moving_coupling import other_pairs, tooth_smoothing
 from fem.elasticity.line_load import flank_points
-from fem.elasticity.prism import Face, prism
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face
 from fem.influence.gear_face import ENDS_SIZES, section_of
 from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup

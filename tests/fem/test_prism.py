@@ -12,7 +12,8 @@ from numpy.polynomial import legendre
 from base import Array
 from fem.elasticity.line_load import FlankPoints, flank_points
 from fem.elasticity.plane_elasticity import PlaneElasticity, physical_gradients
-from fem.elasticity.prism import Face, Section, prism, section
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face, Section, section
 from gears import Gear, GearPair
 from meshes import SectorMesh, Sizes, mesh_sector
 from meshes.sector import refined

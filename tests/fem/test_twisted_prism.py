@@ -15,7 +15,8 @@ from fem.elasticity.dissection import unknowns_of
 from fem.elasticity.free_ends import HalfFace, half_face
 from fem.elasticity.line_load import FlankPoints, flank_points
 from fem.elasticity.plane_elasticity import PlaneElasticity, physical_gradients
-from fem.elasticity.prism import Face, Section, prism, section
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face, Section, section
 from gears import Gear, GearPair
 from meshes import SectorMesh, Sizes, mesh_sector
 from meshes.triangle import shape

@@ -16,7 +16,8 @@ from numpy.polynomial import legendre
 from fem.elasticity.free_ends import half_face
 from fem.elasticity.line_load import flank_points
 from fem.elasticity.plane_elasticity import PlaneElasticity
-from fem.elasticity.prism import Face, prism, section
+from fem.elasticity.prism import prism
+from fem.elasticity.section import Face, section
 from fem.influence.gear_face import section_of
 from fem.influence.gear_shape import MeshedShape, shapes
 from fem.influence.helix_ends import helix_ends
