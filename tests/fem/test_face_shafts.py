@@ -16,14 +16,12 @@ from fem.contact.solver import solve_contact
 from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import face_setting
-from gears import Alignment, Bearing, Gear, GearPair, Material, Shaft, ShaftSegment
+from gears import Alignment, Bearing, Gear, GearPair, Shaft, ShaftSegment
 from gears.pair.shaft_face import shaft_over_face
+from tests.stiff_shafts import ENDS, stiffest_shafts, tilting_shaft
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
 TORQUE = 100.0
-ENDS = Bearing(0.005, 5e8), Bearing(0.195, 5e8)
-STIFF = 10.0
-"""Diameter of a step that does not bend by itself [m]."""
 
 
 @pytest.fixture(scope="module")
@@ -31,13 +29,7 @@ def bodies() -> PairCompliance:
     return compliance(PAIR, tolerance=0.02)
 
 
-def _tilting(at: float, diameter: float = 0.025) -> Shaft:
-    """Shaft that bends beside its gear but not under it."""
-    parts = (at - 0.015, diameter), (0.03, STIFF), (0.185 - at, diameter)
-    return Shaft(tuple(ShaftSegment(*one) for one in parts), ENDS, at, 0.0)
-
-
-BOTH = _tilting(0.05), _tilting(0.14, 0.03)
+BOTH = tilting_shaft(0.05), tilting_shaft(0.14, 0.03)
 BENDING = (
     Shaft((ShaftSegment(0.2, 0.02),), ENDS, 0.06, 0.0),
     Shaft((ShaftSegment(0.2, 0.025),), ENDS, 0.15, 0.2),
@@ -70,18 +62,8 @@ def _moment(cycle: MeshCycle) -> np.ndarray:
 def test_rigid_shafts_change_nothing(bodies, moving):
     """By the stiffest shafts there may be, and half of what these still change."""
     options = {"moving_contact": moving, "beyond_path": False}
-    stiff, half = (
-        Shaft(
-            (ShaftSegment(0.2, 10.0),),
-            (Bearing(0.0, size), Bearing(0.2, size)),
-            0.1,
-            0.0,
-            Material(size, 0.3, 7850.0),
-        )
-        for size in (1e13, 5e12)
-    )
     plain = _cycle(bodies, **options)
-    found, other = (_cycle(bodies, shafts=(one, one), **options) for one in (stiff, half))
+    found, other = (_cycle(bodies, shafts=(one, one), **options) for one in stiffest_shafts())
     for name in ("stiffness", "secant_stiffness", "transmission_error"):
         rigid = 2.0 * getattr(found, name) - getattr(other, name)
         np.testing.assert_allclose(rigid, getattr(plain, name), rtol=1e-9)
@@ -96,8 +78,8 @@ def test_rigid_shafts_change_nothing(bodies, moving):
 @pytest.mark.parametrize(
     ("shafts", "moving", "off"),
     [
-        ((_tilting(0.08, 0.035), None), False, 1e-6),
-        ((_tilting(0.05), None), False, 5e-5),
+        ((tilting_shaft(0.08, 0.035), None), False, 1e-6),
+        ((tilting_shaft(0.05), None), False, 5e-5),
         (BOTH, False, 1e-6),
         (BOTH, True, 1.5e-2),
     ],
@@ -157,7 +139,7 @@ def test_the_matrix_is_that_of_aligned_gears_by_differences(bodies):
     np.testing.assert_allclose(found.face.mesh_matrix[0], expected, rtol=1e-5)
 
 
-@pytest.mark.parametrize("shafts", [(_tilting(0.08, 0.04), _tilting(0.09, 0.04)), LEVEL])
+@pytest.mark.parametrize("shafts", [(tilting_shaft(0.08, 0.04), tilting_shaft(0.09, 0.04)), LEVEL])
 @pytest.mark.parametrize("position", [0.1, 0.9])
 def test_the_torque_works_what_bodies_contacts_and_shafts_store(bodies, shafts, position):
     """dU = T dtheta: the energies of teeth and bodies, of the contacts and of both beams, each by itself."""
@@ -235,7 +217,7 @@ def test_cells_settle_within_the_errors_of_what_shafts_do(bodies):
 
 def test_the_moment_of_the_loads_turns_shafts_back(bodies):
     """Loads that leave mid-face tilt a shaft less than the same force at mid-face does."""
-    light, heavy = _cycle(bodies, [1.0, 100.0], shafts=(_tilting(0.05, 0.02), None))
+    light, heavy = _cycle(bodies, [1.0, 100.0], shafts=(tilting_shaft(0.05, 0.02), None))
     factor = light.face_load_factor, heavy.face_load_factor
     # shafts, unlike an alignment, bend by the load
     np.testing.assert_allclose(factor[0], factor[1], rtol=0.25)

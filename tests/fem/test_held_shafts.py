@@ -9,11 +9,11 @@ import pytest
 
 import fem
 from base import InputError
-from gears import Alignment, Bearing, Gear, GearPair, Material, Shaft, ShaftSegment
+from gears import Alignment, Gear, GearPair, Shaft, ShaftSegment
+from tests.stiff_shafts import ENDS, stiffest_shafts, tilting_shaft
 
 PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
 MEAN = 100.0
-ENDS = Bearing(0.005, 5e8), Bearing(0.195, 5e8)
 LEVEL = (
     Shaft((ShaftSegment(0.2, 0.04),), ENDS, 0.09, 0.0),
     Shaft((ShaftSegment(0.2, 0.05),), ENDS, 0.12, 0.2),
@@ -21,13 +21,7 @@ LEVEL = (
 """Bend and twist under their gears too, with all of the face in contact."""
 
 
-def _tilting(at: float, diameter: float) -> Shaft:
-    """Shaft that bends beside its gear but not under it."""
-    parts = (at - 0.015, diameter), (0.03, 10.0), (0.185 - at, diameter)
-    return Shaft(tuple(ShaftSegment(*one) for one in parts), ENDS, at, 0.0)
-
-
-TILTING = _tilting(0.05, 0.025), _tilting(0.14, 0.03)
+TILTING = tilting_shaft(0.05, 0.025), tilting_shaft(0.14, 0.03)
 
 
 @pytest.fixture(scope="module")
@@ -108,20 +102,10 @@ def test_a_light_load_bears_where_the_held_shafts_leave_the_flanks_close(bodies)
 @pytest.mark.parametrize("moving", [False, True])
 def test_rigid_shafts_change_nothing(bodies, moving):
     """By the stiffest shafts there may be, and half of what these still change."""
-    stiff, half = (
-        Shaft(
-            (ShaftSegment(0.2, 10.0),),
-            (Bearing(0.0, size), Bearing(0.2, size)),
-            0.1,
-            0.0,
-            Material(size, 0.3, 7850.0),
-        )
-        for size in (1e13, 5e12)
-    )
     torques = [0.3 * MEAN, 2.0 * MEAN]
     plain = cycles(bodies, torques, shafts=None, moving_contact=moving)
     found, other = (
-        cycles(bodies, torques, MEAN, shafts=(one, one), moving_contact=moving) for one in (stiff, half)
+        cycles(bodies, torques, MEAN, shafts=(one, one), moving_contact=moving) for one in stiffest_shafts()
     )
     for rigid, first, second in zip(plain, found, other, strict=True):
         for name in ("transmission_error", "stiffness", "secant_stiffness"):

@@ -17,11 +17,11 @@ from fem.laws.corner_laws import CornerLaws
 from fem.laws.mesh_setup import MeshSetup
 from fem.pair.face_setting import face_setting
 from fem.pair.face_shafts import shafts_under_face
-from gears import Alignment, Bearing, Gear, GearPair, Material, Shaft, ShaftSegment
+from gears import Alignment, Bearing, Gear, GearPair, Shaft, ShaftSegment
 from gears.pair.shaft_face import shaft_over_face
+from tests.stiff_shafts import ENDS, stiffest_shafts
 
 CELLS = 8
-ENDS = Bearing(0.005, 5e8), Bearing(0.195, 5e8)
 SHAFTS = (
     Shaft((ShaftSegment(0.2, 0.035),), ENDS, 0.06, 0.0),
     Shaft((ShaftSegment(0.2, 0.04),), ENDS, 0.15, 0.2),
@@ -70,20 +70,10 @@ def test_loads_move_flanks_by_the_vector_of_the_bend_and_the_turn_of_the_twist(t
 @pytest.mark.parametrize("moving", [False, True])
 def test_rigid_shafts_change_nothing(tight, moving):
     """By the stiffest shafts there may be, and half of what these still change; with and without a torque."""
-    stiff, half = (
-        Shaft(
-            (ShaftSegment(0.2, 10.0),),
-            (Bearing(0.0, size), Bearing(0.2, size)),
-            0.1,
-            0.0,
-            Material(size, 0.3, 7850.0),
-        )
-        for size in (1e13, 5e12)
-    )
     options = {"moving_contact": moving, "alignment": Alignment(10e-6)}
     torques = (0.0, 50.0, -600.0)
     plain = cycle(tight, torques, None, **options)
-    nearly, other = (cycle(tight, torques, (shaft, shaft), **options) for shaft in (stiff, half))
+    nearly, other = (cycle(tight, torques, (shaft, shaft), **options) for shaft in stiffest_shafts())
     for rigid, first, second in zip(plain, nearly, other, strict=True):
         assert np.all(rigid.opposite_force > 0.0)
         for name in ("transmission_error", "stiffness", "forces", "opposite_force"):
