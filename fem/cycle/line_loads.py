@@ -53,6 +53,12 @@ class LineLoads(CellsOfLines):
         no_error=IN_SINGLE_CELLS,
     )
     most_loaded: Array = part("largest mean over half a module of each line (positions, pairs) [N/m]")
+    levers: Array = part(
+        "levers of the normal about both axes in the section, over the base radii (2, positions, pairs, cells)"
+    )
+    arms: Array = part(
+        "distances from the feet of both axes on it to the contact (2, positions, pairs, cells) [m]"
+    )
     setting: FaceSetting = part("cells, alignment and leads")
     fewer: Array = part("forces with half as many cells of each line (positions, pairs, cells) [N]")
     slopes: Array = part("slopes of the forces on cells by D (positions, pairs, cells) [N/m], without shafts")
@@ -173,10 +179,16 @@ class LineLoads(CellsOfLines):
         Times the coefficient of friction they are the torques of an even friction; above 0 after C.
         """
         pair, forces = self.pair, self.force
-        rho1 = np.where(forces > 0.0, np.nan_to_num(self.travel) + pair.points.A, pair.points.C)
+        place = np.nan_to_num(self.travel) + pair.points.A
         width = np.where(self.length > 0.0, self.length, pair.face_width) * abs(pair.helix.base_sine)
-        arms = rubbed_arms(pair, rho1, width[..., None])
+        arms = rubbed_arms(pair, place, width[..., None], np.nan_to_num(self.arms))
         return np.asarray((forces * arms).sum(axis=(-2, -1)))
+
+    @property
+    def turned(self) -> Array:
+        """What normals that edges and relief turn add to the torques of involutes' forces (2, positions) [N m]."""
+        longer = np.sum(self.force * (np.nan_to_num(self.levers, nan=1.0) - 1.0), axis=(-2, -1))
+        return np.asarray(longer * self.pair.helix.base_cosine * np.reshape(self.pair.base_radii, (2, 1)))
 
     @described("N", no_error=ALONG_AXES)
     def axial_force(self) -> float:
@@ -263,6 +275,7 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
     over, pair = contact.contacts, setup.pair
     forces = contact.cell_forces(number)
     pitches, cells = len(forces), lines.divided(forces.shape[-1])
+    place = lines.places(cells)
     length = np.where(lines.touches, cells.length, 0.0) / pair.helix.base_cosine
     per_length = forces / np.where(length > 0.0, length, 1.0)[..., None]
 
@@ -270,6 +283,9 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
         known = np.where(cells.used, values, np.nan)
         known = known if known.ndim == forces.ndim else np.tile(known, (pitches, 1, 1, 1))
         return known.reshape(-1, *known.shape[2:])
+
+    def of_gears(values: Array) -> Array:
+        return np.stack([of_used(of_gear) for of_gear in values])
 
     largest = cells.largest_mean(forces, WINDOW * pair.module * pair.helix.base_cosine)
     assert over.slopes is not None
@@ -279,10 +295,12 @@ def line_loads(setup: MeshSetup, contact: ContactState, number: int, plane: str)
     return LineLoads(
         position=contact.candidates.position,
         z=of_used(cells.z),
-        travel=of_used(lines.places(cells) - pair.points.A),
+        travel=of_used(place - pair.points.A),
         length=np.tile(length, (pitches, 1)),
         line_load=of_used(per_length),
         gap=of_used(np.maximum(over.remaining_gaps[number], 0.0)),
+        levers=of_gears(lines.levers(place)),
+        arms=of_gears(lines.arms(place, pair.base_radii)),
         most_loaded=largest.reshape(-1, largest.shape[-1]) * pair.helix.base_cosine,
         fewer=fewer.reshape(-1, *fewer.shape[2:]),
         slopes=slopes.reshape(-1, *slopes.shape[2:]),

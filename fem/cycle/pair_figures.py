@@ -136,7 +136,7 @@ class PairFigures:
         total = np.sum(self.forces * arm, axis=1, where=np.isfinite(arm))
         if self.lines is not None:
             turning = self.friction if self.flank == "front" else -self.friction
-            total = total + turning * self.lines.rubbed[1] + self._by_levers()
+            total = total + turning * self.lines.rubbed[1] + self.lines.turned[1]
         return np.asarray(total if self.flank == "front" else -total)
 
     def edge_sliding(self, speed: float = 1.0) -> Array:
@@ -149,35 +149,14 @@ class PairFigures:
         speed : float
             Of the pinion [rad/s].
         """
-        lines, cells = self.candidates.lines, self.lines
-        if lines is None or lines.edges is None or cells is None:
+        lines = self.lines
+        if lines is None:
             return np.zeros(len(self.position))
         first, second = self.pair.base_radii
-        place = np.nan_to_num(cells.travel) + self.pair.points.A
-        arms = lines.edges.arms(place, self.pair.line_of_action, (first, second))
+        arms = np.nan_to_num(lines.arms)
         slip = np.abs(speed * (arms[0] - arms[1] * first / second))
-        beyond = np.where(np.isfinite(cells.z), 1.0 - cells.on_path, 0.0)
-        return np.asarray(np.sum(beyond * cells.force * slip, axis=(-2, -1)))
-
-    def cell_levers(self) -> Array:
-        """Levers about both axes of cells on lines of contact over those of involutes (2, n, pairs, cells).
-
-        Other than 1 at tip edges, and where relief turns the common normal.
-        """
-        lines, cells = self.candidates.lines, self.lines
-        assert cells is not None
-        if lines is None:
-            return np.ones((2, *cells.z.shape))
-        return lines.levers(np.nan_to_num(cells.travel) + self.pair.points.A)
-
-    def _by_levers(self) -> Array | float:
-        """What levers other than those of involutes add to the wheel's torque on lines of contact (n,) [N m]."""
-        lines, cells = self.candidates.lines, self.lines
-        if lines is None or cells is None or (lines.edges is None and lines.relieved is None):
-            return 0.0
-        longer = self.cell_levers()[1] - 1.0
-        arm = self.pair.helix.base_cosine * self.pair.base_radii[1]
-        return np.asarray(arm * np.sum(cells.force * longer, axis=(-2, -1)))
+        beyond = np.where(np.isfinite(lines.z), 1.0 - lines.on_path, 0.0)
+        return np.asarray(np.sum(beyond * lines.force * slip, axis=(-2, -1)))
 
     def friction_loss(self, speed: float) -> Array:
         """Power lost by sliding (n,) [W], sum of ``mu F_i |u1 - u2|``; speed of the pinion [rad/s]."""

@@ -167,7 +167,7 @@ def contact_candidates(setup: MeshSetup, reach: float = REACHES[0]) -> ContactCa
         beyond[touchable] = near.beyond
         edge = (beyond if setup.beyond_path else beyond & outside) & touchable
         gap[touchable], curvature[touchable] = near.gap, near.curvature
-        rho[:, touchable], lever[:, touchable], arm[:, touchable] = near.rho, near.lever, near.rho
+        rho[:, touchable], lever[:, touchable], arm[:, touchable] = near.rho, near.lever, near.arm
         leaning[:, touchable] = near.leaning
     elif setup.removed is not None:
         on_path = touchable & ~edge
@@ -271,7 +271,7 @@ def _lines(setup: MeshSetup, reach: float) -> ContactCandidates:
         curvature=np.ones_like(place),
         lacking=np.where(touchable, 0.0, np.inf),
         lever=np.tile(np.full_like(rho, pair.helix.base_cosine), tiles),
-        tangent_arm=np.tile(np.where(touchable, rho, np.nan), tiles),
+        tangent_arm=np.tile(np.where(touchable, lines.arms(place, pair.base_radii), np.nan), tiles),
         leaning=np.zeros_like(rho),
         gap=gap,
         teeth=teeth.reshape(2, -1, len(offset)) % numbers,

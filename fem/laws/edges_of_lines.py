@@ -94,20 +94,6 @@ class EdgesOfLines:
         )
         return np.stack([after, before])
 
-    def arms(self, place: Array, line_of_action: float, base_radii: tuple[float, float]) -> Array:
-        """Distances from the feet of both axes on the normal to the contact (2, ...) [m], rho on the path.
-
-        Parameters
-        ----------
-        place, line_of_action
-            As of ``rho``.
-        base_radii : (float, float)
-            [m]
-        """
-        radii = np.reshape(base_radii, (2, *np.ones(place.ndim, dtype=int)))
-        shorter = radii**2 * (1.0 - self.levers(place) ** 2)
-        return np.asarray(np.sqrt(np.maximum(shorter + self.rho(place, line_of_action) ** 2, 0.0)))
-
     def _away(self, place: Array) -> tuple[Array, Array]:
         start, end = self.ends
         return start - place, place - end

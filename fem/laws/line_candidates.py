@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array, Booleans, Integers, record
+from fem.laws.tip_geometry import tangent_arm
 
 if TYPE_CHECKING:
     from fem.laws.edges_of_lines import EdgesOfLines
@@ -218,6 +219,19 @@ class ContactLines:
         if self.relieved is None:
             return levers
         return np.where(self.relieved.on_flanks(place), self.relieved.levers(place), levers)
+
+    def arms(self, place: Array, base_radii: tuple[float, float]) -> Array:
+        """Distances from the feet of both axes on the normal to the contact (2, ...) [m], rho of involutes.
+
+        Parameters
+        ----------
+        place : (...) array
+            rho1 of the unlimited involutes [m].
+        base_radii : (float, float)
+            [m]
+        """
+        radii = np.reshape(base_radii, (2, *np.ones(place.ndim, dtype=int)))
+        return tangent_arm(radii, self.rho(place), self.levers(place))
 
     def curvatures(self, place: Array) -> Array:
         """Of the flanks in the section over that of the involutes (...)."""

@@ -19,7 +19,7 @@ import numpy as np
 
 from base import Array, Booleans, record
 from fem.laws.relieved_lines import RelievedLines
-from fem.laws.tip_geometry import gap_at, opening_at
+from fem.laws.tip_geometry import gap_at, opening_at, tangent_arm
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -66,6 +66,8 @@ class Touch:
         R/R'.
     lever : (2, n) array
         Levers of the common normal about the axes, over the base radii.
+    arm : (2, n) array
+        Distances from the feet of the axes on that normal to the contact [m].
     leaning : (2, n) array
         Angle from the involutes' own normals to the common one, away from either gear's tip [rad].
     beyond : (n,) boolean array
@@ -76,6 +78,7 @@ class Touch:
     gap: Array
     curvature: Array
     lever: Array
+    arm: Array
     leaning: Array
     beyond: Booleans
 
@@ -84,7 +87,7 @@ def plain_touch(pair: GearPair, place: Array) -> Touch:
     """Where true involutes touch."""
     rho = np.stack([place, pair.line_of_action - place])
     nothing, even = np.zeros_like(rho), np.ones_like(rho)
-    return Touch(rho, nothing[0], even[0], even, nothing, np.zeros(len(place), dtype=bool))
+    return Touch(rho, nothing[0], even[0], even, rho, nothing, np.zeros(len(place), dtype=bool))
 
 
 def touch(flanks: FlankForms, place: Array, removed: tuple[Removed, Removed]) -> Touch:
@@ -129,7 +132,9 @@ def touch(flanks: FlankForms, place: Array, removed: tuple[Removed, Removed]) ->
     lever = np.cos(leaning) - np.sin(leaning) * np.stack([pinion_rho / first, touched[1] / second])
     lacking = (removed[0](pinion_rho) + removed[1](touched[1])) / lever[0]
     gap = np.where(sigma == 0.0, 0.0, gap) + lacking
-    return Touch(np.stack([pinion_rho, touched[1]]), gap, curvature, lever, leaning, beyond)
+    met = np.stack([pinion_rho, touched[1]])
+    arm = tangent_arm(np.reshape(pair.base_radii, (2, 1)), met, lever)
+    return Touch(met, gap, curvature, lever, arm, leaning, beyond)
 
 
 def _least(slope: Callable[[Array], Array], low: Array, high: Array, close: float) -> tuple[Array, Booleans]:

@@ -9,7 +9,7 @@ import numpy as np
 from base import Array, Booleans, record
 from fem.laws.edges_of_lines import EdgesOfLines
 from fem.laws.tip_contact import nearest_gap
-from fem.laws.tip_geometry import chamfer_gap, lever_ratio, opening, unloaded_gap
+from fem.laws.tip_geometry import chamfer_gap, lever_ratio, opening, tangent_arm, unloaded_gap
 
 if TYPE_CHECKING:
     from fem.laws.flank_forms import FlankForms
@@ -49,7 +49,7 @@ def edges_at(flanks: FlankForms, corner: int, place: Array) -> EdgesAt:
     _, touched_rho = unloaded_gap(radii, pair.line_of_action, touched, np.array([rounding.rho]))
     place_of_tip = touched_rho[:, 0]
     lever = lever_ratio(pair, place_of_tip, place, corner)
-    arm = np.sqrt(np.maximum(radii[1] ** 2 * (1 - lever**2) + rounding.rho**2, 0.0))
+    arm = tangent_arm(radii[1], np.asarray(rounding.rho), lever)
     angle = opening(radii, pair.line_of_action, touched, touched_rho, np.array([rounding.rho]))[:, 0]
     plain = nearest_gap(pair, corner, place, rounding)
     removed = flanks.removed

@@ -144,6 +144,23 @@ def lever_ratio(pair: GearPair, touched_rho: Array, rho1: Array, corner: int = 0
     return np.asarray(((own + touched) * np.cos(turn) - line * np.sin(turn) - touched) / own)
 
 
+def tangent_arm(base_radius: Array | float, rho: Array, lever: Array) -> Array:
+    """Distance from the foot of a gear's axis on the normal to the contact [m]; rho where the normal is the involute's.
+
+    By it and the speed of turning the surface moves along the tangent, and friction turns the gear.
+
+    Parameters
+    ----------
+    base_radius : float or array
+        [m]
+    rho : array
+        Curvature radius where the gear is touched [m], by which it is the base radius away from the axis.
+    lever : array
+        Of the normal about the axis, over the base radius.
+    """
+    return np.asarray(np.sqrt(np.maximum(base_radius**2 * (1.0 - lever**2) + rho**2, 0.0)))
+
+
 def corner_angle(profile: ToothProfile) -> float:
     """Interior angle between the flank's end and what follows it, chamfer or top land [rad]."""
     end = profile.flank_rho[1]

@@ -9,8 +9,10 @@ from math import radians
 import numpy as np
 import pytest
 
+from base import Array
 from fem import compliance, mesh_cycle, unloaded_transmission_error
 from fem.laws.contact_candidates import SEEN_ALONG, contact_candidates, line_gaps
+from fem.laws.line_friction import further_levers
 from fem.laws.mesh_setup import MeshSetup
 from fem.laws.relieved_flanks import SPAN, touch
 from fem.laws.tip_edges import edges_at
@@ -34,27 +36,43 @@ def plain_flanks(pair: GearPair) -> GearPair:
     return replace(pair, pinion=pinion, wheel=wheel)
 
 
-def drawn_gap(pair: GearPair, place: float) -> float:
-    """Turn of the pinion, times its base radius, until flanks meet whose involutes touch at a place.
+def drawn_flanks(pair: GearPair, place: float, points: int) -> list[Array]:
+    """Flanks whose involutes touch at a place, as curves (2, points) in the section about the pinion's axis.
 
-    Both flanks are curves in the section, with the line of action along x from the foot of the pinion's axis; the
-    smallest angle between points of one radius about the pinion's axis is that by which it turns.
+    The line of action is along x, from the foot of the pinion's axis.
     """
-    line, removed = pair.line_of_action, [profile.relief for profile in pair.teeth_profiles]
-    axes, polar = (np.array([0.0, -pair.base_radii[0]]), np.array([line, pair.base_radii[1]])), []
+    line, removed, curves = pair.line_of_action, [profile.relief for profile in pair.teeth_profiles], []
+    axes = np.zeros(2), np.array([line, sum(pair.base_radii)])
     for gear, (nominal, side) in enumerate(((place, 1.0), (line - place, -1.0))):
         base, tip = pair.base_radii[gear], pair.teeth_profiles[gear].flank_rho[1]
-        rho = np.linspace(max(nominal - 2e-3, 1e-4), min(nominal + 2e-3, tip), 6_001)
+        rho = np.linspace(max(nominal - 2e-3, 1e-4), min(nominal + 2e-3, tip), points)
         turn, string = (rho - nominal) / base, rho - removed[gear](rho)
         # foot of the normal on the base circle, and the string from it, turned about the gear's axis
         x, y = side * string, side * np.full_like(rho, base)
-        points = np.stack([x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)])
-        away = points + (axes[gear] - axes[0])[:, None]
-        order = np.argsort(np.hypot(*away))
-        polar.append((np.hypot(*away)[order], np.arctan2(away[1], away[0])[order]))
-    (radius, pinion), (other, wheel) = polar
-    both = (other >= radius[0]) & (other <= radius[-1])
-    return float(np.min(np.interp(other[both], radius, pinion) - wheel[both]) * pair.base_radii[0])
+        curve = np.stack([x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)])
+        curves.append(curve + axes[gear][:, None])
+    return curves
+
+
+def drawn_touch(flanks: list[Array]) -> tuple[float, int]:
+    """Smallest angle between points of one radius about the pinion's axis, and where it is on the wheel's flank.
+
+    By that angle the pinion turns until the flanks meet.
+    """
+    (radius, angle), (other, behind) = (
+        (np.hypot(*curve), np.arctan2(curve[1], curve[0])) for curve in flanks
+    )
+    order = np.argsort(radius)
+    between = np.interp(other, radius[order], angle[order]) - behind
+    between[(other < radius.min()) | (other > radius.max())] = np.inf
+    nearest = int(np.argmin(between))
+    return float(between[nearest]), nearest
+
+
+def drawn_gap(pair: GearPair, place: float) -> float:
+    """Turn of the pinion, times its base radius, until flanks meet whose involutes touch at a place."""
+    turn, _ = drawn_touch(drawn_flanks(pair, place, 6_001))
+    return turn * pair.base_radii[0]
 
 
 @pytest.mark.parametrize("relief", FORMS)
@@ -84,6 +102,32 @@ def test_with_no_load_lines_touch_where_drawn_flanks_do(relief: TipRelief, angle
 
 
 @pytest.mark.parametrize("relief", FORMS)
+def test_touched_flanks_slide_as_two_drawn_bodies(relief: TipRelief) -> None:
+    """Velocities of both bodies at the point where drawn flanks meet, along these; the normal leans on relief.
+
+    Gears turn evenly. Flanks are drawn before the pinion closes the gap, which moves the point by as much, and kinks of
+    linear relief are not rounded.
+    """
+    pair = relieved(relief, 0.0)
+    (first, second), setup = pair.base_radii, MeshSetup(pair, 4)
+    assert setup.removed is not None
+    place = np.linspace(pair.points.A + 0.1e-3, pair.points.E - 0.1e-3, 11)
+    at, moved = touch(setup.flanks, place, setup.removed), []
+    for each in place:
+        flanks = drawn_flanks(pair, each, 60_001)
+        _, nearest = drawn_touch(flanks)
+        (x, y), along = flanks[1][:, nearest], np.gradient(flanks[1], axis=1)[:, nearest]
+        away = np.array([x - pair.line_of_action, y - first - second])
+        velocities = np.array([[-y, x], [away[1] * first / second, -away[0] * first / second]])
+        moved.append(np.abs(velocities @ along) / np.hypot(*along))
+    arms = at.arm * np.array([[1.0], [first / second]])
+    assert arms == pytest.approx(np.array(moved).T, abs=0.1e-3 if relief.form == "linear" else 0.03e-3)
+    sliding, nominal = arms[0] - arms[1], place - (pair.line_of_action - place) * first / second
+    assert sliding == pytest.approx(nominal, abs=0.01e-3)  # as of the involutes there
+    assert np.abs(at.rho[0] - at.rho[1] * first / second - nominal).max() > 0.4e-3
+
+
+@pytest.mark.parametrize("relief", FORMS)
 @pytest.mark.parametrize("edges", [False, True])
 def test_sections_of_lines_are_those_of_a_spur_pair(relief: TipRelief, edges: bool) -> None:
     """Gap, places, levers and curvature on the flanks, beyond the path too; farther out those of edges."""
@@ -99,6 +143,7 @@ def test_sections_of_lines_are_those_of_a_spur_pair(relief: TipRelief, edges: bo
     assert gap == pytest.approx(at.gap, abs=1e-9)
     assert rho == pytest.approx(at.rho, abs=5e-6)
     assert lines.levers(place) == pytest.approx(at.lever, abs=1e-4)
+    assert lines.arms(place, pair.base_radii) == pytest.approx(at.arm, abs=5e-6)
     assert np.median(np.abs(lines.curvatures(place) - at.curvature)) < 1e-4
     assert not lines.edge_touches(place).any()
     if not edges:
@@ -111,6 +156,7 @@ def test_sections_of_lines_are_those_of_a_spur_pair(relief: TipRelief, edges: bo
         assert gap == pytest.approx(edge.gap, abs=2e-9)
         assert lines.edge_touches(outside).all()
         assert lines.levers(outside)[corner] == pytest.approx(edge.lever, rel=1e-5)
+        assert lines.arms(outside, pair.base_radii)[corner] == pytest.approx(edge.arm, rel=1e-3)
         # nothing steps where flanks give way to edges
         last = start if corner == 1 else end
         assert gap[0] == pytest.approx(
@@ -139,9 +185,9 @@ def test_relief_of_nothing_is_the_plain_pair() -> None:
     """Gaps, places, levers and curvatures of lines by tables are those of involutes."""
     pair = relieved(TipRelief(1e-15, 2e-3, "parabolic"), radians(20.0))
     for edges in (False, True):
+        setup = MeshSetup(pair, 4, beyond_path=edges, friction=0.1)
         plain, eased = (
-            contact_candidates(MeshSetup(each, 4, beyond_path=edges)).lines
-            for each in (plain_flanks(pair), pair)
+            contact_candidates(replace(setup, pair=each)).lines for each in (plain_flanks(pair), pair)
         )
         assert plain is not None
         assert eased is not None
@@ -151,6 +197,11 @@ def test_relief_of_nothing_is_the_plain_pair() -> None:
         assert eased.further_gaps(place) == pytest.approx(plain.further_gaps(place), abs=1e-11)
         assert eased.levers(place) == pytest.approx(plain.levers(place), abs=1e-7)
         assert eased.curvatures(place) == pytest.approx(1.0, abs=1e-6)
+        arms = (each.arms(place, pair.base_radii) for each in (eased, plain))
+        np.testing.assert_allclose(*arms, rtol=1e-7 if edges else 1e-10)
+        further = (further_levers(setup, lines, 40) for lines in (eased, plain))
+        # edges begin where a search finds the end of the flank, by which cells are shifted
+        np.testing.assert_allclose(*further, rtol=1e-6 if edges else 1e-10)
 
 
 @pytest.mark.parametrize("edges", [False, True])

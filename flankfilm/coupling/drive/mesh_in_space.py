@@ -141,5 +141,5 @@ def spatial_mesh(cycle: fem.MeshCycle) -> SpatialMesh:
     fine, coarse = np.einsum("ai,npab,bj->npij", moved, lines.tilting, moved)
     wrench = cell_wrenches(pair, np.nan_to_num(lines.rho[0]), np.nan_to_num(lines.z))
     # forces at tip edges and on relief along the line of action, as large as the torque about the pinion makes them
-    load = np.einsum("plc,plci->pi", lines.force * cycle.cell_levers()[0], wrench)
+    load = np.einsum("plc,plci->pi", lines.force * np.nan_to_num(lines.levers[0]), wrench)
     return SpatialMesh(fine, load, cycle.transmission_error, pair, cycle.torque, coarse)
