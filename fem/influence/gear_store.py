@@ -22,9 +22,10 @@ from fem.influence.gear_shape import COARSE, FINE, MeshedShape, MeshLevel, plain
 from fem.influence.memo import Memo, read_only
 from fem.influence.tip_strips import TipStrips, tip_strips
 
-__all__ = ["GearStore", "ResultStore", "SolvedFlanks", "forget_gears"]
+__all__ = ["GearStore", "InModules", "ResultStore", "SolvedFlanks", "forget_gears", "sized"]
 
 T = TypeVar("T")
+S = TypeVar("S", covariant=True)
 
 MOST_RECORDS, MOST_RINGS, MOST_FACES = 512, 2, 16
 
@@ -32,6 +33,7 @@ BACK_SAMPLES = 20
 """Loads along a flank whose answer on the other side of the teeth is looked at: there it is smooth."""
 
 _RECORDS: Memo[Any] = Memo(MOST_RECORDS)
+_SIZED: Memo[Any] = Memo(MOST_RECORDS)
 _RINGS: Memo[Mapping[MeshLevel, Ring]] = Memo(MOST_RINGS)
 _FACES: Memo[Any] = Memo(MOST_FACES)
 
@@ -45,6 +47,7 @@ def forget_gears() -> None:
     >>> forget_gears()
     """
     _RECORDS.clear()
+    _SIZED.clear()
     _RINGS.clear()
     _FACES.clear()
 
@@ -54,6 +57,22 @@ class ResultStore(Protocol):
 
     def __call__(self, name: str, inputs: Mapping[str, Any], compute: Callable[[], T]) -> T:
         """Give what was kept under a name for these plain inputs; else compute it, and keep it."""
+
+
+class InModules(Protocol[S]):
+    """What was solved of a gear in modules and E*."""
+
+    def scaled(self, module: float, law: PlaneElasticity) -> S:
+        """Give it a size [m] and a modulus."""
+
+
+def sized(solved: InModules[S], module: float, law: PlaneElasticity) -> S:
+    """Give a record that is kept its size [m] and modulus: the very same one each time.
+
+    What follows from a gear, such as laws beside its tip corner, so can be kept by the gear itself.
+    """
+    record: S = _SIZED.obtain((solved, module, law), lambda: read_only(solved.scaled(module, law)))
+    return record
 
 
 @record

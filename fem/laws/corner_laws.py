@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -13,6 +15,7 @@ from fem.laws.contact_candidates import REACHES
 from fem.laws.corner_law import CornerSurface
 from fem.laws.corner_surface import corner_surfaces, rolling_surface, slid, up_to
 from fem.laws.local_law import PairLaws
+from gears.tooth.face import STRAIGHT
 
 if TYPE_CHECKING:
     from fem.laws.contact_candidates import ContactCandidates
@@ -115,10 +118,27 @@ def laws_of_corners(setup: MeshSetup, bodies: PairCompliance) -> CornerLaws:
     ----------
     setup : MeshSetup
     bodies : PairCompliance
-        The very record, as are the deviations: laws that are kept hold theirs, so that no other one can take its place.
+        Gears are known by their records, which are the very same ones for equal gears (``fem.influence.gear_store``).
     """
-    key = id(bodies), setup.rounds, setup.beyond_path, id(setup.deviations)
+    key = setup.beyond_path, setup.rounds, _flanks(setup), _solved(bodies)
     return _KEPT.obtain(key, lambda: CornerLaws(setup, bodies))
+
+
+def _flanks(setup: MeshSetup) -> tuple[Hashable, ...]:
+    """What decides flanks at corners: not their lead, nor their place along the face, nor pitches of single teeth."""
+    pair, curves = setup.pair, []
+    for deviations in setup.flanks.by_gear:
+        curves.append(None if deviations is None else (deviations.profile, deviations.wear))
+    gears = (replace(gear, lead=STRAIGHT, face_offset=0.0) for gear in (pair.pinion, pair.wheel))
+    sizes = pair.module, pair.face_width, pair.rack, pair.centre_distance, pair.helix_angle
+    return (*gears, *sizes, *curves)
+
+
+def _solved(bodies: PairCompliance) -> tuple[Hashable, ...]:
+    """All that was solved of both gears and that laws are made of, on both meshes."""
+    flanks = bodies.pinion, bodies.wheel, bodies.coarse_flanks
+    beside = bodies.tip_strips, bodies.coarse_tip_strips, bodies.flank_motions
+    return (*flanks, *beside, bodies.gain, bodies.level, bodies.doubt, bodies.left_out)
 
 
 def forget_laws() -> None:

@@ -21,7 +21,7 @@ from fem.elasticity.flamant import hertz_indentation
 from fem.elasticity.plane_elasticity import PlaneElasticity, check_plane
 from fem.elasticity.support import Support, held_profiles, on_both
 from fem.influence.gear_shape import COARSE, FINE, MeshedShape, shapes
-from fem.influence.gear_store import GearStore, ResultStore, SolvedFlanks
+from fem.influence.gear_store import GearStore, ResultStore, SolvedFlanks, sized
 from fem.influence.tip_strips import gain_beside
 from fem.pair.checked import check_pair
 from fem.pair.options import USUAL_OPTIONS, Options
@@ -131,7 +131,7 @@ def compliance(
     gears = GearStore(kept)
     while True:
         first, second = (
-            _fitted(gears, MeshedShape(shape, sizes, times), options.fit * tolerance).scaled(pair.module, law)
+            sized(_fitted(gears, MeshedShape(shape, sizes, times), options.fit * tolerance), pair.module, law)
             for shape, law in zip(gear_shapes, laws, strict=True)
         )
         mesh_error, fit_error = _errors(pair, (first, second), sizes.corner * 0.5**times, options.gain)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 import numpy as np
 
@@ -16,13 +16,12 @@ from fem.influence.back_compliance import BackCompliance
 from fem.influence.flank_motion import FIT, FlankMotion
 from fem.influence.gear_compliance import GearCompliance
 from fem.influence.gear_shape import COARSE, FINE, MeshedShape, MeshLevel, shapes
-from fem.influence.gear_store import GearStore
+from fem.influence.gear_store import GearStore, InModules, sized
 from fem.influence.tip_strips import TipStrips
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fem.elasticity.plane_elasticity import PlaneElasticity
     from gears import GearPair
     from meshes import Sizes
 
@@ -31,14 +30,7 @@ __all__ = ["SolvedPair"]
 PLACES = 60
 """Places of a flank at which its smallest compliance is looked for."""
 
-S = TypeVar("S", covariant=True)
-
-
-class InModules(Protocol[S]):
-    """What was solved of a gear in modules and E*."""
-
-    def scaled(self, module: float, law: PlaneElasticity) -> S:
-        """Give it a size [m] and a modulus."""
+S = TypeVar("S")
 
 
 @record
@@ -159,13 +151,16 @@ class SolvedPair:
 
     @cached_property
     def _rings(self) -> tuple[Ring, Ring]:
-        gears = GearStore()
-        return self._sized(lambda meshed: gears.rings(meshed)[FINE])
+        first, second = (
+            GearStore().rings(meshed)[FINE].scaled(self.pair.module, flexible.law)  # too large to be kept
+            for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
+        )
+        return first, second
 
     def _sized(self, solved: Callable[[MeshedShape], InModules[S]]) -> tuple[S, S]:
         """Give what was solved of both gears in modules and E* their size and moduli."""
         first, second = (
-            solved(meshed).scaled(self.pair.module, flexible.law)
+            sized(solved(meshed), self.pair.module, flexible.law)
             for meshed, flexible in zip(self.meshed, (self.pinion, self.wheel), strict=True)
         )
         return first, second
