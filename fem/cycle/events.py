@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from base import Array, SolverError
+from base.later import Later
 from fem.contact.contact_state import ContactState
 from fem.contact.face_errors import half_as_many
 from fem.contact.shared_contacts import yielding_over_face
@@ -21,7 +23,7 @@ from fem.laws.relieved_flanks import starts_of_relief
 from fem.pair.pair_compliance import PairCompliance
 from gears.sharing.arcs import Arcs
 from gears.sharing.events import Division, Sampled, Sampler, arcs_alike, arcs_between_events
-from gears.sharing.mesh_arcs import CURVES, FewerCells, MeshArcs, Scatter
+from gears.sharing.mesh_arcs import CURVES, Compared, FewerCells, MeshArcs, Scatter, compared_later
 
 __all__ = ["ContactProblem", "measured_less"]
 
@@ -86,7 +88,7 @@ class ContactProblem:
         return replace(self, turn=turn if self.turn is None else self.turn + turn)
 
     def arcs(self) -> MeshArcs:
-        """Curves between events.
+        """Curves between events; what they are compared with is solved when an error is first asked for.
 
         Raises
         ------
@@ -94,6 +96,11 @@ class ContactProblem:
             A contact somewhere on them has no solution.
         """
         fine = self.divided()
+        others = compared_later(partial(self._compared, fine))
+        return MeshArcs(fine, others, self.bodies.gain, self.ends_error)
+
+    def _compared(self, fine: Division) -> Compared:
+        """Other meshes, films and cells, on arcs like those that are known."""
         coarse = self._alike(self.bodies.coarser, fine)
         others = [(replace(self, film=film), share) for film, share in self.varied]
         varied = [(other._alike(self.bodies, fine), share) for other, share in others]
@@ -107,7 +114,7 @@ class ContactProblem:
             if self.ends_scatter:
                 off = problem._alike(self.bodies.doubtful(BETWEEN), fine)
                 fewer = replace(fewer, ends=(off, 1.0 / OFF_BY), ends_scatter=self.ends_scatter)
-        return MeshArcs(fine, coarse, self.bodies.gain, self.ends_error, tuple(varied), fewer)
+        return Compared(coarse, tuple(varied), fewer)
 
     def divided(self) -> Division:
         """Arcs and events on the mesh in use alone."""
@@ -228,20 +235,19 @@ def measured_less(mesh_arcs: MeshArcs, force: float, turn: Array, pressed: bool 
         shifted = tuple(replace(arc, values=_less(arc.values, force, turn, pressed)) for arc in arcs.arcs)
         return replace(arcs, arcs=shifted)
 
-    before = None if mesh_arcs.before is None else less(mesh_arcs.before)
+    def others() -> Compared | str:
+        compared = mesh_arcs.others.value
+        if isinstance(compared, str):
+            return compared
+        before, few = compared.before, compared.fewer
+        if few is not None:
+            ends = None if few.ends is None else (less(few.ends[0]), few.ends[1])
+            few = replace(few, arcs=less(few.arcs), ends=ends)
+        varied = tuple((less(arcs), share) for arcs, share in compared.varied)
+        return Compared(None if before is None else less(before), varied, few)
+
     division = replace(mesh_arcs.division, arcs=less(mesh_arcs.division.arcs))
-    few = mesh_arcs.fewer
-    if few is not None:
-        few = replace(
-            few, arcs=less(few.arcs), ends=None if few.ends is None else (less(few.ends[0]), few.ends[1])
-        )
-    return replace(
-        mesh_arcs,
-        division=division,
-        before=before,
-        varied=tuple((less(arcs), share) for arcs, share in mesh_arcs.varied),
-        fewer=few,
-    )
+    return replace(mesh_arcs, division=division, others=Later(others))
 
 
 def _less(curves: Array, force: float, turn: Array, pressed: bool) -> Array:

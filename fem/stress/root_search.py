@@ -87,7 +87,7 @@ class RootSearch:
 
     def peaks(self) -> tuple[Maximum, Maximum]:
         """Maximum tension and compression of all teeth and instants."""
-        arcs, coarse = self.mesh_arcs.arcs, self.mesh_arcs.before
+        arcs, coarse = self.mesh_arcs.arcs, self.mesh_arcs.compared.before
         fine = self._clear(arcs, self.loads, self.whole)
         before = fine if coarse is None else self._nodes(coarse)
         return self._peak(fine, before, LOADED), self._peak(fine, before, OTHER)
@@ -127,7 +127,8 @@ class RootSearch:
     @cached_property
     def _others(self) -> list[tuple[RootNodes, float]]:
         """Stress with half as many cells and with other films, and how much of what they change is error."""
-        fewer, others = self.mesh_arcs.fewer, [*self.mesh_arcs.varied]
+        compared = self.mesh_arcs.compared
+        fewer, others = compared.fewer, [*compared.varied]
         if fewer is not None:
             many, few = (loads.load.shape[-1] for loads in (self.loads, self.stress.on_arcs(fewer.arcs)))
             others.insert(0, (fewer.arcs, float(LEFT_OF_ROOT / max(many / few - 1.0, 1.0))))

@@ -4,21 +4,25 @@ The error of a figure is that of its arcs' series and, by finite elements, that 
 flanks: the figure is computed once more from gears on the mesh before the last refinement whose fits are off by as
 much more, with separate events. What films may err by changes it likewise: it is computed once more with films so
 changed, and with half as many cells of the face. These parts have nothing to do with each other and are added as
-squares. A part of a harmonic's error is complex, with the phase of what causes it.
+squares. A part of a harmonic's error is complex, with the phase of what causes it. All this is solved when an error is
+first asked for: a study of figures alone does without.
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from math import hypot, sqrt
 
 import numpy as np
 
-from base import Array, Integers, part, quantity, record
+from base import Array, Integers, RangeWarning, SolverError, part, quantity, record
+from base.later import Later, known
 from gears.sharing.arcs import Arcs
 from gears.sharing.events import Division
+from gears.tooth.errors import LoadSharingError
 
-__all__ = ["CURVES", "Estimate", "FewerCells", "MeshArcs", "Scatter"]
+__all__ = ["ALONE", "CURVES", "Compared", "Estimate", "FewerCells", "MeshArcs", "Scatter", "compared_later"]
 
 CURVES = ("transmission_error", "stiffness", "secant_stiffness")
 """Curves of every mesh cycle on its arcs."""
@@ -39,7 +43,12 @@ class Estimate:
     """A figure with its estimated error, both in the figure's unit."""
 
     value: float = quantity("", "figure")
-    error: float | None = quantity("", "its error; None where it is unknown")
+    later_error: Later[float | None] = part("its error, found when it is first asked for")
+
+    @property
+    def error(self) -> float | None:
+        """Error, in the figure's unit; None where it is unknown."""
+        return self.later_error.value
 
     @property
     def relative(self) -> float | None:
@@ -78,16 +87,13 @@ class FewerCells:
 
 
 @record
-class MeshArcs:
-    """Curves of a mesh cycle on smooth arcs, and the same on the mesh before for an estimate."""
+class Compared:
+    """Curves of the same cycle with parts of the model changed, for an estimate of what they leave open."""
 
     no_error = "what the estimates of a cycle are made of: MeshFigures has the errors"
 
-    division: Division = part("arcs and events")
-    before: Arcs | None = part("curves on the mesh before the last refinement; None where there is no mesh")
-    gain: float = quantity("1", "by how much the last refinement reduced the error")
-    other: float | None = quantity(
-        "1", "further relative error of all figures; None where a model's is unknown"
+    before: Arcs | None = part(
+        "curves on the mesh before the last refinement; None where there is no mesh", default=None
     )
     varied: tuple[tuple[Arcs, float], ...] = part(
         "the same with a part of the model changed, such as its films, and how much of every change is error",
@@ -96,6 +102,61 @@ class MeshArcs:
     fewer: FewerCells | None = part(
         "the same with half as many cells of the face; None where it has none", default=None
     )
+
+
+ALONE: Later[Compared | str] = known(Compared())
+"""Of arcs that nothing is compared with."""
+
+
+def compared_later(find: Callable[[], Compared]) -> Later[Compared | str]:
+    """What arcs are compared with, found when an error is first asked for, or why that has no solution.
+
+    Warns
+    -----
+    base.RangeWarning
+        Where it has none.
+    """
+
+    def compared() -> Compared | str:
+        try:
+            return find()
+        except (SolverError, LoadSharingError) as error:
+            warnings.warn(f"errors of the mesh cycle are unknown: {error}", RangeWarning, stacklevel=2)
+            return str(error)
+
+    return Later(compared)
+
+
+@record
+class MeshArcs:
+    """Curves of a mesh cycle on smooth arcs, and what they are compared with for an estimate."""
+
+    no_error = "what the estimates of a cycle are made of: MeshFigures has the errors"
+
+    division: Division = part("arcs and events")
+    others: Later[Compared | str] = part("what they are compared with, or why that has no solution")
+    gain: float = quantity("1", "by how much the last refinement reduced the error")
+    other: float | None = quantity(
+        "1", "further relative error of all figures; None where a model's is unknown"
+    )
+
+    @property
+    def compared(self) -> Compared:
+        """What the arcs are compared with, solved when it is first asked for.
+
+        Raises
+        ------
+        base.SolverError
+            It has no solution somewhere, so that errors are unknown.
+        """
+        if isinstance(self.others.value, str):
+            raise SolverError(self.others.value)
+        return self.others.value
+
+    @property
+    def comparable(self) -> bool:
+        """Whether errors are known: those of the model, and what arcs are compared with."""
+        return self.other is not None and not isinstance(self.others.value, str)
 
     @property
     def arcs(self) -> Arcs:
@@ -114,15 +175,21 @@ class MeshArcs:
     def mean(self, name: str, between: tuple[float, float] | None = None) -> Estimate:
         """Mean of a curve, all over or between two ends of arcs in every base pitch."""
         value, error = self.arcs.mean(name, between)
-        scatter = self._scatter(name).of_mean
+
         # what free ends change of means is `other`
-        return self._estimate(value, error, lambda arcs: arcs.mean(name, between)[0], scatter, ends=None)
+        def bounds() -> tuple[float, float | None]:
+            return self._scatter(name).of_mean, None
+
+        return self._estimate(value, error, lambda arcs: arcs.mean(name, between)[0], bounds)
 
     def extreme(self, name: str, greatest: bool) -> Estimate:
         """Minimum or maximum value of a curve."""
         value, error = self.arcs.extremes(name)[greatest]
-        scatter, ends = self._scatter(name).size, self._ends_scatter(name).size
-        return self._estimate(value, error, lambda arcs: arcs.extremes(name)[greatest][0], scatter, ends)
+
+        def bounds() -> tuple[float, float | None]:
+            return self._scatter(name).size, self._ends_scatter(name).size
+
+        return self._estimate(value, error, lambda arcs: arcs.extremes(name)[greatest][0], bounds)
 
     def range(self, name: str) -> Estimate:
         """Maximum minus minimum value of a curve."""
@@ -132,14 +199,16 @@ class MeshArcs:
             (low, _), (high, _) = arcs.extremes(name)
             return high - low
 
-        scatter, ends = self._scatter(name).varying, self._ends_scatter(name).varying
-        return self._estimate(most - least, hypot(off, more), apart, scatter, ends)
+        def bounds() -> tuple[float, float | None]:
+            return self._scatter(name).varying, self._ends_scatter(name).varying
+
+        return self._estimate(most - least, hypot(off, more), apart, bounds)
 
     def greatest_share(self) -> Estimate:
         """Largest share of the torque that a pair takes; nan where pairs are not distinguished."""
         shares = self.arcs.shares()
         if shares is None:
-            return Estimate(float("nan"), None)
+            return Estimate(float("nan"), known(None))
         value, error = shares.greatest_of_all()
 
         def greatest(arcs: Arcs) -> float:
@@ -190,17 +259,18 @@ class MeshArcs:
             mean, less = self.arcs.mean(name)
             value = value / mean
             parts = [off / mean, (value * less / mean)[:, None]]
-        if self.other is None:
+        if self.other is None or not self.comparable:
             return value, None
         parts.append(self.other * value[:, None])
-        before = () if self.before is None else ((self.before, 1.0 / self.gain),)
-        parts += [share * (value - figure(arcs))[:, None] for arcs, share in (*before, *self.varied)]
-        if self.fewer is not None:
-            few = figure(self.fewer.arcs)
+        compared, fewer = self.compared, self.compared.fewer
+        before = () if compared.before is None else ((compared.before, 1.0 / self.gain),)
+        parts += [share * (value - figure(arcs))[:, None] for arcs, share in (*before, *compared.varied)]
+        if fewer is not None:
+            few = figure(fewer.arcs)
             least = np.full(len(orders), self._scatter(name).varying / mean)
-            parts.append(_of_any_phase(value, np.maximum(self.fewer.share * np.abs(value - few), least)))
-            if self.fewer.ends is not None:
-                of_ends, share = self.fewer.ends
+            parts.append(_of_any_phase(value, np.maximum(fewer.share * np.abs(value - few), least)))
+            if fewer.ends is not None:
+                of_ends, share = fewer.ends
                 least = self._ends_scatter(name).varying / mean / np.maximum(orders + 1.0, 3.0)
                 parts.append(_of_any_phase(value, np.maximum(share * np.abs(figure(of_ends) - few), least)))
         return value, np.concatenate(parts, axis=1)
@@ -208,40 +278,46 @@ class MeshArcs:
     def _scatter(self, name: str) -> Scatter:
         """What the cells leave of a curve at positions."""
         none = Scatter(0.0, 0.0, 0.0)
-        return none if self.fewer is None else self.fewer.scatter.get(name, none)
+        fewer = self.compared.fewer
+        return none if fewer is None else fewer.scatter.get(name, none)
 
     def _ends_scatter(self, name: str) -> Scatter:
         """The most that free ends move of a curve."""
         none = Scatter(0.0, 0.0, 0.0)
-        known = None if self.fewer is None else self.fewer.ends_scatter
-        return none if known is None else known.get(name, none)
+        fewer = self.compared.fewer
+        moved = None if fewer is None else fewer.ends_scatter
+        return none if moved is None else moved.get(name, none)
 
     def _estimate(
         self,
         value: float,
         sampling: float,
         figure: Callable[[Arcs], float],
-        least: float = 0.0,
-        ends: float | None = 0.0,
+        bounds: Callable[[], tuple[float, float | None]] = lambda: (0.0, 0.0),
         alike: bool = True,
     ) -> Estimate:
         """Estimate with the error of arcs, mesh, cells, free ends and other models.
 
-        Cells change at positions `least` and free ends `ends`, None where these are among other models.
+        Cells and free ends change at positions the `bounds`, the second None where these are among other models.
         """
-        if self.other is None:
-            return Estimate(value, None)
-        other = self.other * value if alike else 0.0
-        mesh = 0.0 if self.before is None else abs(value - figure(self.before)) / self.gain
-        varied = [share * abs(value - figure(arcs)) for arcs, share in self.varied]
-        if self.fewer is not None:
-            # the change of a figure may vanish by chance where cells change much at single positions
-            few = figure(self.fewer.arcs)
-            varied.append(max(self.fewer.share * abs(value - few), least))
-            if self.fewer.ends is not None and ends is not None:
-                of_ends, share = self.fewer.ends
-                varied.append(max(share * abs(figure(of_ends) - few), ends))
-        return Estimate(value, hypot(sampling, mesh, other, *varied))
+
+        def error() -> float | None:
+            if self.other is None or not self.comparable:
+                return None
+            compared, fewer = self.compared, self.compared.fewer
+            other = self.other * value if alike else 0.0
+            mesh = 0.0 if compared.before is None else abs(value - figure(compared.before)) / self.gain
+            varied = [share * abs(value - figure(arcs)) for arcs, share in compared.varied]
+            if fewer is not None:
+                # the change of a figure may vanish by chance where cells change much at single positions
+                few, (least, ends) = figure(fewer.arcs), bounds()
+                varied.append(max(fewer.share * abs(value - few), least))
+                if fewer.ends is not None and ends is not None:
+                    of_ends, share = fewer.ends
+                    varied.append(max(share * abs(figure(of_ends) - few), ends))
+            return hypot(sampling, mesh, other, *varied)
+
+        return Estimate(value, Later(error))
 
 
 def _of_any_phase(value: Array, change: Array) -> Array:

@@ -13,6 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from base import Array, described
+from base.later import known
 from gears.sharing.mesh_arcs import Estimate, MeshArcs
 
 __all__ = ["MeshFigures"]
@@ -216,4 +217,4 @@ _ESTIMATES: Mapping[str, Callable[[MeshArcs], Estimate]] = {
 
 def _estimate(arcs: MeshArcs | None, name: str) -> Estimate:
     """Estimate of a figure; nan without arcs."""
-    return Estimate(float("nan"), None) if arcs is None else _ESTIMATES[name](arcs)
+    return Estimate(float("nan"), known(None)) if arcs is None else _ESTIMATES[name](arcs)

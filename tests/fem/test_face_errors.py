@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from base.later import known
 from fem import PairCompliance, compliance, mesh_cycle
 from fem.contact import shared_contacts
 from fem.contact.cell_laws import greatest_error
@@ -128,8 +129,9 @@ def test_what_cells_change_of_a_phase_may_be_a_size_with_others(bodies):
     """Fewer cells that shift the whole transmission error by 0.001 base pitches leave sizes of harmonics uncertain."""
     arcs = mesh_cycle(PAIR, 100.0, 8, bodies, cells=16, alignment=Alignment(20e-6), face_model="walls").arcs
     moved = tuple(replace(one, low=one.low + 1e-3, high=one.high + 1e-3) for one in arcs.arcs.arcs)
-    fewer = replace(arcs.fewer, arcs=replace(arcs.arcs, arcs=moved), share=1.0)
-    size, told = replace(arcs, before=None, other=0.0, fewer=fewer).amplitudes(
+    fewer = replace(arcs.compared.fewer, arcs=replace(arcs.arcs, arcs=moved), share=1.0)
+    others = known(replace(arcs.compared, before=None, fewer=fewer))
+    size, told = replace(arcs, others=others, other=0.0).amplitudes(
         "transmission_error", np.array([1, 2]), over_mean=False
     )
     turned = 2.0 * np.pi * np.array([1, 2]) * 1e-3

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import radians, sqrt
+from typing import Any
 
 import numpy as np
 import pytest
 
 from base import Array
+from base.later import known
 from base.results import WORST
 from fem import MeshCycle, PairCompliance, compliance, mesh_cycle
 from fem.contact import shared_contacts
@@ -19,7 +21,7 @@ from fem.influence.helix_ends import BETWEEN, FEWER, OF_ENDS, OFF_BY, PLACES, He
 from fem.influence.helix_lines import ContactLine
 from fem.pair.face_setting import FaceSetting
 from gears import Alignment, Gear, GearPair
-from gears.sharing.mesh_arcs import Scatter
+from gears.sharing.mesh_arcs import MeshArcs, Scatter
 
 SPUR = GearPair(Gear(20), Gear(20), module=2e-3, face_width=12e-3).with_backlash(100e-6)
 SMALL = GearPair(Gear(18), Gear(23), module=1e-3, face_width=5e-3, helix_angle=radians(18.0))
@@ -87,15 +89,23 @@ def test_errors_are_looked_for_once_and_not_between_positions(monkeypatch: pytes
     assert len(asked) == 1
 
 
+def with_fewer(known_arcs: MeshArcs, **changes: Any) -> MeshArcs:
+    """Arcs that are compared with others of fewer cells."""
+    compared = known_arcs.compared
+    assert compared.fewer is not None
+    return replace(known_arcs, others=known(replace(compared, fewer=replace(compared.fewer, **changes))))
+
+
 def test_free_ends_change_ranges_and_harmonics_but_no_mean(spur: MeshCycle) -> None:
     """Of helical gears: the mean's part is a further error of all figures."""
     arcs = spur.arcs
     assert arcs is not None
-    assert arcs.fewer is not None
-    quiet = replace(arcs, fewer=replace(arcs.fewer, ends=(arcs.fewer.arcs, 4.0), ends_scatter={}))
+    few = arcs.compared.fewer
+    assert few is not None
+    quiet = with_fewer(arcs, ends=(few.arcs, 4.0), ends_scatter={})
     scatter = {"transmission_error": Scatter(9e-6, 5e-6, 1e-6)}
-    loud = replace(quiet, fewer=replace(quiet.fewer, ends_scatter=scatter))
-    off = replace(quiet, fewer=replace(quiet.fewer, ends=(arcs.before, 1.0)))
+    loud = with_fewer(quiet, ends_scatter=scatter)
+    off = with_fewer(quiet, ends=(arcs.compared.before, 1.0))
     for name in ("transmission_error", "stiffness"):
         assert quiet.range(name).error == arcs.range(name).error
         assert loud.mean(name).error == off.mean(name).error == arcs.mean(name).error
@@ -112,13 +122,12 @@ def test_harmonics_that_do_not_change_by_chance_are_as_doubtful_as_positions(spu
     """A part of the range that free ends move, and what cells change at positions."""
     arcs, orders, name = spur.arcs, np.array([1, 2, 5]), "transmission_error"
     assert arcs is not None
-    assert arcs.fewer is not None
+    few = arcs.compared.fewer
+    assert few is not None
     none = Scatter(0.0, 0.0, 0.0)
-    quiet = replace(arcs, fewer=replace(arcs.fewer, scatter={name: none}, ends=(arcs.fewer.arcs, 4.0)))
-    ends = replace(quiet, fewer=replace(quiet.fewer, ends_scatter={name: Scatter(9e-6, 6e-6, 1e-6)}))
-    cells = replace(
-        quiet, fewer=replace(quiet.fewer, arcs=arcs.arcs, scatter={name: Scatter(9e-6, 6e-6, 0.0)})
-    )
+    quiet = with_fewer(arcs, scatter={name: none}, ends=(few.arcs, 4.0))
+    ends = with_fewer(quiet, ends_scatter={name: Scatter(9e-6, 6e-6, 1e-6)})
+    cells = with_fewer(quiet, arcs=arcs.arcs, scatter={name: Scatter(9e-6, 6e-6, 0.0)})
     known, told = (each.harmonics(name, orders)[1] for each in (quiet, ends))
     assert np.allclose(told, np.hypot(known, 6e-6 / np.array([3, 3, 6])), rtol=1e-12)
     assert np.all(cells.harmonics(name, orders)[1] >= 6e-6)

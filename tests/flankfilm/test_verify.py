@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from base import InputError
+from base.later import known
 from flankfilm.building.pair import gear_pair
 from flankfilm.coupling.mesh.verification import POINTS, UNITS, mesh_figures, single_figures, stations
 from flankfilm.scene import parse_scene, read_scene
@@ -13,7 +14,7 @@ from flankfilm.verification.run import unknown_over_face, verification_outcome
 from flankfilm.verification.tables import face_table
 from gears import BasicRack, Gear, GearPair, closed_form
 from gears.sharing.events import Sampled, arcs_between_events
-from gears.sharing.mesh_arcs import CURVES, MeshArcs
+from gears.sharing.mesh_arcs import ALONE, CURVES, Compared, MeshArcs
 from tests.flankfilm.program import EXAMPLES, command, flankfilm
 from tests.flankfilm.test_face_scene import SCENE
 
@@ -46,7 +47,7 @@ def test_the_path_is_walked_from_A_to_E_with_C(pair):
 
 
 def test_figures_are_those_of_the_curves(pair):
-    arcs = MeshArcs(made_up(pair), None, 1.0, 1e-3)
+    arcs = MeshArcs(made_up(pair), ALONE, 1.0, 1e-3)
     rho1, unit = stations(pair), 1e9 * pair.face_width
     single = unit * (10 + 2 * (rho1 - rho1[0]) / np.ptp(rho1))
     found = single_figures(pair, single, 1e-3) | mesh_figures(pair, arcs)
@@ -73,7 +74,7 @@ def test_two_pairs_bear_over_what_a_contact_ratio_above_two_leaves_them():
     pair = GearPair(Gear(60), Gear(70), module=2e-3, face_width=40e-3, rack=rack)
     low = pair.contact_ratio - 2.0
     assert 0.05 < low < 0.5
-    found = mesh_figures(pair, MeshArcs(made_up(pair), None, 1.0, 1e-3))["mesh, two pairs, mean"]
+    found = mesh_figures(pair, MeshArcs(made_up(pair), ALONE, 1.0, 1e-3))["mesh, two pairs, mean"]
     ends = 2 * np.pi * np.array([low, 1.0])
     waves = 3 * np.sin(ends) + np.sin(2 * ends + 1) + np.sin(3 * ends + 2) / 3
     assert found.value == pytest.approx(20 + np.diff(waves)[0] / np.diff(ends)[0], rel=1e-9)
@@ -81,7 +82,7 @@ def test_two_pairs_bear_over_what_a_contact_ratio_above_two_leaves_them():
 
 def test_errors_are_what_the_mesh_before_differs_by(pair):
     """A mesh that yields 0.7 % more, with a gain of 7: 0.1 % of all but of a ratio to the mean."""
-    found = mesh_figures(pair, MeshArcs(made_up(pair), made_up(pair, 7e-3).arcs, 7.0, 0.0))
+    found = mesh_figures(pair, MeshArcs(made_up(pair), known(Compared(made_up(pair, 7e-3).arcs)), 7.0, 0.0))
     for name, one in found.items():
         expected = 0.0 if name.startswith("harmonic") else 1e-3
         assert one.relative == pytest.approx(expected, rel=0.01, abs=1e-8), name

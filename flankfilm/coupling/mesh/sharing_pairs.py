@@ -15,7 +15,7 @@ from flankfilm.coupling.mesh.deflection_law import DeflectionLaw, PathLaw, Place
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 from flankfilm.coupling.mesh.single_pairs import MODELS, single_pair_stiffness
 from gears.sharing.events import Sampled, arcs_alike, arcs_between_events
-from gears.sharing.mesh_arcs import CURVES, MeshArcs
+from gears.sharing.mesh_arcs import CURVES, Compared, MeshArcs, compared_later
 
 SAMPLING = 0.1
 """Part of a tolerance that what the arcs leave out may be."""
@@ -108,14 +108,18 @@ class SharingPairs:
             corners = np.concatenate([corners, self._on_path(self.film.corners(pair))])
         tolerance = SAMPLING * self.tolerance
         division = arcs_between_events(self._sample, CURVES, corners, tolerance=tolerance)
-        varied = []
-        for film, share in self.varied:
-            sample = replace(self, film=film)._sample
-            arcs = arcs_alike(sample, CURVES, division)
-            if arcs is None:
-                arcs = arcs_between_events(sample, CURVES, corners, tolerance=tolerance).arcs
-            varied.append((arcs, share))
-        return MeshArcs(division, None, 1.0, self.error, tuple(varied))
+
+        def compared() -> Compared:
+            varied = []
+            for film, share in self.varied:
+                sample = replace(self, film=film)._sample
+                arcs = arcs_alike(sample, CURVES, division)
+                if arcs is None:
+                    arcs = arcs_between_events(sample, CURVES, corners, tolerance=tolerance).arcs
+                varied.append((arcs, share))
+            return Compared(varied=tuple(varied))
+
+        return MeshArcs(division, compared_later(compared), 1.0, self.error)
 
     def _sample(self, position: Array) -> Sampled:
         rho1 = self._places(position)

@@ -11,6 +11,7 @@ import numpy as np
 import fem
 import gears
 from base import Array, Cost, Stopwatch, part, quantity, record
+from base.later import known
 from flankfilm.coupling.mesh.face_models import FaceLoadModels
 from flankfilm.coupling.mesh.flanks import Flanks
 from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth
@@ -261,7 +262,9 @@ def _closed_form_curves(pair: gears.GearPair, torque: float) -> Iterator[Curves]
     watch = Stopwatch()
     iso = forms.iso6336(pair, force=abs(pair.normal_force(torque)))
     stiffness = {"one pair, largest": iso.single_stiffness, "mesh, mean": iso.mesh_stiffness}
-    figures = {name: Estimate(1e-9 / pair.face_width * value, None) for name, value in stiffness.items()}
+    figures = {
+        name: Estimate(1e-9 / pair.face_width * value, known(None)) for name, value in stiffness.items()
+    }
     nothing = np.zeros(0)
     yield Curves("ISO 6336-1", nothing, nothing, nothing, figures, Cost(watch.seconds))
 
@@ -326,7 +329,7 @@ def single_figures(pair: gears.GearPair, single: Array, error: float | None) -> 
         "one pair, mean A to E": (mean, abs(mean - half) / 3),
     }
     return {
-        name: Estimate(scale * value, None if error is None else scale * hypot(error * value, off))
+        name: Estimate(scale * value, known(None if error is None else scale * hypot(error * value, off)))
         for name, (value, off) in values.items()
     }
 
@@ -342,12 +345,12 @@ def mesh_figures(pair: gears.GearPair, arcs: MeshArcs) -> dict[str, Estimate]:
     sizes, errors = arcs.amplitudes(name, orders, over_mean=True)
     for place, order in enumerate(orders):
         error = None if errors is None else float(errors[place])
-        figures[f"harmonic {order} over mean"] = Estimate(float(sizes[place]), error)
+        figures[f"harmonic {order} over mean"] = Estimate(float(sizes[place]), known(error))
     return figures
 
 
 def _times(scale: float, estimate: Estimate) -> Estimate:
-    return Estimate(scale * estimate.value, None if estimate.error is None else scale * estimate.error)
+    return Estimate(scale * estimate.value, known(None if estimate.error is None else scale * estimate.error))
 
 
 def _differences(references: tuple[Curves, ...], models: tuple[Curves, ...]) -> Iterator[Difference]:

@@ -85,7 +85,7 @@ def test_estimates_hold_what_more_and_tighter_films_change(name: str):
 def test_films_by_formula_err_by_their_interpolation_alone():
     cycle = cycle_of(Case(film=FilmModel("dowson")), 40)
     assert cycle.arcs is not None
-    halves, own = cycle.arcs.varied, cycle.arcs.arcs
+    halves, own = cycle.arcs.compared.varied, cycle.arcs.arcs
     assert [share for _, share in halves] == [BETWEEN, BETWEEN]
     changed = [other.mean("stiffness")[0] - own.mean("stiffness")[0] for other, _ in halves]
     error = replace(cycle.arcs, other=0.0).mean("stiffness").error

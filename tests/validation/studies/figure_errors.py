@@ -28,7 +28,7 @@ from base import InputError, SolverError
 from fem.pair.pair_fillets import fillets
 from fem.stress.tooth_root import root_stress
 from gears import LoadSharingError, Material, TipRelief
-from gears.sharing.mesh_arcs import MeshArcs
+from gears.sharing.mesh_arcs import ALONE, MeshArcs
 from tests.hard.random_pairs import random_pair
 
 STEEL, PLASTIC = Material(206e9, 0.3, 7850.0), Material(3e9, 0.4, 1140.0)
@@ -155,7 +155,7 @@ def one(pair, torque, options, roots: bool) -> tuple[str, dict[str, float]]:
         best = fem.mesh_cycle(pair, usual.torque, 8, finer, tolerance=0.01 * TOLERANCE, **options)
         if best.problem is None:
             return f"no reference, {best.message}", {}
-        reference = MeshArcs(best.problem.divided(), None, 1.0, 0.0)
+        reference = MeshArcs(best.problem.divided(), ALONE, 1.0, 0.0)
     assert usual.arcs is not None
     found = ratios(usual.arcs, reference)
     if roots and not options["friction"] and pair.contact_ratio < 2:
