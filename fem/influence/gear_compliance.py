@@ -135,6 +135,11 @@ class GearCompliance:
         bend = self.own_series.at(rho, derivative=2)
         return np.asarray(bend - self.logarithm * (2 / away + (2 * rho / away) ** 2))
 
+    def cross_basis(self, rho: Array) -> Array:
+        """Chebyshev polynomials (..., n) at curvature radii (...) [m], which the series of all other teeth share."""
+        shared = next(iter(self.cross_series.values()))
+        return shared.variable.basis(rho, len(shared.coefficients) - 1)
+
     def cross(self, tooth: int, load: Array, point: Array) -> Array:
         """Displacement along the inward normal of another tooth by a load on tooth 0.
 

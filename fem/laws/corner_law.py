@@ -76,6 +76,15 @@ class CornerLaw:
         contacts = self.at[position : position + 1]
         return CornerLaw(contacts, self.log_force, self.quotient[rows], self.slope[rows])
 
+    def with_others(self, others: CornerLaw) -> CornerLaw:
+        """Laws of these and of other contacts, over the same forces."""
+        at = self.at | others.at
+        quotient, slope = np.empty((2, int(at.sum()), len(self.log_force)))
+        for law in (self, others):
+            rows = law.at[at]
+            quotient[rows], slope[rows] = law.quotient, law.slope
+        return CornerLaw(at, self.log_force, quotient, slope)
+
     def value_and_slope(self, force: Array) -> tuple[Array, Array]:
         """Further deflection [m] and its derivative [m/N] under forces (..., n) [N], one of each contact."""
         first, step, last = (

@@ -74,10 +74,10 @@ class CornerLaws:
             more = gear.own(rounded) - gear.own(candidates.rho[corner][near])
             apart = gear.own(candidates.rho[corner][edges]) if tooth_apart else gear.hub_windup
             held = gear.own(up_to(nominal[edges], gear.rho_range[1], pair.module)[0]) - apart
-            corners += [
-                inside.held(near, nominal[near] - end, more / pair.face_width),
-                outside.held(edges, nominal[edges] - end, held / pair.face_width),
-            ]
+            on_flank = inside.held(near, nominal[near] - end, more / pair.face_width)
+            corners.append(
+                on_flank.with_others(outside.held(edges, nominal[edges] - end, held / pair.face_width))
+            )
             largest[edges] = outside.covered(nominal[edges] - end)
             place[edges] = end if corner == 0 else line - end
         return PairLaws(bodies.hertz(place, candidates.curvature), tuple(corners)), largest[edge]

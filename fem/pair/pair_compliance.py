@@ -219,13 +219,15 @@ class PairCompliance(SolvedPair):
             Symmetric [m per N/m].
         """
         flexible, n = (self.pinion, self.wheel)[gear], rho.shape[-1]
+        basis = flexible.cross_basis(rho)
         compliance: Array = np.zeros((*rho.shape, n))
         compliance[..., np.arange(n), np.arange(n)] = flexible.own(rho)
         for apart, load, point in contacts_apart(gear, n, self.reach):
-            moved = flexible.cross(apart, rho[..., load], rho[..., point])
+            loads = basis[..., load, :]
+            moved = flexible.cross_series[apart].of_bases(loads, basis[..., point, :])
             if leaning is not None:
                 # corners are the places of largest rho
-                angle, corner = leaning[..., point], flexible.corner(apart, rho[..., load])
+                angle, corner = leaning[..., point], loads @ flexible.corner_series[apart].coefficients
                 moved = np.cos(angle) * moved - np.sin(angle) * corner
             compliance[..., load, point] = compliance[..., point, load] = moved
         return compliance

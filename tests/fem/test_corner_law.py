@@ -104,3 +104,18 @@ def test_equal_gears_have_equal_corners_in_the_mirror():
     for name in ("approach", "slope", "push", "less"):
         value = getattr(mine, name)
         np.testing.assert_allclose(getattr(other, name), value, atol=1e-5 * np.abs(value).max())
+
+
+def test_laws_of_contacts_on_the_flank_and_beyond_its_end_are_one():
+    """Every contact keeps its own, in whatever order they stand."""
+    known = asked(pair_of(), 0)
+    surface = corner_surfaces(known.setup, known.bodies, 0, 0.6)[0]
+    at, places = np.array([[True, False, True, True]]), np.array([-2e-5, 3e-5, 1e-5])
+    whole = surface.held(at, places, np.array([1e-10, 2e-10, 3e-10]))
+    first, last = np.array([[True, False, False, True]]), np.array([[False, False, True, False]])
+    parts = surface.held(first, places[[0, 2]], np.array([1e-10, 3e-10]))
+    parts = parts.with_others(surface.held(last, places[[1]], np.array([2e-10])))
+    force = np.array([10.0, 200.0, 3e3])
+    assert np.array_equal(parts.at, at)
+    for value, same in zip(parts.value_and_slope(force), whole.value_and_slope(force), strict=True):
+        assert np.array_equal(value, same)
