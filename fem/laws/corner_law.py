@@ -15,6 +15,7 @@ stays.
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,7 +24,7 @@ from base import Array, Booleans, record
 from fem.pair.hertz_approach import LEAST_FORCE
 
 if TYPE_CHECKING:
-    from scipy.interpolate import CubicSpline, RectBivariateSpline
+    from scipy.interpolate import BSpline, CubicSpline, RectBivariateSpline
 
 __all__ = ["CornerLaw", "CornerSurface", "Pushed"]
 
@@ -175,12 +176,19 @@ class CornerSurface:
         further : (n,) array
             What they yield in proportion to the force [m/N].
         """
-        order = np.argsort(place)
-        xi, log = self._xi(place[order])[0], self.log_force
-        quotient, slope = np.empty((2, len(place), len(log)))
-        energy, rise, bend = (self.energy(xi, log, dy=n) for n in range(3))
-        quotient[order], slope[order] = 2 * energy + rise, 2 * rise + bend
-        return CornerLaw(at, log, quotient + further[:, None], slope)
+        quotient, slope = np.moveaxis(self._over_place(self._xi(place)[0]), 1, 0)
+        return CornerLaw(at, self.log_force, quotient + further[:, None], slope)
+
+    @cached_property
+    def _over_place(self) -> BSpline:
+        """Quotient q and its derivative by ln F at the forces of laws (2, k), over the coordinate of places."""
+        from scipy.interpolate import BSpline
+
+        (places, forces, flat), (p, q) = self.energy.tck, self.energy.degrees
+        coefficients = flat.reshape(len(places) - p - 1, len(forces) - q - 1).T
+        by_force = BSpline(forces, coefficients, q)
+        energy, rise, bend = (by_force(self.log_force, n).T for n in range(3))
+        return BSpline(places, np.stack([2 * energy + rise, 2 * rise + bend], axis=1), p)
 
     def at(self, place: Array, force: Array) -> Pushed:
         """Derivatives by forces [N] and by shifts of places [m], the gap among them."""

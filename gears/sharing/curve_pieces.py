@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from base import Array, quantity, record
-from gears.sharing.arc_series import lobatto
+from gears.sharing.arc_series import lobatto, to_series
 from gears.sharing.arcs import Arc, graded
 
 BESIDE = 1e-11
@@ -129,11 +129,10 @@ class Piece:
     def missed(self) -> float | None:
         """Where a switch may turn for a moment between two samples; None where none does."""
         unit = np.linspace(lobatto(self.degree)[1], lobatto(self.degree)[-2], 8 * self.degree + 1)
-        for switch in range(self.reserve.shape[1]):
-            values = self.reserve[:, switch]
+        for values in self.reserve.T:
             if not np.all(np.isfinite(values)) or np.ptp(values) < 1e-9:
                 continue
-            series = chebyshev.chebfit(lobatto(self.degree), values, self.degree)
+            series = to_series(self.degree) @ values
             between = chebyshev.chebval(unit, series) * (1.0 if values[self.degree // 2] >= 0.0 else -1.0)
             lowest = int(np.argmin(between))
             # crowded points leave room for waves at the other end, which reach to where the reserve is small
