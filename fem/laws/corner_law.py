@@ -184,7 +184,8 @@ class CornerSurface:
         """Quotient q and its derivative by ln F at the forces of laws (2, k), over the coordinate of places."""
         from scipy.interpolate import BSpline
 
-        (places, forces, flat), (p, q) = self.energy.tck, self.energy.degrees
+        places, forces, flat = (np.asarray(values) for values in self.energy.tck)
+        p, q = self.energy.degrees
         coefficients = flat.reshape(len(places) - p - 1, len(forces) - q - 1).T
         by_force = BSpline(forces, coefficients, q)
         energy, rise, bend = (by_force(self.log_force, n).T for n in range(3))
