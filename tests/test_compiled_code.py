@@ -47,10 +47,10 @@ for name, pair in pairs.items():
     found[f"orbit, {name}"] = [*orbit.state, *np.abs(orbit.multipliers)]
 branch = dynamics.continue_branch(dynamics.find_orbit(both, (0.3, 0.0)), "frequency", (0.6, 0.66))
 found["special points"] = [point.parameter for point in branch.points]
-found["basins"] = dynamics.basins(both, (-1.0, 1.0, 2), (-1.0, 1.0, 2), limit=16).labels
+found["basins"] = dynamics.basins(both, (-1.0, 1.0, 2), (-1.0, 1.0, 2), limit=6).labels
 found["sweep"] = dynamics.sweep(both, "frequency", [0.6], transient=4, keep=8, max_period=4).states
 found["exponents"] = dynamics.lyapunov_exponents(both, periods=20, transient=0).exponents
-found["orbits"] = sorted(orbit.state[0] for orbit in dynamics.find_orbits(both, (1,), starts=4, batches=3).orbits)
+found["orbits"] = sorted(orbit.state[0] for orbit in dynamics.find_orbits(both, (1,), starts=3, batches=2).orbits)
 chain = dynamics.DriveOscillator(
     [[1.0, 0.0], [0.0, 2.0]], [[0.1, 0.0], [0.0, 0.1]], [[0.5, -0.2], [-0.2, 0.4]], [1.0, -1.0], both.stiffness, 0.05,
     [0.1, -0.1], 0.2, 0.62, 0.2, free_mesh_damping=0.1,
@@ -58,7 +58,7 @@ chain = dynamics.DriveOscillator(
 image = dynamics.period_map(chain, (0.5, 0.2, 0.1, -0.3))
 found["map of a drive"] = [*image.states.ravel(), *image.jacobian.ravel(), *image.counts.ravel()]
 found["motion of a drive"] = dynamics.trajectory(chain, (0.5, 0.2, 0.1, -0.3), 1, 8).columns()
-found["basins of a drive"] = dynamics.basins(chain, (-1.0, 1.0, 2), (-1.0, 1.0, 2), limit=10).labels
+found["basins of a drive"] = dynamics.basins(chain, (-1.0, 1.0, 2), (-1.0, 1.0, 2), limit=4).labels
 found["exponents of a drive"] = dynamics.lyapunov_exponents(chain, periods=20, transient=0).exponents
 print(json.dumps({name: np.ravel(values).astype(float).tolist() for name, values in found.items()}))
 """

@@ -32,13 +32,15 @@ NAMES = {
 }
 
 
-def special_points(kind: str):
-    """Points of the branch on which the pair leaves contact, of the pair and of the train."""
+@pytest.fixture(scope="module")
+def branches():
+    """The branch on which the pair leaves contact, of the pair and of the train."""
     start = find_orbit(PAIR, (0.35, 0.0))
     shift = TRAIN.lifted(start.state[None], np.zeros(1))[0]
-    branches = [
-        continue_branch(orbit, "frequency", (0.62, 0.67)) for orbit in (start, find_orbit(TRAIN, shift))
-    ]
+    return [continue_branch(orbit, "frequency", (0.62, 0.67)) for orbit in (start, find_orbit(TRAIN, shift))]
+
+
+def special_points(branches, kind: str):
     return [branch.special(kind)[0] for branch in branches]
 
 
@@ -56,8 +58,8 @@ def test_second_derivatives_are_those_of_the_pair(state):
 
 
 @pytest.mark.parametrize("kind", ["saddle-node", "grazing"])
-def test_sensitivities_are_those_of_the_pair(kind):
-    theirs, ours = special_points(kind)
+def test_sensitivities_are_those_of_the_pair(branches, kind):
+    theirs, ours = special_points(branches, kind)
     assert ours.parameter == pytest.approx(theirs.parameter, abs=1e-9)
     exact = special_sensitivities(PAIR, "frequency", theirs, list(NAMES))
     by_train = special_sensitivities(TRAIN, "frequency", ours, [name for name, _ in NAMES.values()])
@@ -66,8 +68,8 @@ def test_sensitivities_are_those_of_the_pair(kind):
 
 
 @pytest.mark.parametrize("kind", ["saddle-node", "grazing"])
-def test_a_locus_is_that_of_the_pair(kind):
-    theirs, ours = special_points(kind)
+def test_a_locus_is_that_of_the_pair(branches, kind):
+    theirs, ours = special_points(branches, kind)
     bounds = ((0.6, 0.7), (0.095, 0.105))
     of_pair = continue_locus(PAIR, theirs, ("frequency", "mean_force"), bounds)
     of_train = continue_locus(TRAIN, ours, ("frequency", "mean_force[0]"), bounds, step=0.05, max_step=0.1)
@@ -82,8 +84,8 @@ def test_a_locus_is_that_of_the_pair(kind):
     assert of_train.values[:, 0] == pytest.approx(between, abs=1e-4)  # chords of the pair's curve
 
 
-def test_a_point_is_carried_to_where_that_of_the_pair_is():
-    theirs, ours = special_points("saddle-node")
+def test_a_point_is_carried_to_where_that_of_the_pair_is(branches):
+    theirs, ours = special_points(branches, "saddle-node")
     there = FourierStiffness(1.0, (0.18, 0.05), (0.0, 1.0))
     of_pair = carried_point(PAIR, "frequency", theirs, there)
     of_train = carried_point(TRAIN, "frequency", ours, there)

@@ -150,8 +150,10 @@ def test_a_series_is_read_back(bodies, cycle, tmp_path):
 
 
 def test_both_gears_turn(bodies, cycle):
+    blocks = {row: field_blocks(PAIR, cycle, row, bodies) for row in (3, 5)}
+
     def lean(row, name):
-        teeth = field_blocks(PAIR, cycle, row, bodies)[name]
+        teeth = blocks[row][name]
         points = teeth.extract_cells(np.flatnonzero(teeth["tooth"] == 0)).points
         x, y = points[:, :2].mean(axis=0) - [0.0, 0.0 if name == "pinion" else sum(PAIR.pitch_radii)]
         return np.arctan2(y, x)

@@ -191,9 +191,25 @@ class Here(Executor):
         return future
 
 
+@contextlib.contextmanager
+def computed_here() -> Iterator[None]:
+    """Rows in this process: each of their own takes two seconds to start."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            workers, "executor", lambda kind, count: contextlib.nullcontext(Pool(Here(), lambda: 1))
+        )
+        yield
+
+
 @pytest.fixture
-def rows_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Rows in the test's process, for tests that ask what is made of them: each process takes two seconds to start."""
-    monkeypatch.setattr(
-        workers, "executor", lambda kind, count: contextlib.nullcontext(Pool(Here(), lambda: 1))
-    )
+def rows_here() -> Iterator[None]:
+    """Rows in the test's process, for tests that ask what is made of them."""
+    with computed_here():
+        yield
+
+
+@pytest.fixture(scope="module")
+def rows_of_module_here() -> Iterator[None]:
+    """The same for all tests of a module, and for what they share."""
+    with computed_here():
+        yield

@@ -30,14 +30,14 @@ def scene_file(folder: Path, *changes: tuple[str, str]) -> Path:
 
 
 def test_new_writes_a_scene_that_check_accepts(tmp_path):
-    flankfilm("new", "first.toml", cwd=tmp_path)
+    command("new", "first.toml", cwd=tmp_path)
     output = flankfilm("check", "first.toml", cwd=tmp_path).stdout
     assert "Contact ratio 1.7030" in output
 
 
 def test_new_keeps_what_is_there(tmp_path):
     (tmp_path / "mine.toml").write_text("precious")
-    output = flankfilm("new", "mine.toml", cwd=tmp_path, status=2).stderr
+    output = command("new", "mine.toml", cwd=tmp_path, status=2).stderr
     assert "kept" in output
     assert (tmp_path / "mine.toml").read_text() == "precious"
 
@@ -74,7 +74,7 @@ def test_all_faults_of_both_gears_come_at_once(tmp_path):
 
 
 def test_missing_and_unreadable_places(tmp_path):
-    assert "does not exist" in flankfilm("run", "none.toml", cwd=tmp_path, status=2).stderr
+    assert "does not exist" in command("run", "none.toml", cwd=tmp_path, status=2).stderr
     assert "is a folder" in command("run", tmp_path, cwd=tmp_path, status=2).stderr
     (tmp_path / "taken").write_text("a file")
     output = command("run", EXAMPLES / "oscillator.toml", "--out", "taken", cwd=tmp_path, status=2).stderr
@@ -117,22 +117,13 @@ def test_the_program_asks_for_one_thread_before_numpy_is_loaded():
         assert done.stdout.startswith(f"numpy sees {seen}\n")
 
 
-def test_a_full_disk_ends_with_a_message_and_no_half_written_file(tmp_path):
-    code = (
-        "import sys, os, flankfilm.cli as cli\n"
-        "def full(handle): raise OSError(28, 'No space left on device')\n"
-        "os.fsync = full\n"
-        "sys.argv = ['flankfilm', 'run', sys.argv[1], '--out', sys.argv[2], '--no-cache']\n"
-        "cli.main()\n"
-    )
+def test_a_full_disk_ends_with_a_message_and_no_half_written_file(tmp_path, monkeypatch):
+    def full(handle):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
     (tmp_path / "scene.toml").write_text(ishikawa("X", "geometry"), encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "-c", code, tmp_path / "scene.toml", tmp_path / "out"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 2, done.stderr
+    done = command("run", "scene.toml", "--out", "out", "--no-cache", cwd=tmp_path, status=2)
     assert "No space left on device" in done.stderr
     assert "Traceback" not in done.stderr
     assert [path.name for path in (tmp_path / "out").rglob("*.*")] == [".lock"]

@@ -96,7 +96,7 @@ def test_errors_are_named_as_before():
 
 
 @pytest.fixture(scope="module")
-def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def study(tmp_path_factory: pytest.TempPathFactory, rows_of_module_here: None) -> Path:
     folder = tmp_path_factory.mktemp("study")
     (folder / "scene.toml").write_text(
         'wants = ["stiffness"]\n' + textwrap.dedent(GEOMETRY), encoding="utf-8"

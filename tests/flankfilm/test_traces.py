@@ -14,7 +14,7 @@ from flankfilm.building.flanks import deviations
 from flankfilm.building.pair import gear_pair
 from flankfilm.scene import parse_scene, read_scene
 from flankfilm.studies.plan import read_plan
-from tests.flankfilm.program import EXAMPLES, flankfilm
+from tests.flankfilm.program import EXAMPLES, command, flankfilm
 
 EXAMPLE = EXAMPLES / "worn_flanks.toml"
 TRACES = EXAMPLES / "measured" / "pinion_traces.csv"
@@ -136,7 +136,7 @@ def test_a_study_over_wear(tmp_path):
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     folder = tmp_path_factory.mktemp("worn") / "out"
-    flankfilm("run", EXAMPLE, "--out", folder)
+    command("run", EXAMPLE, "--out", folder, cwd=folder.parent)
     return folder
 
 
