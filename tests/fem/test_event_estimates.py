@@ -60,7 +60,7 @@ def test_errors_hold_where_the_elements_at_a_corner_do_not_resolve_its_edge(arti
     """With the strips of the finer mesh in both, the tangent of an edge that barely touches had 0.07 of its error."""
     pair, sizes = article_pair, Sizes(corner=0.4, growth=1.5)
     usual = fem.mesh_cycle(pair, torque, 8, fem.compliance(pair, sizes=sizes, refinements=1))
-    best = fem.mesh_cycle(pair, torque, 8, fem.compliance(pair, refinements=3), tolerance=1e-5)
+    best = fem.mesh_cycle(pair, torque, 8, fem.compliance(pair, refinements=2), tolerance=1e-5)
     for name, error in usual.errors.items():
         if name == "greatest_load_share":  # hardly depends on the mesh
             continue

@@ -35,7 +35,7 @@ def test_a_remedy_is_named_that_fits(monkeypatch):
 
 
 def test_free_ends_of_a_long_face_are_refused_between_walls_they_are_not(monkeypatch):
-    long = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=40.0)
+    long = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=40.0).with_backlash(100e-6)
     bodies = compliance(long, tolerance=0.05)
     monkeypatch.setattr(fem.pair.face_memory, "free_memory", lambda: 2e9)
     with pytest.raises(InputError, match=r"face_model = 'free-ends'.*2e\+04 modules"):

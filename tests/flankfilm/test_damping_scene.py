@@ -43,8 +43,14 @@ OIL = ehl.Lubricant(viscosity=0.075, pressure_viscosity=19.6e-9)
 
 
 @pytest.fixture(scope="module")
-def engine() -> Engine:
-    return Engine(parse_scene(SCENE), Cache(None))
+def kept(tmp_path_factory) -> Cache:
+    """What scenes that differ in other keys have in common."""
+    return Cache(tmp_path_factory.mktemp("kept"))
+
+
+@pytest.fixture(scope="module")
+def engine(kept) -> Engine:
+    return Engine(parse_scene(SCENE), kept)
 
 
 def test_the_motion_has_the_films_damping(engine):
@@ -74,10 +80,10 @@ def test_results_and_report_say_so_and_what_else_damps(tmp_path):
     assert "What else damps is not known and not counted" in text
 
 
-def test_what_damps_in_the_backlash_is_named_beside_the_films(engine):
+def test_what_damps_in_the_backlash_is_named_beside_the_films(engine, kept):
     """Read through to the oscillator and its drive train, and said in the table of the report."""
     beside = SCENE.replace('damping_ratio = "film"', 'damping_ratio = "film"\nfree_damping_ratio = 0.004')
-    motion = Engine(parse_scene(beside), Cache(None))[SCALING]
+    motion = Engine(parse_scene(beside), kept)[SCALING]
     pressed = engine[SCALING].oscillator.damping_ratio
     assert motion.oscillator.damping_ratios == (pressed, 0.004)
     said = {name: (physical, value) for name, physical, value in oscillator_rows(motion)}
@@ -142,8 +148,8 @@ def test_scenes_without_films_that_damp_are_refused(old, new, where):
     ],
     ids=["layer", "rough"],
 )
-def test_layers_and_rough_flanks_damp_too(engine, old, new):
-    found = Engine(parse_scene(SCENE.replace(old, new)), Cache(None))[FILM_DAMPING]
+def test_layers_and_rough_flanks_damp_too(engine, kept, old, new):
+    found = Engine(parse_scene(SCENE.replace(old, new)), kept)[FILM_DAMPING]
     smooth = engine[FILM_DAMPING]
     assert found.damping_ratio > 0.0
     assert found.damping_ratio != pytest.approx(smooth.damping_ratio, rel=0.02)

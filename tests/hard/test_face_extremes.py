@@ -16,7 +16,7 @@ from base import InputError, RangeWarning
 from gears import Alignment, Gear, GearPair, Lead, Material, TipRelief, Topography
 
 FREE = pytest.param("free-ends", marks=pytest.mark.slow)
-PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(200e-6)
+PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
 LINE_LOAD = 400e3
 ON_FEW = "most loaded pair bears on"
 

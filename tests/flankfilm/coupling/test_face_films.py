@@ -23,7 +23,7 @@ from flankfilm.coupling.films.least_film import least_of
 from flankfilm.coupling.mesh.resolution import resolution_of
 from gears import Alignment, Gear, GearPair, Lead
 
-PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(300e-6)
+PAIR = GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3).with_backlash(100e-6)
 OIL = ehl.Lubricant(0.05, 19e-9, 870.0)
 SPEED, TORQUE, CELLS = 200.0, 100.0, 8
 FORMULA = FilmModel("dowson")
