@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 
+import meshio
 import numpy as np
 import pytest
 
@@ -342,6 +343,7 @@ def test_stored_numbers_are_as_exact_as_promised(tmp_path):
     np.testing.assert_allclose(back["exact_m"], values, rtol=1e-7)
     np.testing.assert_allclose(back["rough_Pa"], values, rtol=2.5e-4)
     np.testing.assert_array_equal(back.points, places)
+    assert meshio.read(tmp_path / "a.vtu").points.shape == (500, 3)
     write_grid(tmp_path / "b.vtu", pyvista.UnstructuredGrid())
     assert pyvista.read(tmp_path / "b.vtu").n_points == 0
 
