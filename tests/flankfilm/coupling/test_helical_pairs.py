@@ -1,4 +1,4 @@
-"""Closed forms, films on them and shafts that bend refuse helical pairs, whatever the model of their stiffness."""
+"""Closed forms and films on them refuse helical pairs, whatever the model of their stiffness."""
 
 from __future__ import annotations
 
@@ -10,12 +10,10 @@ import pytest
 from base import InputError
 from ehl import Lubricant
 from flankfilm import coupling
-from gears import Bearing, Gear, GearPair, Shaft, ShaftSegment
+from gears import Gear, GearPair
 
 PAIR = GearPair(Gear(teeth=24), Gear(teeth=31), 2e-3, 20e-3, helix_angle=math.radians(15.0))
 OIL = Lubricant(viscosity=0.06, pressure_viscosity=22.6e-9, density=910.0)
-SHAFT = Shaft((ShaftSegment(0.2, 0.03),), (Bearing(0.0, 3e8), Bearing(0.2, 3e8)), 0.06, 0.2)
-SERIES = coupling.given_series(4e8, [0.1], [0.0])
 
 ASKED = {
     "mesh cycle": lambda: coupling.mesh_cycle(PAIR, 100.0, model="potential-energy"),
@@ -26,7 +24,6 @@ ASKED = {
     "films": lambda: coupling.lubricated_cycle(
         PAIR, 100.0, 200.0, OIL, model="potential-energy", film=coupling.FilmModel("dowson")
     ),
-    "shafts that bend": lambda: coupling.pair_drive(PAIR, SERIES, 100.0, 200.0, shafts=(None, SHAFT)),
     "closed forms beside": lambda: coupling.compare_closed_forms(PAIR, 100.0),
 }
 
