@@ -139,8 +139,9 @@ class Model:
 
     def resume(self, other: Model) -> None:
         """Go on with the scene of another window, and with the edits that it could take back."""
+        before, ranges = [*other._before], other._sliders  # either window then takes back by itself
         self._take(other._opened)
-        self._before, self._sliders = other._before, other._sliders
+        self._before, self._sliders = before, ranges
 
     def undo(self) -> None:
         """Take the last edit back."""
