@@ -6,7 +6,6 @@ from .curves import film_response as film_response
 from .drives import bearing_sweep as bearing_sweep
 from .drives import drive_map as drive_map
 from .drives import drive_modes as drive_modes
-from .drives import drive_run_up as drive_run_up
 from .drives import drive_sweep as drive_sweep
 from .excitation import excitation as excitation
 from .excitation import spectrum as spectrum
@@ -52,6 +51,7 @@ from .rendering.animation import animate_cycle as animate_cycle
 from .rendering.animation import teeth_scene as teeth_scene
 from .rendering.animation import tooth_picture as tooth_picture
 from .rendering.animation import view_cycle as view_cycle
+from .speeds import drive_run_up as drive_run_up
 from .speeds import dynamic_map as dynamic_map
 from .speeds import run_up as run_up
 from .speeds import waterfall as waterfall

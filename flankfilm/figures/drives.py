@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from base import Array
-from flankfilm.figures.reading import Reading, need, read
+from flankfilm.figures.reading import need, read
 from flankfilm.figures.style import DASHES, MARK, Style, colours, from_zero, legend_over, sheet
 
 if TYPE_CHECKING:
@@ -46,28 +46,7 @@ def drive_sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     over = "speed" if "drive_sweep_speed" in results.variables else "frequency"
     x = read(results, f"drive_sweep_{over}")
     marks = resonances(results, over == "speed")
-    return carried(dict.fromkeys(WAYS, x.values), x.label, _rows(results, "drive_sweep"), marks, style)
-
-
-def drive_run_up(results: xr.Dataset, *, style: Style | None = None) -> Figure:
-    """Draw the maximum mesh force and what bearings, shafts and couplings carry at most in run-up and coast-down.
-
-    Run-up full, coast-down dashed. Grey lines stand where the mesh frequency is a natural one.
-
-    Parameters
-    ----------
-    results : xarray.Dataset
-        Of a run with ``[shafts]`` that wants ``run-up``.
-    style : mapping, optional
-        rcParams that overrule the house's.
-    """
-    need(
-        results, 'run a scene with [shafts] that wants "run-up"', "run_up_speed_up", "drive_resonance_speeds"
-    )
-    x = {way: read(results, f"run_up_speed_{way}") for way in WAYS}
-    label = Reading(x["up"].values, "pinion speed", x["up"].unit).label
-    at = {way: reading.values for way, reading in x.items()}
-    return carried(at, label, _rows(results, "run_up"), resonances(results), style)
+    return carried(dict.fromkeys(WAYS, x.values), x.label, carried_rows(results, "drive_sweep"), marks, style)
 
 
 def drive_map(results: xr.Dataset, *, style: Style | None = None) -> Figure:
@@ -146,7 +125,7 @@ def bearing_sweep(results: xr.Dataset, *, style: Style | None = None) -> Figure:
     return drawn
 
 
-def _rows(results: xr.Dataset, prefix: str) -> list[Row]:
+def carried_rows(results: xr.Dataset, prefix: str) -> list[Row]:
     """Panels of the mesh force, of all bearings, and of all shafts and couplings, as far as there are any."""
     ways = {way: results[f"{prefix}_force_factor_{way}"].values[:, None] for way in WAYS}
     rows = [Row(FORCE, ("mesh",), ways)]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flankfilm.figures.drives import carried, carried_rows, resonances
 from flankfilm.figures.motion import scale
 from flankfilm.figures.reading import Reading, need, read
 from flankfilm.figures.style import COLOURS, Style, colours, from_zero, legend_over, sheet
@@ -62,6 +63,26 @@ def run_up(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         from_zero(*panels)
         panels[-1].set(xlabel=at.label)
     return drawn
+
+
+def drive_run_up(results: xr.Dataset, *, style: Style | None = None) -> Figure:
+    """Draw the maximum mesh force and what bearings, shafts and couplings carry at most in run-up and coast-down.
+
+    Run-up full, coast-down dashed. Grey lines stand where the mesh frequency is a natural one.
+
+    Parameters
+    ----------
+    results : xarray.Dataset
+        Of a run with ``[shafts]`` that wants ``run-up``.
+    style : mapping, optional
+        rcParams that overrule the house's.
+    """
+    wanted = 'run a scene with [shafts] that wants "run-up"'
+    need(results, wanted, "run_up_speed_up", "drive_resonance_speeds")
+    x = {way: read(results, f"run_up_speed_{way}") for way in WAYS}
+    label = Reading(x["up"].values, "pinion speed", x["up"].unit).label
+    at = {way: reading.values for way, reading in x.items()}
+    return carried(at, label, carried_rows(results, "run_up"), resonances(results), style)
 
 
 def waterfall(results: xr.Dataset, *, style: Style | None = None) -> Figure:

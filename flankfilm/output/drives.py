@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from base.results import figures
-from flankfilm.coupling.vibration.part_loads import PARTS
+from flankfilm.coupling.vibration.part_loads import PARTS, Carrying
 from flankfilm.output.variables import of_record
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from flankfilm.coupling import DriveSweep, DynamicMap, MotionSpectrum, PairDrive, SpeedRunUp
+    from flankfilm.coupling import DriveSweep, PairDrive
 
 
 def train(drive: PairDrive | None, swept: DriveSweep | None) -> Iterator[xr.Dataset]:
@@ -23,7 +23,7 @@ def train(drive: PairDrive | None, swept: DriveSweep | None) -> Iterator[xr.Data
         yield carrying("drive_sweep", swept)
 
 
-def carrying(prefix: str, record: DriveSweep | SpeedRunUp | DynamicMap | MotionSpectrum) -> xr.Dataset:
+def carrying(prefix: str, record: Carrying) -> xr.Dataset:
     """Variables of a record without those of bearings or of shafts where it has none."""
     without = [part for part in PARTS if not getattr(record, f"{part}s")]
     kept = [name for name in figures(type(record)) if not any(part in name for part in without)]

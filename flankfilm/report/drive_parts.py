@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base.units import factor
-from flankfilm.coupling.vibration.part_loads import PARTS
+from flankfilm.coupling.vibration.part_loads import PARTS, Carrying
 from flankfilm.figures.reading import Pictures
 from flankfilm.output.uncertainty import Uncertainty
 from flankfilm.report.page import Headline, Part, Table, pictures, said
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from base import Array
-    from flankfilm.coupling import DriveSweep, DynamicMap, PairDrive, SpeedRunUp
+    from flankfilm.coupling import DriveSweep, PairDrive
 
 RPM = 1.0 / factor("rpm")
 
@@ -159,7 +159,7 @@ def _rows(stage: DriveSweep, part: str, figure: str, unit: str) -> Iterator[tupl
 
 
 def carried_table(
-    stage: SpeedRunUp | DynamicMap,
+    stage: Carrying,
     places: tuple[str, ...],
     values: Callable[[str], Array],
     cells_at: Callable[[Sequence[int]], tuple[str, ...]],
@@ -168,7 +168,7 @@ def carried_table(
 
     Parameters
     ----------
-    stage : SpeedRunUp or DynamicMap
+    stage : Carrying
     places : tuple of str
         Heads of the columns that say where.
     values : callable

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -12,6 +12,18 @@ from base import Array
 
 PARTS = {"bearing": ("bearing_force", "N"), "shaft": ("shaft_torque", "N m")}
 """What carries, its figure, and the unit of that; shafts are shafts and couplings."""
+
+
+class Carrying(Protocol):
+    """Record of what the parts of a train carry; without names of any on rigid shafts."""
+
+    @property
+    def bearings(self) -> tuple[str, ...]:
+        """Names, in the order of their forces."""
+
+    @property
+    def shafts(self) -> tuple[str, ...]:
+        """Names of shafts and couplings, in the order of their torques."""
 
 
 @dataclass(frozen=True, eq=False)
