@@ -1,6 +1,6 @@
 """Steps in time with a mesh force that is given on a grid of angles and depths."""
 
-from dynamics.kernels.compiling import DIVERGED, FINE, FloatArray, helper, plain_kernel
+from dynamics.kernels.compiling import DIVERGED, FINE, FloatArray, IntArray, helper, plain_kernel
 
 
 @helper
@@ -21,28 +21,36 @@ def between(forces: FloatArray, lowest: float, spacing: float, place: float, dep
     return here + along * (there - here)
 
 
+@helper
+def dot(first: FloatArray, second: FloatArray) -> float:
+    """Sum of products."""
+    total = 0.0
+    for i in range(len(first)):
+        total += first[i] * second[i]
+    return total
+
+
 @plain_kernel
 def step_through(
     forces: FloatArray, figures: FloatArray, places: FloatArray, errors: FloatArray, rates: FloatArray,
-    over: FloatArray, constant: FloatArray, state: FloatArray, room: FloatArray, skip: int, peaks: FloatArray,
-    periods: int,
+    over: FloatArray, columns: IntArray, constant: FloatArray, reads: FloatArray, pushed: FloatArray, state: FloatArray,
+    room: FloatArray, skip: int, peaks: FloatArray, periods: int,
 ) -> int:  # fmt: skip
     """Follow a state through equal steps of a period; returns the flag.
 
     `peaks` gets the maximum forces of windows of so many `periods`, one after the other, after `skip` periods.
 
-    The linear part moves exactly, z = `over` z + `constant`; the mesh pushes the first coordinate before and after
-    each step by half of what it does in one. `figures`: lowest depth and spacing of the grid, half the backlash, 1 if
-    the back flanks can touch, what a force changes of the speed in half a step, damping of the mesh in contact, and how
-    much less it is without. `places`, (steps + 1, 2): rows of the grid for front and back flanks; `errors` and `rates`
-    (steps + 1,): error of the angle, and the rate that the damper feels, before and after a step
-    (`rates` (steps, 2)).
+    The linear part moves exactly, z = A z + `constant`, the row i of A with the entries `over`[i] in `columns`[i]; the
+    mesh pushes it along `pushed` before and after each step by half of what it does in one. `reads`: displacement and
+    speed of the mesh of a state. `figures`: lowest depth and spacing of the grid, half the backlash, 1 if the back
+    flanks can touch, what a force changes of the speed in half a step, damping of the mesh in contact, and how much
+    less it is without. `places`, (steps + 1, 2): rows of the grid for front and back flanks; `errors`, (steps + 1,):
+    error of the angle; `rates`, (steps, 2): the rate that the damper feels, before and after a step.
     """
     lowest, spacing, half_backlash, back, push, damping, freed = figures
-    size, steps = len(state), len(rates)
-    middle = size // 2
+    size, steps, entries = len(state), len(rates), over.shape[1]
     peaks[:] = 0.0
-    y = state[0] - errors[0]
+    y = dot(reads[0], state) - errors[0]
     force = between(forces, lowest, spacing, places[0, 0], y - half_backlash)
     if back > 0.0:
         force -= between(forces, lowest, spacing, places[0, 1], -y - half_backlash)
@@ -51,23 +59,25 @@ def step_through(
         for step in range(steps):
             drag = damping * rates[step, 0]
             if force == 0.0:
-                drag += freed * (state[middle] - rates[step, 0])
-            state[middle] += push * (drag - force)
+                drag += freed * (dot(reads[1], state) - rates[step, 0])
+            for i in range(size):
+                state[i] += push * (drag - force) * pushed[i]
             for i in range(size):
                 total = constant[i]
-                for j in range(size):
-                    total += over[i, j] * state[j]
+                for j in range(entries):
+                    total += over[i, j] * state[columns[i, j]]
                 room[i] = total
             for i in range(size):
                 state[i] = room[i]
-            y = state[0] - errors[step + 1]
+            y = dot(reads[0], state) - errors[step + 1]
             force = between(forces, lowest, spacing, places[step + 1, 0], y - half_backlash)
             if back > 0.0:
                 force -= between(forces, lowest, spacing, places[step + 1, 1], -y - half_backlash)
             drag = damping * rates[step, 1]
             if force == 0.0:
-                drag += freed * (state[middle] - rates[step, 1])
-            state[middle] += push * (drag - force)
+                drag += freed * (dot(reads[1], state) - rates[step, 1])
+            for i in range(size):
+                state[i] += push * (drag - force) * pushed[i]
             greatest = max(greatest, force)
         if not abs(y) < 1e150:
             return DIVERGED

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
-from base import Array
+from base import Array, Integers
 from dynamics.model.drive_oscillator import DriveOscillator
 from dynamics.model.protocol import settling_periods
 
@@ -28,6 +28,9 @@ PER_SAMPLE = 2
 
 LEAST_SETTLING = 10
 """Periods that a motion has at least before its maximum force is taken."""
+
+ALIKE = 1e8
+"""Condition of modes from which on they are not distinguished: it multiplies rounding."""
 
 WINDOWS, KEPT = 4, 8
 """Windows of a motion after it has settled, of so many periods each, over all of which the maximum force is taken."""
@@ -74,21 +77,21 @@ class GriddedMotions(NamedTuple):
 
 
 class Linear(NamedTuple):
-    """What moves beside the mesh force, in coordinates of which the first closes the mesh.
+    """What moves beside the mesh force: displacements, of which the first closes the mesh, and speeds.
 
     Attributes
     ----------
-    stiffness, damping : ndarray, shape (m, m)
-        Without the mesh.
-    load : ndarray, shape (m,)
+    matrix : ndarray, shape (2 m, 2 m)
+        Rates by the state, with the damping of the mesh in contact.
+    load : ndarray, shape (2 m,)
+        Rates by the constant load.
     gain : float
         Acceleration of the first coordinate by a force of the mesh.
     damped : tuple of float
         Damping of the mesh in contact, and out of it.
     """
 
-    stiffness: Array
-    damping: Array
+    matrix: Array
     load: Array
     gain: float
     damped: tuple[float, float]
@@ -97,11 +100,54 @@ class Linear(NamedTuple):
 def linear_part(oscillator: GearOscillator | DriveOscillator) -> Linear:
     """Everything of an oscillator but its mesh stiffness."""
     if isinstance(oscillator, DriveOscillator):
-        at = oscillator.coordinates
-        return Linear(at.stiffness, at.damping, oscillator.load, at.gain, oscillator.dampings)
-    contact, free = oscillator.damping_ratios
-    none = np.zeros((1, 1))
-    return Linear(none, none, np.array([oscillator.mean_force]), 1.0, (2.0 * contact, 2.0 * free))
+        at, load, gain = oscillator.coordinates, oscillator.load, oscillator.coordinates.gain
+        stiffness, damping, damped = at.stiffness, at.damping.copy(), oscillator.dampings
+    else:
+        contact, free = oscillator.damping_ratios
+        stiffness, damping, damped = np.zeros((1, 1)), np.zeros((1, 1)), (2.0 * contact, 2.0 * free)
+        load, gain = np.array([oscillator.mean_force]), 1.0
+    damping[0, 0] += gain * damped[0]
+    none = np.zeros_like(stiffness)
+    matrix = np.block([[none, np.eye(len(load))], [-stiffness, -damping]])
+    return Linear(matrix, np.concatenate([np.zeros_like(load), load]), gain, damped)
+
+
+class Modes(NamedTuple):
+    """Coordinates of the modes of a linear part, in which a step of free motion has two entries in a row.
+
+    Attributes
+    ----------
+    raises : ndarray, shape (n, n)
+        State of these coordinates.
+    lowers : ndarray, shape (n, n)
+        Its inverse.
+    rates : complex ndarray, shape (n,)
+        Of each coordinate; above the real axis that of the first of two, below it that of the second.
+    """
+
+    raises: Array
+    lowers: Array
+    rates: Array
+
+    def step(self, dt: float) -> tuple[Array, Integers]:
+        """Entries of rows of a step (n, 2), and their columns."""
+        grown, at = np.exp(self.rates * dt), np.arange(len(self.rates))
+        beside = at + np.sign(self.rates.imag).astype(np.int64)
+        return np.column_stack([grown.real, grown.imag]), np.column_stack([at, beside])
+
+
+def modes_of(matrix: Array) -> Modes | None:
+    """Coordinates of the modes of a matrix; None where two of them all but coincide, or none would be saved."""
+    if len(matrix) <= 2:
+        return None
+    rates, vectors = np.linalg.eig(matrix)
+    kept = rates.imag >= 0.0
+    raises, each = [], []
+    for rate, vector in zip(rates[kept], vectors.T[kept], strict=True):
+        raises += [vector.real] if rate.imag == 0.0 else [vector.real, vector.imag]
+        each += [rate] if rate.imag == 0.0 else [rate, np.conj(rate)]
+    whole = np.column_stack(raises)
+    return None if np.linalg.cond(whole) > ALIKE else Modes(whole, np.linalg.inv(whole), np.array(each))
 
 
 def gridded_motions(
@@ -136,17 +182,16 @@ def gridded_motions(
     True
     """
     part = linear_part(oscillator)
-    m = len(part.load)
+    m, modes = len(part.load) // 2, modes_of(part.matrix)
     state = np.zeros(2 * m)
-    soft = part.stiffness.copy()
+    soft, pushed = -part.matrix[m:, :m], part.load[m:].copy()
     soft[0, 0] += part.gain * oscillator.contact_stiffness.mean
-    pushed = part.load.copy()
     pushed[0] += part.gain * oscillator.contact_stiffness.mean * oscillator.half_backlash
     state[:m] = np.linalg.lstsq(soft, pushed, rcond=None)[0]
     rest, forces, late = state.copy(), [], []
     for frequency in frequencies:
         moved = cast("GearOscillator", oscillator.with_parameter("frequency", float(frequency)))
-        peaks = _settled(moved, part, contact, state, steps)
+        peaks = _settled(moved, part, modes, contact, state, steps)
         forces.append(float(peaks.max()))
         late.append(unsettled(peaks, math.exp(-KEPT * moved.decay * moved.period)))
         if not math.isfinite(forces[-1]):
@@ -191,32 +236,21 @@ def unsettled(peaks: Array, decay: float) -> float:
 def _settled(
     oscillator: GearOscillator | DriveOscillator,
     part: Linear,
+    modes: Modes | None,
     contact: GriddedContact,
     state: Array,
     fine: float,
 ) -> Array:
     """Maximum forces of the settled motion in windows, from a state which goes on; nan where it grew without bound."""
-    from scipy.linalg import expm
-
     from dynamics.kernels.compiling import FINE
     from dynamics.kernels.gridding import step_through
 
-    m, rows = len(part.load), len(contact.forces)
+    n, rows = len(part.load), len(contact.forces)
     natural = math.sqrt(part.gain * oscillator.contact_stiffness.mean)
     per_period = oscillator.period * natural / (2.0 * math.pi) * fine
     steps = max(PER_SAMPLE * rows, math.ceil(per_period / rows) * rows)
     dt = oscillator.period / steps
     within, without = part.damped
-    damping = part.damping.copy()
-    damping[0, 0] += part.gain * within
-    whole = np.zeros((2 * m + 1, 2 * m + 1))
-    whole[:m, m : 2 * m] = np.eye(m)
-    whole[m : 2 * m, :m], whole[m : 2 * m, m : 2 * m], whole[m : 2 * m, -1] = (
-        -part.stiffness,
-        -damping,
-        part.load,
-    )
-    linear = expm(whole * dt)
     share = np.arange(steps + 1) / steps
     places = np.column_stack([share, (contact.mirror - share) % 1.0]) * rows + (rows - 0.5)
     error, rate = _error(oscillator, share * oscillator.period)
@@ -229,22 +263,41 @@ def _settled(
     figures = np.array(
         [contact.lowest, contact.spacing, oscillator.half_backlash, sides, push, within, within - without]
     )
-    peaks = np.zeros(WINDOWS)
+    raises, lowers = (np.eye(n),) * 2 if modes is None else (modes.raises, modes.lowers)
+    over, columns, constant = _free_step(part, modes, dt)
+    peaks, moved = np.zeros(WINDOWS), lowers @ state
     flag = step_through(
         np.ascontiguousarray(contact.forces),
         figures,
         places,
         error,
         rates,
-        np.ascontiguousarray(linear[: 2 * m, : 2 * m]),
-        np.ascontiguousarray(linear[: 2 * m, -1]),
-        state,
-        np.empty(2 * m),
+        over,
+        columns,
+        lowers @ constant,
+        raises[[0, n // 2]],
+        np.ascontiguousarray(lowers[:, n // 2]),
+        moved,
+        np.empty(n),
         settling_periods(oscillator, LEAST_SETTLING),
         peaks,
         KEPT,
     )
+    state[:] = raises @ moved
     return peaks if flag == FINE else np.full(WINDOWS, math.nan)
+
+
+def _free_step(part: Linear, modes: Modes | None, dt: float) -> tuple[Array, Integers, Array]:
+    """Entries of rows of a step without mesh and their columns, and what the load adds to a state."""
+    from scipy.linalg import expm
+
+    n = len(part.load)
+    whole = np.block([[part.matrix, part.load[:, None]], [np.zeros((1, n + 1))]])
+    linear = expm(whole * dt)
+    constant = np.ascontiguousarray(linear[:n, -1])
+    if modes is None:
+        return np.ascontiguousarray(linear[:n, :n]), np.tile(np.arange(n), (n, 1)), constant
+    return *modes.step(dt), constant
 
 
 def _error(oscillator: GearOscillator | DriveOscillator, tau: Array) -> tuple[Array, Array]:

@@ -46,6 +46,29 @@ def test_springs_on_a_grid_move_as_the_exact_flow(oscillator, frequency):
     assert found.force[0] == pytest.approx(exact(oscillator, frequency), rel=2e-3)
 
 
+@pytest.mark.parametrize("frequency", [0.15, 0.93])
+def test_coordinates_of_modes_change_rounding_alone(monkeypatch, frequency):
+    found = gridded_motions(DRIVE, springs(480), [frequency])
+    monkeypatch.setattr(gridded_motion, "modes_of", lambda _: None)
+    plain = gridded_motions(DRIVE, springs(480), [frequency])
+    assert found.force[0] == pytest.approx(plain.force[0], rel=1e-10)
+
+
+def test_modes_that_coincide_are_left_alone():
+    """A mass without spring or damper moves on evenly: a matrix without a whole set of modes."""
+    matrix = np.zeros((4, 4))
+    matrix[0, 2] = matrix[1, 3] = 1.0
+    assert gridded_motion.modes_of(matrix) is None
+    matrix[2, 0], matrix[3, 1] = -1.0, -4.0
+    modes = gridded_motion.modes_of(matrix)
+    over, columns = modes.step(0.3)
+    dense = np.zeros((4, 4))
+    np.put_along_axis(dense, columns, over, axis=1)
+    whole = modes.raises @ dense @ modes.lowers
+    assert whole[0, [0, 2]] == pytest.approx([np.cos(0.3), np.sin(0.3)], abs=1e-14)
+    assert whole[1, [1, 3]] == pytest.approx([np.cos(0.6), 0.5 * np.sin(0.6)], abs=1e-14)
+
+
 def test_what_a_free_damping_changes_is_that_of_the_exact_flow():
     loose = replace(PAIR, free_damping_ratio=0.4)
     change = exact(loose, 0.93) - exact(PAIR, 0.93)
