@@ -10,6 +10,7 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, Stopwatch, quantity, record
 from dynamics.flow.flows import flow_of
 from dynamics.flow.protocol import Flow, MapResult
+from dynamics.flow.samples import mesh_force, samples_of
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import PERIODS, POINTS, TRANSIENT
 from dynamics.model.protocol import Oscillator, PeriodicOscillator, periodic_only
@@ -171,19 +172,18 @@ def trajectory(
         points = faults.whole("points_per_period", points_per_period, *POINTS)
     flow = flow_of(oscillator, tolerance)
     at = checked_state(state, size=flow.dimension)
-    samples, turns, events = flow.sampled(at, n, points)
+    here = samples_of(oscillator, flow, at, n, points)
     finer, _, _ = flow.finer().sampled(at, n, points)
-    tau = np.arange(n * points + 1, dtype=np.float64) * (oscillator.period / points)
-    x, v = oscillator.contact_motion(tau, samples)
+    off, size = np.max(np.abs(here.states - finer)), np.max(np.abs(here.states))
     return Trajectory(
-        tau=tau,
-        x=x,
-        v=v,
-        states=samples,
+        tau=here.tau,
+        x=here.x,
+        v=here.v,
+        states=here.states,
         points_per_period=points,
-        events=events,
-        extrema=turns[:, :3],
-        error=float(np.max(np.abs(samples - finer)) / max(np.max(np.abs(samples)), np.finfo(float).tiny)),
+        events=here.events,
+        extrema=here.turns[:, :3],
+        error=float(off / max(size, np.finfo(float).tiny)),
         cost=Cost(watch.seconds, periods=2 * n),
     )
 
@@ -234,24 +234,6 @@ class ForceRange:
     error: float = quantity("1", "change of the two with half as many samples, the larger one")
 
 
-def mesh_force(oscillator: PeriodicOscillator, motion: Trajectory) -> Array:
-    """Force k(tau) f(X) of the mesh at the samples of a motion, in the unit of the mean force.
-
-    Raises
-    ------
-    InputError
-        If the oscillator has a force that is not piecewise linear.
-    """
-    return oscillator.contact_force(oscillator.frequency * motion.tau, motion.x)
-
-
-def share_below(clearance: Array) -> float:
-    """Part of the time in which a curve is below zero, straight between its samples."""
-    low, high = np.minimum(clearance[:-1], clearance[1:]), np.maximum(clearance[:-1], clearance[1:])
-    crossing = np.divide(-low, high - low, out=np.zeros_like(low), where=high > low)
-    return float(np.mean(np.where(high <= 0.0, 1.0, np.where(low >= 0.0, 0.0, crossing))))
-
-
 @periodic_only
 def force_range(
     oscillator: PeriodicOscillator,
@@ -296,7 +278,9 @@ def force_range(
             faults.add(
                 "load" if np.ndim(mean) else "mean_force", mean, "must be one number, not zero", "give a load"
             )
-    force = mesh_force(oscillator, trajectory(oscillator, state, periods, number)) / mean
+    flow = flow_of(oscillator)
+    at, n = checked_state(state, size=flow.dimension), _checked_spans(periods, 0)[0]
+    force = mesh_force(oscillator, samples_of(oscillator, flow, at, n, number)) / mean
     low, high, coarse = float(np.min(force)), float(np.max(force)), force[::2]
     error = max(abs(float(np.min(coarse)) - low), abs(float(np.max(coarse)) - high))
     return ForceRange(low, high, error)

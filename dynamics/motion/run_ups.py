@@ -20,7 +20,7 @@ import numpy.typing as npt
 from base import Array, Cost, Faults, Stopwatch, described, quantity, record
 from base.results import EXACT, ITSELF
 from dynamics.flow.flows import flow_of
-from dynamics.flow.motions import share_below
+from dynamics.flow.samples import share_below
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import POSITIVE, Whole
 from dynamics.model.options import OPTIONS

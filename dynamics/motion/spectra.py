@@ -14,7 +14,8 @@ import numpy.typing as npt
 
 from base import Array, Cost, Faults, Limit, Stopwatch, quantity, record
 from base.results import EXACT
-from dynamics.flow.motions import mesh_force, trajectory
+from dynamics.flow.motions import trajectory
+from dynamics.flow.samples import mesh_force
 from dynamics.model.arrays import AsArray
 from dynamics.model.limits import NUMBER
 from dynamics.model.options import OPTIONS

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import dynamics
-from dynamics.flow.motions import mesh_force, trajectory
+from dynamics.flow.motions import trajectory
+from dynamics.flow.samples import mesh_force
 from dynamics.motion import gridded_motion
 from dynamics.motion.gridded_motion import GriddedContact, gridded_motions, unsettled
 from dynamics.motion.sweeps import sweep

@@ -118,11 +118,12 @@ def vibration(
     outputs : sequence of DriveOutput
         What parts carry.
     """
-    from dynamics.flow.motions import mesh_force, share_below, trajectory
+    from dynamics.flow.flows import flow_of
+    from dynamics.flow.samples import mesh_force, samples_of, share_below
 
     if not np.all(np.isfinite(state)):
         return Vibration(np.nan, np.nan, np.nan, np.nan, 0.0, np.full((3, len(outputs)), np.nan))
-    motion = trajectory(oscillator, state, periods=periods or APERIODIC, points_per_period=SAMPLES)
+    motion = samples_of(oscillator, flow_of(oscillator), state, periods or APERIODIC, SAMPLES)
     force = mesh_force(oscillator, motion)
     carried = output_rows(outputs, oscillator.dimension) @ motion.states[:-1].T
     fine, coarse = (_figures(force[::step], motion.x[::step]) for step in (1, 2))

@@ -103,7 +103,8 @@ def test_time_without_contact():
 
 def finely(osc: dynamics.GearOscillator, state: np.ndarray, periods: int) -> float:
     """Time without contact by 32 times as many samples."""
-    from dynamics.flow.motions import share_below, trajectory
+    from dynamics.flow.motions import trajectory
+    from dynamics.flow.samples import share_below
 
     motion = trajectory(osc, state, periods=periods, points_per_period=32 * SAMPLES)
     return float(share_below(motion.x - osc.half_backlash))

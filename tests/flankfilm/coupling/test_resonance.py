@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator, contact_grazing, sweep, trajectory
-from dynamics.flow.motions import force_range, share_below
+from dynamics.flow.motions import force_range
+from dynamics.flow.samples import share_below
 from flankfilm.coupling.speeds.swept_truncation import grazing_errors
 from flankfilm.coupling.speeds.truncation import Longer
 from flankfilm.coupling.vibration import contact_loss_error as first_loss
