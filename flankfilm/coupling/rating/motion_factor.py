@@ -230,8 +230,8 @@ def _swept(motion: PairOscillator | PairDrive, error: ErrorSeries | None, values
     with unclocked():
         from dynamics.motion.up_and_down import up_and_down
     oscillator: Any = motion.oscillator if error is None else over_revolution(motion, error)
-    ways = up_and_down(oscillator, "frequency", values).values()
-    shaken = [vibrations(oscillator, result, load=motion.mean_force) for result in ways]
+    ways = list(up_and_down(oscillator, "frequency", values).values())
+    shaken = vibrations(oscillator, ways, load=motion.mean_force)
     force = np.fmax(*(response.force for response in shaken))
     change = max(response.change for response in shaken)
     return _Run(force, change, all(result.converged for result in ways) and bool(np.isfinite(force).all()))

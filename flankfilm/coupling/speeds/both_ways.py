@@ -154,14 +154,10 @@ def both_ways(
     with unclocked():
         from dynamics.motion.up_and_down import up_and_down
     sweeps = up_and_down(motion.oscillator, "frequency", values, progress)
-    load, outputs = motion.mean_force, motion.outputs
-    return BothWays(
-        sweeps,
-        {
-            way: vibrations(motion.oscillator, result, load=load, outputs=outputs)
-            for way, result in sweeps.items()
-        },
+    shaken = vibrations(
+        motion.oscillator, list(sweeps.values()), load=motion.mean_force, outputs=motion.outputs
     )
+    return BothWays(sweeps, dict(zip(sweeps, shaken, strict=True)))
 
 
 def frequencies_of(

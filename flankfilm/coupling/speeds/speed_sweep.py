@@ -172,10 +172,10 @@ def speed_sweep(
     oscillator = motion.oscillator
     swept = both_ways(motion, values)
     grazing = contact_grazing(oscillator, "frequency", (float(values[0]), float(values[-1])))
-    operating = vibrations(oscillator, sweep(oscillator, "frequency", [oscillator.frequency]))
+    (operating,) = vibrations(oscillator, [sweep(oscillator, "frequency", [oscillator.frequency])])
     solved: list[Result] = [*swept.sweeps.values(), grazing]
     touched = grazing.columns()
-    changes = longer_changes(motion, swept.sweeps, swept.forces)
+    changes = longer_changes(motion, swept)
     left_out = None if changes is None else grazing_errors(changes.longer, touched)
     return SpeedSweep(
         **swept.figures(changes, operating),

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from itertools import count
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 import dynamics
 from base import Array, Integers
 from flankfilm.coupling.speeds.truncation import Longer, longer_motion
-from flankfilm.coupling.vibration.resonance import vibration
+from flankfilm.coupling.vibration.resonance import Vibrations, vibration
 
 if TYPE_CHECKING:
     from flankfilm.coupling.drive.pair_drive import PairDrive
+    from flankfilm.coupling.speeds.both_ways import BothWays
     from flankfilm.coupling.vibration.oscillator import PairOscillator
 
 CHECKED = 12
@@ -73,6 +74,7 @@ def motion_changes(
     longer: Longer,
     motion: PairOscillator | PairDrive,
     swept: dynamics.SweepResult,
+    before: Vibrations,
     at: Integers,
     began: Callable[[], None] = lambda: None,
 ) -> MotionChanges:
@@ -84,6 +86,8 @@ def motion_changes(
     motion : PairOscillator or PairDrive
         Of the sweep.
     swept : SweepResult
+    before : Vibrations
+        Figures of the sweep's motions.
     at : ndarray of int, shape (n,)
         Values that are looked at.
     began : callable
@@ -91,7 +95,6 @@ def motion_changes(
     """
     changes = np.full((len(at), 2), np.nan)
     parts = np.full((len(at), 3, len(motion.outputs)), np.nan)
-    arguments: Any = {"load": motion.mean_force, "outputs": motion.outputs}
     for row, index in enumerate(at.tolist()):
         began()
         periods, frequency = int(swept.periods[index]), float(swept.values[index])
@@ -103,14 +106,12 @@ def motion_changes(
         if not orbit.converged or orbit.label != swept.labels[index]:
             changes[row], parts[row] = np.inf, np.inf
             continue
-        here = motion.oscillator.with_parameter("frequency", frequency)
-        before = vibration(here, state, periods, **arguments)
-        after = vibration(there, orbit.state, periods, **arguments)
+        after = vibration(there, orbit.state, periods, load=motion.mean_force, outputs=motion.outputs)
         for column, (figure, other) in enumerate(
-            ((before.force, after.force), (before.spread, after.spread))
+            ((before.force[index], after.force), (before.spread[index], after.spread))
         ):
             changes[row, column] = abs(figure / other - 1.0) if other > 0.0 else np.nan
-        parts[row] = np.abs(before.parts - after.parts) / np.maximum(after.parts[2], 1e-300)
+        parts[row] = np.abs(before.parts[index] - after.parts) / np.maximum(after.parts[2], 1e-300)
     return MotionChanges(changes[:, 0], changes[:, 1], parts)
 
 
@@ -138,8 +139,7 @@ class LongerChanges(NamedTuple):
 
 def longer_changes(
     motion: PairOscillator | PairDrive,
-    sweeps: Mapping[str, dynamics.SweepResult],
-    forces: Mapping[str, Array],
+    swept: BothWays,
     progress: Callable[[int, int], None] = lambda done, every: None,
 ) -> LongerChanges | None:
     """What a longer series changes of the motions of a sweep; None where the series was given.
@@ -147,21 +147,20 @@ def longer_changes(
     Parameters
     ----------
     motion : PairOscillator or PairDrive
-    sweeps : mapping
-        Sweeps over the frequency, by direction.
-    forces : mapping
-        Maximum forces of the mesh of their motions.
+    swept : BothWays
     progress : callable
         Called with the number of the motion that begins, and that of all.
     """
-    values = next(iter(sweeps.values())).values
+    values = swept.values
     longer = longer_motion(motion, (float(values.min()), float(values.max())), LEAST_HARMONICS)
     if longer is None:
         return None
-    at = checked_values(len(values), forces)
-    done, total = count(1), len(sweeps) * len(at)
+    at = checked_values(len(values), swept.forces)
+    done, total = count(1), len(swept.sweeps) * len(at)
     changes = {
-        way: motion_changes(longer, motion, result, at, lambda: progress(next(done), total))
-        for way, result in sweeps.items()
+        way: motion_changes(
+            longer, motion, result, swept.shaken[way], at, lambda: progress(next(done), total)
+        )
+        for way, result in swept.sweeps.items()
     }
     return LongerChanges(longer, at, changes)

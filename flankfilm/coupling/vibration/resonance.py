@@ -1,8 +1,10 @@
-"""What a sweep's settled motions do to the teeth: maximum force, time without contact, vibration."""
+"""What settled motions of sweeps do to the teeth: maximum force, time without contact, vibration."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -12,6 +14,7 @@ from flankfilm.coupling.vibration.part_loads import DriveOutput, output_rows
 
 if TYPE_CHECKING:
     import dynamics
+    from dynamics.flow.protocol import Flow
     from dynamics.model.protocol import PeriodicOscillator
 
 SAMPLES = 400
@@ -61,18 +64,18 @@ class Vibrations(NamedTuple):
 
 def vibrations(
     oscillator: PeriodicOscillator,
-    swept: dynamics.SweepResult,
+    sweeps: Sequence[dynamics.SweepResult],
     *,
     load: float | None = None,
     outputs: Sequence[DriveOutput] = (),
-) -> Vibrations:
-    """Force, time without contact and spread of all motions of a sweep, the error by sampling, and what parts carry.
+) -> list[Vibrations]:
+    """Force, time without contact and spread of all motions of sweeps, the error by sampling, and what parts carry.
 
     Parameters
     ----------
     oscillator : GearOscillator or DriveOscillator
-    swept : SweepResult
-        Over the frequency.
+    sweeps : sequence of SweepResult
+        Over the same frequencies: tables of a frequency serve all of them.
     load, outputs
         As of `vibration`.
 
@@ -80,20 +83,20 @@ def vibrations(
     --------
     >>> from dynamics import FourierStiffness, GearOscillator, sweep
     >>> osc = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0.2, 0.5, half_backlash=0.2)
-    >>> found = vibrations(osc, sweep(osc, "frequency", [0.5, 0.65]))
+    >>> (found,) = vibrations(osc, [sweep(osc, "frequency", [0.5, 0.65])])
     >>> found.force.round(2), found.separated.round(2), found.change < 1e-3
     (array([1.94, 5.68]), array([0.  , 0.61]), True)
     """
-    each = [
-        vibration(
-            oscillator.with_parameter("frequency", float(value)),
-            states[-1],
-            int(periods),
-            load=load,
-            outputs=outputs,
-        )
-        for value, states, periods in zip(swept.values, swept.states, swept.periods, strict=True)
-    ]
+    each: list[list[Vibration]] = [[] for _ in sweeps]
+    for i, value in enumerate(sweeps[0].values.tolist()):
+        here = Sampler(oscillator.with_parameter("frequency", value), load, outputs)
+        for found, swept in zip(each, sweeps, strict=True):
+            found.append(here.vibration(swept.states[i, -1], int(swept.periods[i])))
+    return [_gathered(found) for found in each]
+
+
+def _gathered(each: Sequence[Vibration]) -> Vibrations:
+    """Figures of motions by figure."""
     force, separated, off, spread, change, parts = (np.array(figure) for figure in zip(*each, strict=True))
     return Vibrations(force, separated, off, spread, float(change.max()), parts)
 
@@ -118,23 +121,51 @@ def vibration(
     outputs : sequence of DriveOutput
         What parts carry.
     """
-    from dynamics.flow.flows import flow_of
-    from dynamics.flow.samples import mesh_force, samples_of, share_below
+    return Sampler(oscillator, load, outputs).vibration(state, periods)
 
-    if not np.all(np.isfinite(state)):
-        return Vibration(np.nan, np.nan, np.nan, np.nan, 0.0, np.full((3, len(outputs)), np.nan))
-    motion = samples_of(oscillator, flow_of(oscillator), state, periods or APERIODIC, SAMPLES)
-    force = mesh_force(oscillator, motion)
-    carried = output_rows(outputs, oscillator.dimension) @ motion.states[:-1].T
-    fine, coarse = (_figures(force[::step], motion.x[::step]) for step in (1, 2))
-    change = max(abs(there / here - 1.0) if here else 0.0 for here, there in zip(fine, coarse, strict=True))
-    parts, half = (_of_parts(carried[:, ::step]) for step in (1, 2))
-    off = float(np.max(np.abs(parts - half) / np.maximum(parts[2], 1e-300), initial=0.0))
-    mean = getattr(oscillator, "mean_force", 0.0) if load is None else load
-    greatest = fine[0] / mean if mean else np.nan
-    gap = motion.x - oscillator.half_backlash
-    apart, seldom = share_below(gap), share_below(gap[::2])
-    return Vibration(greatest, apart, _relative(seldom - apart, apart), fine[1], max(change, off), parts)
+
+@dataclass(frozen=True, eq=False)
+class Sampler:
+    """An oscillator made ready for the figures of its motions.
+
+    Attributes
+    ----------
+    oscillator : GearOscillator or DriveOscillator
+    load, outputs
+        As of `vibration`.
+    """
+
+    oscillator: PeriodicOscillator
+    load: float | None
+    outputs: Sequence[DriveOutput]
+
+    @cached_property
+    def flow(self) -> Flow:
+        """Its flow."""
+        from dynamics.flow.flows import flow_of
+
+        return flow_of(self.oscillator)
+
+    def vibration(self, state: Array, periods: int) -> Vibration:
+        """Figures of the settled motion from a state at tau = 0; `periods` 0 where it does not repeat."""
+        from dynamics.flow.samples import mesh_force, samples_of, share_below
+
+        if not np.all(np.isfinite(state)):
+            return Vibration(np.nan, np.nan, np.nan, np.nan, 0.0, np.full((3, len(self.outputs)), np.nan))
+        motion = samples_of(self.oscillator, self.flow, state, periods or APERIODIC, SAMPLES)
+        force = mesh_force(self.oscillator, motion)
+        carried = output_rows(self.outputs, self.oscillator.dimension) @ motion.states[:-1].T
+        fine, coarse = (_figures(force[::step], motion.x[::step]) for step in (1, 2))
+        change = max(
+            abs(there / here - 1.0) if here else 0.0 for here, there in zip(fine, coarse, strict=True)
+        )
+        parts, half = (_of_parts(carried[:, ::step]) for step in (1, 2))
+        off = float(np.max(np.abs(parts - half) / np.maximum(parts[2], 1e-300), initial=0.0))
+        mean = getattr(self.oscillator, "mean_force", 0.0) if self.load is None else self.load
+        greatest = fine[0] / mean if mean else np.nan
+        gap = motion.x - self.oscillator.half_backlash
+        apart, seldom = share_below(gap), share_below(gap[::2])
+        return Vibration(greatest, apart, _relative(seldom - apart, apart), fine[1], max(change, off), parts)
 
 
 def _relative(change: float, value: float) -> float:

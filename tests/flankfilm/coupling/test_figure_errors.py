@@ -112,7 +112,7 @@ def finely(osc: dynamics.GearOscillator, state: np.ndarray, periods: int) -> flo
 
 def test_motions_that_never_part_have_no_error_of_it():
     osc = dynamics.GearOscillator(dynamics.FourierStiffness(1.0), 0.05, 0.1, 0.0, 0.5, half_backlash=0.2)
-    found = vibrations(osc, dynamics.sweep(osc, "frequency", [0.5]))
+    (found,) = vibrations(osc, [dynamics.sweep(osc, "frequency", [0.5])])
     assert found.separated.tolist() == found.separated_error.tolist() == [0.0]
 
 

@@ -22,7 +22,7 @@ OSCILLATOR = GearOscillator(FourierStiffness(1.0, (0.18,), (0.0,)), 0.05, 0.1, 0
 
 def test_figures_are_those_of_the_motion_sampled_finely():
     found = sweep(OSCILLATOR, "frequency", [0.5, 0.65])
-    force, separated, off, spread, error, _ = vibrations(OSCILLATOR, found)
+    (force, separated, off, spread, error, _), *_ = vibrations(OSCILLATOR, [found])
     for i, value in enumerate((0.5, 0.65)):
         here = OSCILLATOR.with_parameter("frequency", value)
         state, periods = found.states[i, -1], int(found.periods[i])
