@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from dynamics.model.options import OPTIONS
 from dynamics.model.protocol import EPS, Oscillator, settling_periods
 from dynamics.model.reasons import FLOW
 from dynamics.model.states import start_state
+from dynamics.motion.map_errors import MapErrors
 from dynamics.orbits.shooting import find_orbit, motion_label
 
 APERIODIC = "aperiodic"
@@ -128,6 +130,29 @@ def sweep(
     >>> sweep(oscillator, "frequency", [0.5, 0.6]).labels
     ('1-0-0', '1-0-0')
     """
+    errors = MapErrors(1)
+    swept = visited(
+        oscillator, parameter, values, direction, errors, keep=keep, transient=transient, initial=initial,
+        max_period=max_period, tolerance=tolerance, progress=progress,
+    )  # fmt: skip
+    return replace(swept, error=errors.largest.get(direction, 0.0))
+
+
+def visited(
+    oscillator: Oscillator,
+    parameter: str,
+    values: npt.ArrayLike,
+    direction: str,
+    errors: MapErrors,
+    *,
+    keep: int = 64,
+    transient: int | None = None,
+    initial: npt.ArrayLike | None = None,
+    max_period: int = 16,
+    tolerance: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> SweepResult:
+    """Sweep as `sweep` does, with an error of nan: `errors` take what is met."""
     watch = Stopwatch()
     grid, order, longest, kept, wait = checked_sweep(values, direction, max_period, keep, transient)
     first = oscillator.with_parameter(parameter, float(grid[order[0]]))
@@ -137,7 +162,7 @@ def sweep(
     states = np.full((len(grid), kept, oscillator.dimension), np.nan)
     impacts = np.full((len(grid), 2), np.nan)
     labels, periods = [DIVERGED] * len(grid), np.zeros(len(grid), dtype=np.int64)
-    error, total, lost = 0.0, 0, []
+    total, lost = 0, []
     for done, i in enumerate(order, start=1):
         here = oscillator.with_parameter(parameter, float(grid[i]))
         skip = settling_periods(here) if wait is None else wait
@@ -147,11 +172,11 @@ def sweep(
         if motion.bounded:
             states[i], periods[i], labels[i] = motion.states, motion.n, motion.label
             impacts[i] = motion.counts.mean(axis=0)
-            error = max(error, _map_error(flow, states[i, -2], states[i, -1]))
             state = motion.states[-1].copy()
         else:
             lost.append(float(grid[i]))
             state = restart.copy()
+        errors.met(int(i), direction, flow, states[i])
         if progress is not None:
             progress(done, len(grid))
     message = f"{len(grid)} values, {labels.count(APERIODIC)} aperiodic"
@@ -159,7 +184,7 @@ def sweep(
         message += f"; unbounded at {len(lost)}, first {parameter} = {lost[0]:g}: check the parameters there"
     cost = Cost(watch.seconds, periods=total)
     return SweepResult(
-        parameter, direction, grid, states, tuple(labels), periods, impacts, error, cost, not lost, message
+        parameter, direction, grid, states, tuple(labels), periods, impacts, math.nan, cost, not lost, message
     )  # fmt: skip
 
 
@@ -281,9 +306,3 @@ def creeping(oscillator: Oscillator, flow: Flow, states: Array, longest: int) ->
             continue  # it does not come nearer: passing by
         return orbit.periods, orbit.label, max(more, len(states))
     return 0, "", away
-
-
-def _map_error(flow: Flow, before: Array, after: Array) -> float:
-    """Relative change of one period's map on a finer flow."""
-    again = flow.finer().follow(before, derivatives=False).state
-    return float(np.max(np.abs(again - after))) / max(float(np.max(np.abs(after))), 1e-300)

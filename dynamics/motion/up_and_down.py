@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from threading import Event, Lock
 from typing import Any
 
@@ -10,7 +11,8 @@ import numpy.typing as npt
 
 from base import side_by_side
 from dynamics.model.protocol import Oscillator
-from dynamics.motion.sweeps import SweepResult, sweep
+from dynamics.motion.map_errors import MapErrors
+from dynamics.motion.sweeps import SweepResult, visited
 
 
 def up_and_down(
@@ -22,7 +24,8 @@ def up_and_down(
 ) -> dict[str, SweepResult]:
     """Sweep a parameter up and down, each way on a separate core where there are two.
 
-    A sweep carries its state from value to value, so that one alone is a chain that no second core can help with.
+    A sweep carries its state from value to value, so that one alone is a chain that no second core can help with. One
+    finer flow of a value is for the errors of both.
 
     Parameters
     ----------
@@ -44,6 +47,7 @@ def up_and_down(
         If an argument is out of range.
     """
     given_up, one_at_a_time, met = Event(), Lock(), [0, 0]
+    errors = MapErrors(2)
 
     def tell(way: int, done: int, total: int) -> None:
         if progress is not None:
@@ -53,11 +57,12 @@ def up_and_down(
 
     def up() -> SweepResult:
         try:
-            return sweep(
+            return visited(
                 oscillator,
                 parameter,
                 values,
                 "up",
+                errors,
                 progress=lambda done, total: tell(0, done, total),
                 **options,
             )
@@ -66,12 +71,14 @@ def up_and_down(
             raise
 
     def down() -> SweepResult:
-        return sweep(oscillator, parameter, values, "down", progress=heed, **options)
+        return visited(oscillator, parameter, values, "down", errors, progress=heed, **options)
 
     def heed(done: int, total: int) -> None:
         if given_up.is_set():
             raise InterruptedError("the sweep up has ended early")
         tell(1, done, total)
 
-    swept = side_by_side([up, down])
-    return {"up": swept[0], "down": swept[1]}
+    return {
+        swept.direction: replace(swept, error=errors.largest.get(swept.direction, 0.0))
+        for swept in side_by_side([up, down])
+    }

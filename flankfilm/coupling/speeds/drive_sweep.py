@@ -260,7 +260,9 @@ def drive_sweep(
         "_peak": peaks.height, "_peak_speed": peaks.frequency * drive.scales.speed(1.0), "_peak_band": peaks.band,
         "_peak_error": peaks.error,
     }  # fmt: skip
-    changes = longer_changes(drive, swept, partial(progress, "motions with more harmonics"))
+    changes = longer_changes(
+        drive, swept.sweeps, swept.shaken, partial(progress, "motions with more harmonics")
+    )
     lost = [f"{way}: {result.message}" for way, result in swept.sweeps.items() if not result.converged]
     said = [f"{way}: {result.message}" for way, result in swept.sweeps.items() if result.message]
     return DriveSweep(

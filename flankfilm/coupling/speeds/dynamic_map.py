@@ -182,7 +182,7 @@ def dynamic_map(
         responses = swept.shaken.values()
         off, used = max(off, *(response.change for response in responses)), used + swept.periods
         lost += sum(not result.converged for result in swept.sweeps.values())
-        changed += _changed(longer_changes(motion, swept))
+        changed += _changed(longer_changes(motion, swept.sweeps, swept.shaken))
         apart, off_apart = (
             [getattr(response, figure) for response in responses]
             for figure in ("separated", "separated_error")

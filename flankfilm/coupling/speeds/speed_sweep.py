@@ -175,7 +175,7 @@ def speed_sweep(
     (operating,) = vibrations(oscillator, [sweep(oscillator, "frequency", [oscillator.frequency])])
     solved: list[Result] = [*swept.sweeps.values(), grazing]
     touched = grazing.columns()
-    changes = longer_changes(motion, swept)
+    changes = longer_changes(motion, swept.sweeps, swept.shaken)
     left_out = None if changes is None else grazing_errors(changes.longer, touched)
     return SpeedSweep(
         **swept.figures(changes, operating),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from itertools import count
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,7 +15,6 @@ from flankfilm.coupling.vibration.resonance import Vibrations, vibration
 
 if TYPE_CHECKING:
     from flankfilm.coupling.drive.pair_drive import PairDrive
-    from flankfilm.coupling.speeds.both_ways import BothWays
     from flankfilm.coupling.vibration.oscillator import PairOscillator
 
 CHECKED = 12
@@ -45,10 +44,10 @@ def grazing_errors(longer: Longer, grazings: Array) -> Array:
     return np.array(errors)
 
 
-def checked_values(count: int, forces: Mapping[str, Array]) -> Integers:
+def checked_values(count: int, forces: Sequence[Array]) -> Integers:
     """Values of a sweep that are computed once more: evenly, and where the forces of either direction are largest."""
     evenly = np.linspace(0, count - 1, min(CHECKED, count)).round().astype(np.int64)
-    greatest = [int(np.nanargmax(force)) for force in forces.values() if np.isfinite(force).any()]
+    greatest = [int(np.nanargmax(force)) for force in forces if np.isfinite(force).any()]
     return np.unique(np.concatenate([evenly, np.array(greatest, dtype=np.int64)]))
 
 
@@ -139,7 +138,8 @@ class LongerChanges(NamedTuple):
 
 def longer_changes(
     motion: PairOscillator | PairDrive,
-    swept: BothWays,
+    sweeps: Mapping[str, dynamics.SweepResult],
+    shaken: Mapping[str, Vibrations],
     progress: Callable[[int, int], None] = lambda done, every: None,
 ) -> LongerChanges | None:
     """What a longer series changes of the motions of a sweep; None where the series was given.
@@ -147,20 +147,19 @@ def longer_changes(
     Parameters
     ----------
     motion : PairOscillator or PairDrive
-    swept : BothWays
+    sweeps, shaken : mapping
+        Sweeps over the frequency, and figures of their motions, by direction.
     progress : callable
         Called with the number of the motion that begins, and that of all.
     """
-    values = swept.values
+    values = next(iter(sweeps.values())).values
     longer = longer_motion(motion, (float(values.min()), float(values.max())), LEAST_HARMONICS)
     if longer is None:
         return None
-    at = checked_values(len(values), swept.forces)
-    done, total = count(1), len(swept.sweeps) * len(at)
+    at = checked_values(len(values), [figures.force for figures in shaken.values()])
+    done, total = count(1), len(sweeps) * len(at)
     changes = {
-        way: motion_changes(
-            longer, motion, result, swept.shaken[way], at, lambda: progress(next(done), total)
-        )
-        for way, result in swept.sweeps.items()
+        way: motion_changes(longer, motion, result, shaken[way], at, lambda: progress(next(done), total))
+        for way, result in sweeps.items()
     }
     return LongerChanges(longer, at, changes)

@@ -87,17 +87,16 @@ def vibrations(
     >>> found.force.round(2), found.separated.round(2), found.change < 1e-3
     (array([1.94, 5.68]), array([0.  , 0.61]), True)
     """
-    each: list[list[Vibration]] = [[] for _ in sweeps]
+    each: list[list[Vibration]] = []
     for i, value in enumerate(sweeps[0].values.tolist()):
         here = Sampler(oscillator.with_parameter("frequency", value), load, outputs)
-        for found, swept in zip(each, sweeps, strict=True):
-            found.append(here.vibration(swept.states[i, -1], int(swept.periods[i])))
-    return [_gathered(found) for found in each]
+        each.append([here.vibration(swept.states[i, -1], int(swept.periods[i])) for swept in sweeps])
+    return [_gathered(motions) for motions in zip(*each, strict=True)]
 
 
-def _gathered(each: Sequence[Vibration]) -> Vibrations:
+def _gathered(motions: Sequence[Vibration]) -> Vibrations:
     """Figures of motions by figure."""
-    force, separated, off, spread, change, parts = (np.array(figure) for figure in zip(*each, strict=True))
+    force, separated, off, spread, change, parts = (np.array(figure) for figure in zip(*motions, strict=True))
     return Vibrations(force, separated, off, spread, float(change.max()), parts)
 
 
