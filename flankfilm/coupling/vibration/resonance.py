@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -88,8 +89,9 @@ def vibrations(
     (array([1.94, 5.68]), array([0.  , 0.61]), True)
     """
     each: list[list[Vibration]] = []
+    stiffness = stiffness_of(oscillator)
     for i, value in enumerate(sweeps[0].values.tolist()):
-        here = Sampler(oscillator.with_parameter("frequency", value), load, outputs)
+        here = Sampler(oscillator.with_parameter("frequency", value), stiffness, load, outputs)
         each.append([here.vibration(swept.states[i, -1], int(swept.periods[i])) for swept in sweeps])
     return [_gathered(motions) for motions in zip(*each, strict=True)]
 
@@ -120,7 +122,12 @@ def vibration(
     outputs : sequence of DriveOutput
         What parts carry.
     """
-    return Sampler(oscillator, load, outputs).vibration(state, periods)
+    return Sampler(oscillator, stiffness_of(oscillator), load, outputs).vibration(state, periods)
+
+
+def stiffness_of(oscillator: PeriodicOscillator) -> Array:
+    """Stiffness of the contact at the samples of one period, the end left out: at all frequencies the same."""
+    return oscillator.contact_stiffness(2.0 * math.pi / SAMPLES * np.arange(SAMPLES))
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,11 +137,14 @@ class Sampler:
     Attributes
     ----------
     oscillator : GearOscillator or DriveOscillator
+    stiffness : ndarray, shape (SAMPLES,)
+        As of `stiffness_of`.
     load, outputs
         As of `vibration`.
     """
 
     oscillator: PeriodicOscillator
+    stiffness: Array
     load: float | None
     outputs: Sequence[DriveOutput]
 
@@ -147,12 +157,13 @@ class Sampler:
 
     def vibration(self, state: Array, periods: int) -> Vibration:
         """Figures of the settled motion from a state at tau = 0; `periods` 0 where it does not repeat."""
-        from dynamics.flow.samples import mesh_force, samples_of, share_below
+        from dynamics.flow.samples import samples_of, share_below
 
         if not np.all(np.isfinite(state)):
             return Vibration(np.nan, np.nan, np.nan, np.nan, 0.0, np.full((3, len(self.outputs)), np.nan))
-        motion = samples_of(self.oscillator, self.flow, state, periods or APERIODIC, SAMPLES)
-        force = mesh_force(self.oscillator, motion)
+        length = periods or APERIODIC
+        motion = samples_of(self.oscillator, self.flow, state, length, SAMPLES)
+        force = np.resize(self.stiffness, length * SAMPLES + 1) * self.oscillator.deflection(motion.x)
         carried = output_rows(self.outputs, self.oscillator.dimension) @ motion.states[:-1].T
         fine, coarse = (_figures(force[::step], motion.x[::step]) for step in (1, 2))
         change = max(
