@@ -111,10 +111,10 @@ def longer_motion(
         return None
     order = max(least, longer_order(series, bounds, motion.rigid.oscillator.damping_ratio))
     whole = with_order(motion, order + BEYOND).contact_stiffness
-    extended = replace(whole, amplitudes=whole.amplitudes[:order] + (0.0,) * BEYOND)
-    return Longer(
-        with_order(motion, order), oscillator.with_contact_stiffness(extended), whole.amplitudes[order:]
-    )
+    first, beyond = whole.amplitudes[:order], whole.amplitudes[order:]
+    shorter = replace(whole, amplitudes=first, phases=whole.phases[:order])
+    extended = replace(whole, amplitudes=first + (0.0,) * BEYOND)
+    return Longer(*(oscillator.with_contact_stiffness(law) for law in (shorter, extended)), beyond)
 
 
 def longer_order(series: MeshSeries, bounds: tuple[float, float], damping_ratio: float) -> int:
