@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from base import Array
-from fem.laws.tip_contact import Removed
 from fem.laws.tip_geometry import TipRound, tip_round
 from fem.pair.options import Options
 
 if TYPE_CHECKING:
+    from fem.laws.tip_contact import Removed
     from gears import GearDeviations, GearPair
 
 __all__ = ["Deviations", "FlankForms"]

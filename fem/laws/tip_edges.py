@@ -8,7 +8,6 @@ import numpy as np
 
 from base import Array, Booleans, record
 from fem.laws.edges_of_lines import EdgesOfLines
-from fem.laws.tip_contact import nearest_gap
 from fem.laws.tip_geometry import chamfer_gap, lever_ratio, opening, tangent_arm, unloaded_gap
 
 if TYPE_CHECKING:
@@ -43,6 +42,8 @@ def edges_at(flanks: FlankForms, corner: int, place: Array) -> EdgesAt:
     place : (n,) array
         rho1 of the unlimited involutes [m].
     """
+    from fem.laws.tip_contact import nearest_gap  # which loads finite elements: a check has no use for them
+
     pair, rounding = flanks.pair, flanks.rounds[corner]
     radii = pair.base_radii if corner == 1 else pair.base_radii[::-1]
     touched = place if corner == 1 else pair.line_of_action - place

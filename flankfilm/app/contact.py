@@ -15,7 +15,7 @@ from base.results import figures
 from fem.influence.memo import Memo
 from flankfilm import coupling
 from flankfilm.app.answers import GEARS, Answer, answers_of
-from flankfilm.coupling.mesh.loaded_teeth import POSITIONS
+from flankfilm.coupling.mesh.resolution import POSITIONS
 from flankfilm.products import root_stress
 from flankfilm.report import stiffness_parts
 from flankfilm.report.text import percent

@@ -8,7 +8,7 @@ from typing import TypedDict
 
 import gears
 from base import Fault, Faults
-from flankfilm.coupling.mesh.loaded_teeth import POSITIONS
+from flankfilm.coupling.mesh.resolution import POSITIONS
 from flankfilm.scene.schema import Scene
 from flankfilm.scene.sections.dynamics import BY_FILM
 from flankfilm.scene.sections.gears import GEARS

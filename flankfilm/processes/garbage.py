@@ -2,7 +2,7 @@
 
 Loading libraries and reading scenes makes hundreds of thousands of objects that all stay. Python looks at the youngest
 of them after each 700 new ones, which takes a tenth of a command's start and of a short run, and finds next to
-nothing: arrays go as soon as nothing refers to them, without a look.
+nothing: arrays go as soon as nothing refers to them, without a look. A check of a scene ends before the first look.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import gc
 
 __all__ = ["RARELY", "collect_rarely"]
 
-RARELY = (10_000, 10, 10)
+RARELY = (200_000, 2, 2)
 """New objects after which the youngest are looked at, and how many such looks come before one at the older ones, and
 how many of these before one at all."""
 
@@ -25,7 +25,7 @@ def collect_rarely() -> None:
     >>> before = gc.get_threshold()
     >>> collect_rarely()
     >>> gc.get_threshold()[0]
-    10000
+    200000
     >>> gc.set_threshold(*before)
     """
     gc.set_threshold(*RARELY)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,10 +13,12 @@ import gears
 from base import Array, Cost, InputError, Stopwatch, described, part, quantity, record
 from base.results import EXACT, ITSELF
 from fem.pair.face_setting import FREE_ENDS, SLICES, WALLS
-from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 from flankfilm.coupling.mesh.require_converged import believed
 from gears.tooth.errors import GeometryError
+
+if TYPE_CHECKING:
+    from flankfilm.coupling.mesh.loaded_teeth import LoadedTeeth
 
 __all__ = ["FaceLoadModels", "face_load_models", "left_out_by_iso"]
 

@@ -13,13 +13,10 @@ from flankfilm.coupling.mesh.flanks import PLAIN_FLANKS, Flanks
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 from flankfilm.coupling.mesh.references import MEANINGS
 from flankfilm.coupling.mesh.require_converged import believed
+from flankfilm.coupling.mesh.resolution import POSITIONS
 from flankfilm.coupling.mesh.sharing_pairs import SharingPairs
 from flankfilm.coupling.mesh.single_pairs import CLOSED_FORMS, MODELS
 from gears.pair.spur_only import check_spur
-
-POSITIONS = 120
-"""Positions of curves; figures follow from arcs, whatever the positions."""
-
 
 SOFTER = (
     "films softer than the teeth draw the load to the pair that has most of it; raise the torque, or lower speed and "

@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from base import SolverError
 from flankfilm.coupling.mesh.tolerance import CostLaw, split, step_below
 
+POSITIONS = 120
+"""Positions of curves; figures follow from arcs, whatever the positions."""
+
 COMPLIANCE = CostLaw("tooth compliance", coarsest=5e-4, seconds=0.3, power=1.0, finest=3e-6)
 """Meshing, factors and loads of both gears by finite elements."""
 
