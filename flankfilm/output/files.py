@@ -33,14 +33,35 @@ def write_netcdf(path: Path, dataset: xr.Dataset) -> None:
 
     with replacing(path) as beside:
         try:
-            file = netCDF4.Dataset(beside, "w", diskless=True, persist=True)
+            file, values = netCDF4.Dataset(beside, "w", diskless=True, persist=True), LateWriter()
             try:
-                dataset.dump_to_store(NetCDF4DataStore(file))
+                dataset.dump_to_store(NetCDF4DataStore(file), writer=values)
+                values.write()
             finally:
                 file.close()
         except (OSError, RuntimeError):  # netCDF does not say why; the system does, where the disk is full
             beside.write_bytes(bytes(dataset.nbytes + ROOM))
             raise
+
+
+class LateWriter:
+    """Writer of xarray that keeps values until all variables of a file are defined.
+
+    netCDF's library looks through the whole file each time that a definition follows values: with some hundred
+    variables that takes more time than all the rest.
+    """
+
+    def __init__(self) -> None:
+        self._kept: list[tuple[Any, Any]] = []
+
+    def add(self, source: Any, target: Any, region: Any = None) -> None:
+        """Take an array and where it goes; xarray calls this."""
+        self._kept.append((source, target))
+
+    def write(self) -> None:
+        """Write all of them."""
+        for source, target in self._kept:
+            target[...] = source
 
 
 def write_csv(path: Path, columns: Mapping[str, ArrayLike]) -> None:
