@@ -137,7 +137,7 @@ class Arcs:
 
     def greatest_of_all(self) -> tuple[float, float]:
         """Maximum value of all curves, and its error by sampling."""
-        maxima = [self.extremes(name)[1] for name in self.names]
+        maxima = [self._greatest(name, 1.0) for name in self.names]
         greatest = max(value for value, _ in maxima)
         return greatest, max(value + error for value, error in maxima) - greatest
 

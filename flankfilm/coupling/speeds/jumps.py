@@ -21,8 +21,9 @@ from flankfilm.coupling.speeds.truncation import (
     longer_motion,
     missed_jumps,
 )
+from flankfilm.coupling.vibration.harmonics import harmonics_of
 from flankfilm.coupling.vibration.oscillator import PairOscillator
-from flankfilm.coupling.vibration.series import OTHER, arc_fit
+from flankfilm.coupling.vibration.series import OTHER
 from flankfilm.coupling.vibration.speed_ranges import (
     back_contact_ranges,
     changes,
@@ -258,7 +259,10 @@ def _variants(
     series, scales = motion.series, motion.scales
     if series.cycle is None or scales is None or whole is None:
         return {}
-    other, k_m = arc_fit(series.cycle, OTHER[series.kind], series.order).stiffness, scales.mean_stiffness
+    other, k_m = (
+        harmonics_of(series.cycle, OTHER[series.kind]).fit(series.order).stiffness,
+        scales.mean_stiffness,
+    )
     stiffness = dynamics.FourierStiffness(
         other.mean / k_m, tuple(a / k_m for a in other.amplitudes), other.phases
     )

@@ -18,8 +18,9 @@ import numpy as np
 import dynamics
 from base import Array
 from flankfilm.coupling.drive.pair_drive import PairDrive
+from flankfilm.coupling.vibration.harmonics import harmonics_of
 from flankfilm.coupling.vibration.oscillator import PairOscillator
-from flankfilm.coupling.vibration.series import MOST_HARMONICS, MeshSeries, arc_fit, left_out
+from flankfilm.coupling.vibration.series import MOST_HARMONICS, MeshSeries, left_out
 
 BEYOND = 4
 """Harmonics beyond the longer series that count by derivatives."""
@@ -133,7 +134,7 @@ def with_order(motion: PairOscillator | PairDrive, order: int) -> Any:
     series, oscillator = motion.series, motion.oscillator
     own = oscillator.contact_stiffness
     assert series.cycle is not None
-    fitted = arc_fit(series.cycle, series.kind, order).stiffness
+    fitted = harmonics_of(series.cycle, series.kind).fit(order).stiffness
     amplitudes = tuple(a / fitted.mean * own.mean for a in fitted.amplitudes)
     return oscillator.with_contact_stiffness(dynamics.FourierStiffness(own.mean, amplitudes, fitted.phases))
 

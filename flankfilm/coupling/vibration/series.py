@@ -16,11 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 
 import dynamics
-from base import Array, Cost, SolverError, Stopwatch, described, part, quantity, record
+from base import Array, Cost, Stopwatch, described, part, quantity, record
 from base.results import EXACT, ITSELF
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
+from flankfilm.coupling.vibration.harmonics import CURVES, harmonics_of
 from gears.closed_form.record import UNKNOWN
-from gears.sharing.mesh_figures import SHOWN
 
 MOST_HARMONICS = 50
 """Highest order of a series."""
@@ -29,9 +29,6 @@ MEANS = {"secant": "mean_secant_stiffness", "tangent": "mean_stiffness"}
 """Figure of a mesh cycle that is the mean of a kind of stiffness."""
 
 OTHER = {"secant": "tangent", "tangent": "secant"}
-
-RESOLVED = 150
-"""Harmonics that are computed, so that what a low order drops can be seen; the rest follows from the whole."""
 
 _FREQUENCIES = 2000
 
@@ -245,68 +242,26 @@ def mesh_series(
     (2, True)
     """
     watch = Stopwatch()
-    fits = {law: arc_fit(cycle, law, MOST_HARMONICS if order is None else order) for law in OTHER}
-    harmonics, whole = np.array(fits[kind].harmonics), fits[kind]
+    curves = {law: harmonics_of(cycle, law) for law in OTHER}
+    whole = curves[kind].fit(MOST_HARMONICS if order is None else order)
+    harmonics = np.array(whole.harmonics)
     beyond = np.sqrt(max(whole.remainder_rms**2 - 0.5 * np.sum(harmonics[whole.order :] ** 2), 0.0))
     rest = left_out(harmonics, bounds, damping_ratio, float(beyond))
     chosen = least_order(rest, share) if order is None else order
-    fit = arc_fit(cycle, kind, chosen)
+    fit = curves[kind].fit(chosen)
     assert cycle.arcs is not None
-    _, errors = cycle.arcs.over_mean(_CURVES[kind], np.arange(1, chosen + 1))
+    _, errors = cycle.arcs.over_mean(CURVES[kind], np.arange(1, chosen + 1))
     return MeshSeries(
         kind=kind,
         source=cycle.label,
         stiffness=fit.stiffness,
         fit=fit,
-        other=arc_fit(cycle, OTHER[kind], chosen),
+        other=curves[OTHER[kind]].fit(chosen),
         cycle=cycle,
         left_out=rest,
         share=share if order is None else None,
         cost=Cost(watch.seconds),
         harmonic_error=errors,
-    )
-
-
-_CURVES = {"secant": "secant_stiffness", "tangent": "stiffness"}
-
-
-def arc_fit(cycle: MeshCycle, kind: str, order: int) -> dynamics.FourierFit:
-    """Fourier series of a stiffness by exact integrals over the arcs between events.
-
-    Parameters
-    ----------
-    cycle : MeshCycle
-    kind : str
-        ``"secant"`` or ``"tangent"``.
-    order : int
-        Highest harmonic.
-
-    Raises
-    ------
-    SolverError
-        Where the cycle's contact has no solution at some positions.
-    """
-    watch = Stopwatch()
-    if cycle.arcs is None:
-        raise SolverError(f"no series of a mesh cycle without arcs: {cycle.message}")
-    arcs, name = cycle.arcs.arcs, _CURVES[kind]
-    mean, square = arcs.mean(name)[0], arcs.moment(name, 2)[0]
-    harmonics, _ = arcs.harmonics(name, np.arange(1, RESOLVED + 1))
-    amplitudes, phases = np.abs(harmonics), np.angle(harmonics)
-    remainder = max(square - mean**2 - 0.5 * float(np.sum(amplitudes[:order] ** 2)), 0.0)
-    angle = 2 * np.pi * cycle.dense_position[:, None] * np.arange(1, order + 1) + phases[:order]
-    off = arcs.on_each(name, SHOWN) - mean - np.cos(angle) @ amplitudes[:order]
-    rms = float(np.sqrt(remainder)) / mean
-    return dynamics.FourierFit(
-        stiffness=dynamics.FourierStiffness(
-            mean, tuple(amplitudes[:order].tolist()), tuple(phases[:order].tolist())
-        ),
-        remainder_rms=rms,
-        remainder_max=float(np.max(np.abs(off))) / mean,
-        harmonics=tuple((amplitudes / mean).tolist()),
-        condition=float(np.sqrt(2.0)),
-        cost=Cost(watch.seconds, 2 * order + 1),
-        message=f"{order} harmonics leave out {rms:.2g} of the mean",
     )
 
 
