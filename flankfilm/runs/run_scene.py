@@ -14,12 +14,13 @@ from flankfilm.files.cache import results_cache
 from flankfilm.files.folder import occupied, unfinished
 from flankfilm.outcome.outcome import Outcome, concluded
 from flankfilm.outcome.results import Results
+from flankfilm.output.files import write_results
 from flankfilm.processes.assistant import Assistant, assistant
 from flankfilm.processes.exit_status import PART_FAILED
 from flankfilm.processes.progress import Progress, silent
 from flankfilm.products.fields import in_space
 from flankfilm.runs.begin import begin
-from flankfilm.runs.dataset import not_computed, results_dataset, write_data
+from flankfilm.runs.dataset import not_computed, results_dataset, results_tables, write_data
 from flankfilm.scene import Scene
 from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine
@@ -41,7 +42,7 @@ OF_FIELDS = (
     "scipy.interpolate",
 )
 
-LOADED = (*OF_FIELDS, "flankfilm.runs.dataset", "matplotlib.backends.backend_svg")
+LOADED = (*OF_FIELDS, "xarray", "matplotlib.backends.backend_svg")
 """What an assistant loads while the scene is computed, also what fields load where they first need it. Fields for
 ParaView alone are worth a process."""
 
@@ -112,11 +113,11 @@ class RunOutcome(Outcome[Results]):
         """Write all that the scene wants; fields that cannot be written are a part that failed, which the data say.
 
         The assistant began with the fields, and goes on with the data and pictures for phones, while the report's
-        pictures are drawn here.
+        pictures are drawn here. It gets the tables with the data: products make them, which it has not loaded.
         """
         results, engine, began, wants = self.result, self.engine, time.perf_counter(), self.result.scene.wants
         fields = self._begun(folder) if "vtk" in wants else None
-        data = self.helper.submit(write_data, folder, self.dataset)
+        data = self.helper.submit(write_results, folder, self.dataset, results_tables(self.dataset))
         shown = self._drawn() if "report" in wants else ()
         self.progress("netCDF and CSV files", 1, 1)
         files = engine.timed("data files", "netCDF and CSV files", lambda: self.helper.result(data))
