@@ -370,7 +370,11 @@ def test_comparisons_are_not_in_the_wheel():
 
 
 def loaded_by(code: str) -> set[str]:
-    report = "import sys; print(' '.join({n.partition('.')[0] for n in sys.modules}))"
+    return {name.partition(".")[0] for name in modules_loaded_by(code)}
+
+
+def modules_loaded_by(code: str) -> set[str]:
+    report = "import sys; print(' '.join(sys.modules))"
     done = subprocess.run(
         [sys.executable, "-c", f"{code}\n{report}"], capture_output=True, text=True, check=True
     )
@@ -387,6 +391,18 @@ def test_importing_a_package_loads_nothing_heavy(package: str):
 
 def test_a_scene_is_read_and_checked_without_what_computes_it():
     assert loaded_by("import flankfilm.runs.check, flankfilm.runs.run_scene") & (HEAVY | {"scipy"}) == set()
+
+
+@pytest.mark.parametrize(
+    ("module", "other"),
+    [
+        ("flankfilm.runs.check", "fem.laws.tip_contact"),
+        ("flankfilm.runs.check", "flankfilm.coupling.mesh.loaded_teeth"),
+        ("flankfilm.output.files", "flankfilm.products"),
+    ],
+)
+def test_what_starts_often_loads_no_laws_of_teeth_and_what_writes_files_no_products(module: str, other: str):
+    assert other not in modules_loaded_by(f"import {module}")
 
 
 @pytest.mark.parametrize("package", ["base", "gears"])

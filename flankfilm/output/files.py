@@ -52,15 +52,15 @@ class LateWriter:
     """
 
     def __init__(self) -> None:
-        self._kept: list[tuple[Any, Any]] = []
+        self.kept: list[tuple[Any, Any]] = []
 
     def add(self, source: Any, target: Any, region: Any = None) -> None:
         """Take an array and where it goes; xarray calls this."""
-        self._kept.append((source, target))
+        self.kept.append((source, target))
 
     def write(self) -> None:
         """Write all of them."""
-        for source, target in self._kept:
+        for source, target in self.kept:
             target[...] = source
 
 

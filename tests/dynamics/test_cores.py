@@ -7,6 +7,7 @@ import pytest
 
 from base import threads
 from dynamics import FourierStiffness, GearOscillator, basins, sweep
+from dynamics.flow.exact_flow import ExactFlow
 from dynamics.motion import sweeps
 from dynamics.motion.up_and_down import up_and_down
 
@@ -41,6 +42,24 @@ def test_sweeps_up_and_down(on, parameter):
         np.testing.assert_array_equal(found[way].states, alone.states)
         assert (found[way].labels, found[way].error) == (alone.labels, alone.error)
         assert found[way].direction == way
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_errors_of_both_ways_take_one_finer_flow_for_each_value(on, monkeypatch, number):
+    on(number)
+    made: list[float] = []
+    real = ExactFlow.finer
+
+    def finer(flow):
+        made.append(flow.packed[4])
+        return real(flow)
+
+    monkeypatch.setattr(ExactFlow, "finer", finer)
+    values = np.linspace(0.5, 0.6, 6)
+    found = up_and_down(oscillator(0.6), "frequency", values, transient=300)
+    assert sorted(made) == values.tolist()
+    assert 0.0 < found["up"].error < 1e-12
+    assert 0.0 < found["down"].error < 1e-12
 
 
 def test_an_interrupt_ends_both_ways(on, monkeypatch):

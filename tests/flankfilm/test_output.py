@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from base import quantity, record
-from flankfilm.output.files import write_csv, write_netcdf
+from flankfilm.output.files import LateWriter, write_csv, write_netcdf
 from flankfilm.output.tables import columns
 from flankfilm.output.variables import merged, of_list, of_models, of_record
 
@@ -113,3 +113,23 @@ def test_a_tangent_says_so_in_files_and_keeps_its_older_name_for_one_version():
     for given in ({"names": ("position", "tangent_stiffness")}, {"axis": "position"}):
         found = columns(data, "dry", **given)
         assert list(found) == ["position", "tangent_stiffness_N_per_m", "stiffness_N_per_m"]
+
+
+def test_values_follow_after_all_variables_of_a_file_are_defined(tmp_path, monkeypatch):
+    """netCDF's library looks through the whole file for each definition that follows values."""
+    from xarray.backends import NetCDF4DataStore
+
+    done: list[str | int] = []
+    define, write = NetCDF4DataStore.prepare_variable, LateWriter.write
+    monkeypatch.setattr(
+        NetCDF4DataStore,
+        "prepare_variable",
+        lambda store, name, *given, **options: done.append(name) or define(store, name, *given, **options),
+    )
+    monkeypatch.setattr(LateWriter, "write", lambda writer: done.append(len(writer.kept)) or write(writer))
+    given = xr.Dataset({"a": ("x", [1.0, 2.0]), "b": ("x", ["one", "two"]), "c": 3})
+    write_netcdf(tmp_path / "given.nc", given)
+    assert done == ["a", "b", "c", 3]
+    for engine in ("netcdf4", "h5netcdf"):
+        with xr.open_dataset(tmp_path / "given.nc", engine=engine) as read:
+            xr.testing.assert_identical(read.load(), given)

@@ -115,7 +115,9 @@ def longer_motion(
     first, beyond = whole.amplitudes[:order], whole.amplitudes[order:]
     shorter = replace(whole, amplitudes=first, phases=whole.phases[:order])
     extended = replace(whole, amplitudes=first + (0.0,) * BEYOND)
-    return Longer(*(oscillator.with_contact_stiffness(law) for law in (shorter, extended)), beyond)
+    return Longer(
+        oscillator.with_contact_stiffness(shorter), oscillator.with_contact_stiffness(extended), beyond
+    )
 
 
 def longer_order(series: MeshSeries, bounds: tuple[float, float], damping_ratio: float) -> int:

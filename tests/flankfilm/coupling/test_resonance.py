@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from dynamics import FourierStiffness, GearOscillator, contact_grazing, sweep, trajectory
+from dynamics.flow import exact_flow
 from dynamics.flow.motions import force_range
 from dynamics.flow.samples import share_below
 from flankfilm.coupling.speeds.swept_truncation import grazing_errors
@@ -36,6 +37,22 @@ def test_figures_are_those_of_the_motion_sampled_finely():
     assert separated[0] == 0.0 < separated[1] < 1.0
     assert off[0] == 0.0 < off[1] < 1e-3
     assert error < 1e-3
+
+
+def test_sweeps_share_the_tables_of_a_frequency_and_what_the_stiffness_is_there(monkeypatch):
+    found = [sweep(OSCILLATOR, "frequency", [0.5, 0.65], way) for way in ("up", "down")]
+    alone = [vibrations(OSCILLATOR, [swept])[0] for swept in found]
+    tables, angles = [], []
+    make, stiffness = exact_flow.tabulated, FourierStiffness.__call__
+    monkeypatch.setattr(exact_flow, "tabulated", lambda *given: tables.append(given) or make(*given))
+    monkeypatch.setattr(
+        FourierStiffness, "__call__", lambda law, angle: angles.append(angle) or stiffness(law, angle)
+    )
+    for together, one in zip(vibrations(OSCILLATOR, found), alone, strict=True):
+        np.testing.assert_array_equal(together.force, one.force)
+        np.testing.assert_array_equal(together.spread, one.spread)
+    assert len(tables) == 2
+    assert len(angles) == 1
 
 
 def test_a_motion_that_was_lost_has_no_figures():

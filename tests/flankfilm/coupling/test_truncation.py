@@ -17,8 +17,11 @@ from flankfilm.coupling import (
     pair_oscillator,
     speed_sweep,
 )
+from flankfilm.coupling.speeds import truncation
 from flankfilm.coupling.speeds.jumps import jump_points
 from flankfilm.coupling.speeds.truncation import Longer, longer_motion, missed_jumps, with_order
+from flankfilm.coupling.vibration import series as series_module
+from flankfilm.coupling.vibration.harmonics import harmonics_of
 from flankfilm.coupling.vibration.oscillator import PairOscillator
 from flankfilm.coupling.vibration.series import MeshSeries
 from gears import Gear, GearPair
@@ -157,3 +160,19 @@ def test_the_order_is_raised_until_the_jumps_are_as_exact_as_asked(cycle, whole)
     for jump in found.diagram.jumps:
         near = [at for at, way in jumps_of(whole) if way is jump.rising]
         assert min(abs(jump.frequency / at - 1) for at in near) <= 2.0 * jump.error + 1e-4  # an estimate
+
+
+def test_harmonics_of_a_curve_are_integrated_once_for_all_orders(cycle, monkeypatch):
+    asked: list[str] = []
+
+    def counted(cycle, kind):
+        asked.append(kind)
+        return harmonics_of(cycle, kind)
+
+    for user in (series_module, truncation):
+        monkeypatch.setattr(user, "harmonics_of", counted)
+    found = mesh_series(cycle, share=0.01)
+    assert sorted(asked) == ["secant", "tangent"]
+    asked.clear()
+    assert longer_motion(motion_of(found), RANGE) is not None
+    assert asked == [found.kind]
