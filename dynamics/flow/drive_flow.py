@@ -210,13 +210,16 @@ def tabulated(oscillator: DriveOscillator, cells: int, degree: int = DEGREE) -> 
         whole[0, 0] += at.gain * damping * h
         dampings.append(whole)
     systems = np.stack([at.stiffness * h**2, *dampings])
-    load = np.stack([oscillator.load * h**2, at.damping[:, 0] * h])
+    moving = oscillator.moving_loads
+    load = np.vstack([oscillator.load * h**2, at.damping[:, 0] * h, moving * h**2])
     mesh = np.array([[series.mean, *series.amplitudes], [0.0, *series.phases]])
     mesh[0] *= at.gain * h**2
     own = np.zeros(10)
     own[2], own[4], own[6] = oscillator.load[0], oscillator.frequency, oscillator.half_backlash
+    own[2] += oscillator.moving_force(np.zeros(1))[0] * np.sum(moving[:, 0])
     own[7] = 1.0 if oscillator.one_sided else 2.0
-    tables = tabulate(mesh, oscillator.error_series, cells, degree, systems, load)
+    pushes = oscillator.force_series if len(moving) else np.zeros((0, 1))
+    tables = tabulate(mesh, oscillator.error_series, pushes, cells, degree, systems, load)
     size = systems.shape[1]
     none = np.zeros((0, 2 * size + 2, 2 * size + 2 * STRIDE))
     return DriveFlow(oscillator, (own, systems, load, *tables, none))

@@ -33,19 +33,20 @@ def dot(first: FloatArray, second: FloatArray) -> float:
 @plain_kernel
 def step_through(
     forces: FloatArray, figures: FloatArray, places: FloatArray, errors: FloatArray, rates: FloatArray,
-    over: FloatArray, columns: IntArray, constant: FloatArray, reads: FloatArray, pushed: FloatArray, state: FloatArray,
+    over: FloatArray, columns: IntArray, loaded: FloatArray, reads: FloatArray, pushed: FloatArray, state: FloatArray,
     room: FloatArray, skip: int, peaks: FloatArray, periods: int,
 ) -> int:  # fmt: skip
     """Follow a state through equal steps of a period; returns the flag.
 
     `peaks` gets the maximum forces of windows of so many `periods`, one after the other, after `skip` periods.
 
-    The linear part moves exactly, z = A z + `constant`, the row i of A with the entries `over`[i] in `columns`[i]; the
-    mesh pushes it along `pushed` before and after each step by half of what it does in one. `reads`: displacement and
-    speed of the mesh of a state. `figures`: lowest depth and spacing of the grid, half the backlash, 1 if the back
-    flanks can touch, what a force changes of the speed in half a step, damping of the mesh in contact, and how much
-    less it is without. `places`, (steps + 1, 2): rows of the grid for front and back flanks; `errors`, (steps + 1,):
-    error of the angle; `rates`, (steps, 2): the rate that the damper feels, before and after a step.
+    The linear part moves exactly, z = A z + `loaded`[step], the row i of A with the entries `over`[i] in `columns`[i],
+    and `loaded` what forces add in each step; the mesh pushes it along `pushed` before and after each step by half of
+    what it does in one. `reads`: displacement and speed of the mesh of a state. `figures`: lowest depth and spacing of
+    the grid, half the backlash, 1 if the back flanks can touch, what a force changes of the speed in half a step, damping
+    of the mesh in contact, and how much less it is without. `places`, (steps + 1, 2): rows of the grid for front and
+    back flanks; `errors`, (steps + 1,): error of the angle; `rates`, (steps, 2): the rate that the damper feels, before
+    and after a step.
     """
     lowest, spacing, half_backlash, back, push, damping, freed = figures
     size, steps, entries = len(state), len(rates), over.shape[1]
@@ -63,7 +64,7 @@ def step_through(
             for i in range(size):
                 state[i] += push * (drag - force) * pushed[i]
             for i in range(size):
-                total = constant[i]
+                total = loaded[step, i]
                 for j in range(entries):
                     total += over[i, j] * state[columns[i, j]]
                 room[i] = total

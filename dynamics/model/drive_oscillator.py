@@ -11,13 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from base import Array, Faults, InputError
+from dynamics.model.drive_checks import MATRICES, checked_array, refuse_unbalanced, symmetric
 from dynamics.model.drive_coordinates import Coordinates, coordinates_of
 from dynamics.model.excitation import (
-    AMPLITUDE,
-    PHASE,
+    ERROR,
+    FORCE,
     Harmonics,
-    checked_error,
-    error_names,
+    as_series,
+    checked_series,
+    harmonic_names,
     highest_harmonic,
     largest,
 )
@@ -27,8 +29,6 @@ from dynamics.model.protocol import PeriodicOscillator
 from dynamics.model.stiffness import FourierStiffness, check_stiffness
 
 MAX_ENTRIES = 20_000_000  # of the tables: 160 MB
-UNBALANCED = 1e-9  # of the root of F' M^-1 F, along a free rotation
-MATRICES, VECTORS = ("mass", "damping", "stiffness"), ("direction", "mean_force")
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,8 +37,10 @@ class DriveOscillator(PeriodicOscillator):
 
     .. math::
 
-        M \ddot q + C \dot q + K q + g \, [c \, \dot y + k(t) f(y)] = F, \qquad y = g \cdot q - e(t), \qquad
-        e = \sum_j \varepsilon_j \cos(j \omega t + \varphi_{e,j}),
+        M \ddot q + C \dot q + K q + g \, [c \, \dot y + k(t) f(y)] = F + h \, p(t), \qquad y = g \cdot q - e(t),
+
+        e = \sum_j \varepsilon_j \cos(j \omega t + \varphi_{e,j}), \qquad
+        p = \sum_j p_j \cos(j \omega t + \varphi_{p,j}),
 
     with the dead zone :math:`f(y) = y - D, \; 0, \; y + D` for :math:`y > D, \; |y| \le D, \; y < -D`, in any units
     that fit together. States are :math:`(q, \dot q)`, 2n numbers; what `GearOscillator` calls X is y. A rotation of
@@ -71,6 +73,10 @@ class DriveOscillator(PeriodicOscillator):
         No second flank: f(y) = 0 for all y <= D.
     free_mesh_damping : float, optional
         c in the dead zone, where it is another one than in contact.
+    force_direction : array_like, shape (n,), optional
+        h, along which a periodic force acts; none if left out.
+    force_amplitude, force_phase : float or sequence of float
+        :math:`p_j` and :math:`\varphi_{p,j}` [rad], as those of the error.
 
     Raises
     ------
@@ -106,34 +112,39 @@ class DriveOscillator(PeriodicOscillator):
     error_phase: Harmonics = 0.0
     one_sided: bool = False
     free_mesh_damping: float | None = None
+    force_direction: npt.ArrayLike | None = None
+    force_amplitude: Harmonics = 0.0
+    force_phase: Harmonics = 0.0
 
     def __post_init__(self) -> None:
         """Check and convert; every fault is listed."""
         values: dict[str, Any] = {}
         with Faults() as faults:
-            values["direction"] = _array(faults, "direction", self.direction, None)
+            values["direction"] = checked_array(faults, "direction", self.direction, None)
             n = len(values["direction"])
-            for name in (*MATRICES, "mean_force"):
-                values[name] = _array(faults, name, getattr(self, name), (n,) if name in VECTORS else (n, n))
-            values["mass"] = _symmetric(faults, values["mass"])
+            for name in MATRICES:
+                values[name] = checked_array(faults, name, getattr(self, name), (n, n))
+            for name in ("mean_force", *(() if self.force_direction is None else ("force_direction",))):
+                values[name] = checked_array(faults, name, getattr(self, name), (n,))
+            values["mass"] = symmetric(faults, values["mass"])
             check_stiffness(faults, self.mesh_stiffness, "mesh_stiffness")
             for name in ("frequency", "half_backlash"):
                 values[name] = faults.number(name, getattr(self, name), OSCILLATOR[name])
             for name in ("mesh_damping", "free_mesh_damping"):
                 if (ratio := getattr(self, name)) is not None:
                     values[name] = faults.number(name, ratio, OSCILLATOR["damping_ratio"])
-            values[AMPLITUDE], values[PHASE] = checked_error(faults, self.error_amplitude, self.error_phase)
+            for names in (ERROR, FORCE):
+                amplitude, phase = (getattr(self, name) for name in names)
+                found = checked_series(faults, amplitude, phase, names)
+                values |= dict(zip(names, found, strict=True))
+            if self.force_direction is None and np.any(values["force_amplitude"]):
+                allowed = "must be given beside force_amplitude"
+                faults.add("force_direction", "none", allowed, "one number for each freedom")
             faults.choice("one_sided", self.one_sided, (True, False), "True leaves the second flank out")
         for name, value in values.items():
             object.__setattr__(self, name, value)
-        force = values["mean_force"]
-        free = float(np.linalg.norm(self.coordinates.drift @ force))
-        if free > UNBALANCED * math.hypot(free, *(self.load / math.sqrt(self.coordinates.gain)).tolist()):
-            allowed = "must balance over a rotation that nothing holds"
-            remedy = (
-                "moments of motor and load are in the ratio of their speeds; or hold the train by a stiffness"
-            )
-            raise InputError.at("mean_force", force.tolist(), allowed, remedy)
+        for name in (name for name in ("mean_force", "force_direction") if name in values):
+            refuse_unbalanced(self.coordinates, name, values[name])
         entries = 4.0 * self.cells * self.coordinates.down.shape[0] * (self.dimension + 2)
         if not entries <= MAX_ENTRIES:
             allowed = f"must give tables of at most {MAX_ENTRIES} numbers (these have {entries:.3g})"
@@ -157,6 +168,22 @@ class DriveOscillator(PeriodicOscillator):
         return np.asarray(self.coordinates.push @ np.asarray(self.mean_force))
 
     @property
+    def force_series(self) -> Array:
+        """Amplitudes and phases [rad] of the harmonics of the periodic force, shape (2, harmonics)."""
+        return as_series(self.force_amplitude, self.force_phase)
+
+    @cached_property
+    def moving_loads(self) -> Array:
+        """Direction of the periodic force in the coordinates of the flow, shape (1, m); none where none acts."""
+        if self.force_direction is None or not self.force_series[0].any():
+            return np.zeros((0, len(self.load)))
+        return np.asarray(self.coordinates.push @ np.asarray(self.force_direction))[None]
+
+    def moving_force(self, tau: Array) -> Array:
+        """Periodic force p along its direction at some times."""
+        return self._series_motion(self.force_series, tau)[0]
+
+    @property
     def dampings(self) -> tuple[float, float]:
         """Damping of the mesh in contact and in the dead zone."""
         free = self.mesh_damping if self.free_mesh_damping is None else self.free_mesh_damping
@@ -165,11 +192,13 @@ class DriveOscillator(PeriodicOscillator):
     @property
     def parameters(self) -> tuple[str, ...]:
         """Names of parameters: ``frequency``, ..., ``mean_force[0]``, ..., ``mesh_stiffness.mean``, ..."""
-        amplitudes, phases = error_names(self.error_series.shape[1])
+        amplitudes, phases = harmonic_names(self.error_series.shape[1])
         forces = tuple(f"mean_force[{i}]" for i in range(self.dimension // 2))
         own = ("frequency", *amplitudes, *phases, *forces, "mesh_damping", "half_backlash")
         free = () if self.free_mesh_damping is None else ("free_mesh_damping",)
-        return (*own, *free, *(f"mesh_{name}" for name in series_names(self.mesh_stiffness.order)))
+        moving = () if self.force_direction is None else harmonic_names(self.force_series.shape[1], FORCE)
+        pushes = (name for names in moving for name in names)
+        return (*own, *free, *pushes, *(f"mesh_{name}" for name in series_names(self.mesh_stiffness.order)))
 
     @property
     def floor(self) -> float:
@@ -178,15 +207,23 @@ class DriveOscillator(PeriodicOscillator):
 
     @property
     def natural_size(self) -> float:
-        """Largest displacement at rest, or the error."""
+        """Largest displacement at rest, or by the periodic force at rest, or the error."""
         rest = float(np.max(np.abs(self.rest_state())))
-        return natural_size(self.floor, rest, largest(self.error_series))
+        return natural_size(self.floor, rest, self._moved_size, largest(self.error_series))
 
     @property
     def driven_size(self) -> float:
-        """Largest displacement at rest without backlash, or the error."""
+        """Largest displacement at rest without backlash, or by the periodic force at rest, or the error."""
         rest = replace(self, half_backlash=0.0).rest_state()
-        return natural_size(float(np.max(np.abs(rest))), largest(self.error_series))
+        return natural_size(float(np.max(np.abs(rest))), self._moved_size, largest(self.error_series))
+
+    @property
+    def _moved_size(self) -> float:
+        """Largest displacement by the periodic force at rest, in contact with the mean stiffness."""
+        at, stiff = self.coordinates, self.coordinates.stiffness.copy()
+        stiff[0, 0] += at.gain * self.mesh_stiffness.mean
+        moved = at.up @ np.linalg.lstsq(stiff, self.moving_loads.T, rcond=None)[0]
+        return largest(self.force_series) * float(np.max(np.abs(moved), initial=0.0))
 
     @cached_property
     def cells(self) -> float:
@@ -195,6 +232,7 @@ class DriveOscillator(PeriodicOscillator):
         stiff = abs(mesh.mean) + math.fsum(map(abs, mesh.amplitudes))
         fastest = self.coordinates.fastest(stiff, max(self.dampings))
         highest = highest_harmonic(mesh.order, self.error_series[0, 1:])
+        highest = highest_harmonic(highest, self.force_series[0, 1:])
         return max(self.period * fastest, 4.0 * math.pi * highest)
 
     @cached_property
@@ -251,6 +289,7 @@ class DriveOscillator(PeriodicOscillator):
         w[0] += error[0]
         speed[0] = rate[0]
         bend = self.load[0] - at.stiffness[0] @ w - at.damping[0] @ speed - push
+        bend += self.moving_force(np.zeros(1))[0] * float(np.sum(self.moving_loads[:, 0]))
         j = self.frequency * np.arange(1, self.error_series.shape[1] + 1)
         amplitudes, phases = self.error_series
         return float(bend + np.sum(j**2 * amplitudes * np.cos(phases)))
@@ -262,9 +301,13 @@ class DriveOscillator(PeriodicOscillator):
 
     def error_motion(self, tau: Array) -> tuple[Array, Array]:
         """Error e and its rate at some times."""
+        return self._series_motion(self.error_series, tau)
+
+    def _series_motion(self, series: Array, tau: Array) -> tuple[Array, Array]:
+        """Sum of the harmonics of a series and its rate at some times."""
         tau = np.asarray(tau)
         total, rate = np.zeros(tau.shape), np.zeros(tau.shape)
-        for j, (amplitude, phase) in enumerate(self.error_series.T.tolist(), start=1):
+        for j, (amplitude, phase) in enumerate(series.T.tolist(), start=1):
             angle = j * self.frequency * tau + phase
             total = total + amplitude * np.cos(angle)
             rate = rate - j * self.frequency * amplitude * np.sin(angle)
@@ -299,30 +342,3 @@ class DriveOscillator(PeriodicOscillator):
         n, g = self.dimension // 2, np.asarray(self.direction)
         error, rate = self.error_motion(tau)
         return np.asarray(states[:, :n] @ g - error), np.asarray(states[:, n:] @ g - rate)
-
-
-def _array(faults: Faults, name: str, entries: npt.ArrayLike, shape: tuple[int, ...] | None) -> Array:
-    """Finite numbers of a shape, of one dimension if there is none, that nobody can change; faults are noted."""
-    try:
-        values = np.array(entries, dtype=np.float64)
-    except (TypeError, ValueError):
-        values = np.full((), np.nan)
-    fits = values.ndim == 1 and len(values) > 0 if shape is None else values.shape == shape
-    if not fits or not np.all(np.isfinite(values)):
-        wanted = "(n,)" if shape is None else str(shape)
-        remedy = (
-            "one row and one column for each freedom" if name in MATRICES else "one number for each freedom"
-        )
-        faults.add(name, entries, f"must be finite numbers of shape {wanted}", remedy)
-        values = np.zeros(shape or (1,))
-    values.flags.writeable = False
-    return values
-
-
-def _symmetric(faults: Faults, mass: Array) -> Array:
-    """The mass without the rounding of its two halves; a fault is noted where they differ by more."""
-    if np.max(np.abs(mass - mass.T)) > 1e-12 * np.max(np.abs(mass)):
-        faults.add("mass", mass.tolist(), "must be symmetric", "take the mean with its transpose")
-    halves = np.asarray(0.5 * (mass + mass.T))
-    halves.flags.writeable = False
-    return halves

@@ -10,17 +10,21 @@ from typing import TypeAlias
 import numpy as np
 
 from base import Array, Faults
-from dynamics.model.limits import OSCILLATOR
+from dynamics.model.limits import NUMBER
 from dynamics.model.stiffness import MAX_ORDER, numbers
 
 Harmonics: TypeAlias = float | tuple[float, ...]
 """A number for the first harmonic alone, or one number for each of several."""
 
 AMPLITUDE, PHASE = "error_amplitude", "error_phase"
+ERROR, FORCE = (AMPLITUDE, PHASE), ("force_amplitude", "force_phase")
+"""Names of amplitudes and phases of what drives the motion: an error, or a force."""
 
 
-def checked_error(faults: Faults, amplitude: object, phase: object) -> tuple[Harmonics, Harmonics]:
-    """Amplitudes and phases of the error as numbers, or as tuples if there are two or more; faults are noted.
+def checked_series(
+    faults: Faults, amplitude: object, phase: object, names: tuple[str, str] = ERROR
+) -> tuple[Harmonics, Harmonics]:
+    """Amplitudes and phases of a series as numbers, or as tuples if there are two or more; faults are noted.
 
     Parameters
     ----------
@@ -28,20 +32,21 @@ def checked_error(faults: Faults, amplitude: object, phase: object) -> tuple[Har
         Notes what is no finite number, and phases that are not one for each amplitude.
     amplitude, phase : float or sequence of float
         One phase of 0 serves any number of amplitudes.
+    names : (str, str)
+        What they are called.
     """
     sizes, phases = (
-        _numbers(faults, name, harmonics) for name, harmonics in ((AMPLITUDE, amplitude), (PHASE, phase))
+        _numbers(faults, name, harmonics) for name, harmonics in zip(names, (amplitude, phase), strict=True)
     )
     if phases == (0.0,) and not _several(phase):
         phases = phases * len(sizes)
     if len(phases) != len(sizes):
         allowed = f"must be {len(sizes)} phases, one per amplitude"
-        faults.add(PHASE, f"{len(phases)} phases", allowed, "give amplitudes and phases of equal length")
+        faults.add(names[1], f"{len(phases)} phases", allowed, "give amplitudes and phases of equal length")
     if not 1 <= len(sizes) <= MAX_ORDER:
         allowed = f"must be 1 to {MAX_ORDER} harmonics"
-        faults.add(
-            AMPLITUDE, f"{len(sizes)} harmonics", allowed, "give 0 for no error, or leave out the highest"
-        )
+        remedy = f"give 0 for no {names[0].partition('_')[0]}, or leave out the highest"
+        faults.add(names[0], f"{len(sizes)} harmonics", allowed, remedy)
     return (sizes[0], phases[0]) if len(sizes) == len(phases) == 1 else (sizes, phases)
 
 
@@ -55,7 +60,7 @@ def _several(harmonics: object) -> bool:
 
 def _numbers(faults: Faults, name: str, harmonics: object) -> tuple[float, ...]:
     if not isinstance(harmonics, Sequence | np.ndarray) or not _several(harmonics):
-        return (faults.number(name, harmonics, OSCILLATOR[name]),)
+        return (faults.number(name, harmonics, NUMBER),)
     return numbers(faults, name, harmonics)
 
 
@@ -65,11 +70,11 @@ def as_series(amplitude: Harmonics, phase: Harmonics) -> Array:
 
 
 @functools.lru_cache(maxsize=64)
-def error_names(harmonics: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def harmonic_names(harmonics: int, names: tuple[str, str] = ERROR) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names of the amplitudes and of the phases: without a number where there is one harmonic."""
     if harmonics == 1:
-        return (AMPLITUDE,), (PHASE,)
-    amplitudes, phases = (tuple(f"{name}[{j}]" for j in range(harmonics)) for name in (AMPLITUDE, PHASE))
+        return (names[0],), (names[1],)
+    amplitudes, phases = (tuple(f"{name}[{j}]" for j in range(harmonics)) for name in names)
     return amplitudes, phases
 
 

@@ -14,8 +14,8 @@ from dynamics.model.excitation import (
     AMPLITUDE,
     PHASE,
     Harmonics,
-    checked_error,
-    error_names,
+    checked_series,
+    harmonic_names,
     highest_harmonic,
     push,
 )
@@ -105,7 +105,7 @@ class GearOscillator(PeriodicOscillator, PlanarOscillator):
                 for name, limit in OSCILLATOR.items()
                 if name not in (AMPLITUDE, PHASE)
             }
-            values[AMPLITUDE], values[PHASE] = checked_error(faults, self.error_amplitude, self.error_phase)
+            values[AMPLITUDE], values[PHASE] = checked_series(faults, self.error_amplitude, self.error_phase)
             if self.free_damping_ratio is not None:
                 limit = OSCILLATOR["damping_ratio"]
                 values["free_damping_ratio"] = faults.number(
@@ -149,7 +149,7 @@ class GearOscillator(PeriodicOscillator, PlanarOscillator):
     @property
     def parameters(self) -> tuple[str, ...]:
         """Names of all parameters: ``frequency``, ..., ``stiffness.mean``, ``stiffness.amplitudes[0]``, ..."""
-        amplitudes, phases = error_names(self.error_series.shape[1])
+        amplitudes, phases = harmonic_names(self.error_series.shape[1])
         own = ("frequency", *amplitudes, *phases, "mean_force", "damping_ratio", "half_backlash")
         own += () if self.free_damping_ratio is None else ("free_damping_ratio",)
         return own + series_names(self.stiffness.order)
@@ -168,7 +168,7 @@ class GearOscillator(PeriodicOscillator, PlanarOscillator):
             return [_PLACES[known], _FREE]
         if known in _PLACES:
             return [_PLACES[known]]
-        amplitudes, phases = error_names(self.error_series.shape[1])
+        amplitudes, phases = harmonic_names(self.error_series.shape[1])
         further = (*series_names(self.stiffness.order)[1:], *amplitudes[1:], *phases[1:])
         return [_SERIES + further.index(parameter)]
 

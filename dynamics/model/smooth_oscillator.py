@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from base import Array, Faults, InputError, Integers
 from dynamics.model.contact_laws import Law
-from dynamics.model.excitation import Harmonics, checked_error, error_names, largest
+from dynamics.model.excitation import Harmonics, checked_series, harmonic_names, largest
 from dynamics.model.limits import NUMBER, OSCILLATOR
 from dynamics.model.naming import natural_size, value_at, with_value
 from dynamics.model.protocol import PlanarOscillator
@@ -63,7 +63,7 @@ class SmoothOscillator(PlanarOscillator):
             faults.add("law", self.law, "must be a law", laws)
         for name in ("damping_ratio", "mean_force", "frequency"):
             faults.number(name, getattr(self, name), NUMBER if name == "damping_ratio" else OSCILLATOR[name])
-        amplitude, phase = checked_error(faults, self.error_amplitude, self.error_phase)
+        amplitude, phase = checked_series(faults, self.error_amplitude, self.error_phase)
         faults.raise_if_any()
         object.__setattr__(self, "error_amplitude", amplitude)
         object.__setattr__(self, "error_phase", phase)
@@ -79,7 +79,7 @@ class SmoothOscillator(PlanarOscillator):
     @property
     def _own_names(self) -> tuple[str, ...]:
         """Parameters that are not the law's, as the kernels have them."""
-        amplitudes, phases = error_names(self.error_series.shape[1])
+        amplitudes, phases = harmonic_names(self.error_series.shape[1])
         first = ("damping_ratio", "mean_force", amplitudes[0], "frequency", phases[0])
         return (*first, *amplitudes[1:], *phases[1:])
 

@@ -264,7 +264,8 @@ def _settled(
         [contact.lowest, contact.spacing, oscillator.half_backlash, sides, push, within, within - without]
     )
     raises, lowers = (np.eye(n),) * 2 if modes is None else (modes.raises, modes.lowers)
-    over, columns, constant = _free_step(part, modes, dt)
+    over, columns, linear = _free_step(part, modes, dt)
+    loaded = _loaded(oscillator, part.matrix, linear, share * oscillator.period)
     peaks, moved = np.zeros(WINDOWS), lowers @ state
     flag = step_through(
         np.ascontiguousarray(contact.forces),
@@ -274,7 +275,7 @@ def _settled(
         rates,
         over,
         columns,
-        lowers @ constant,
+        loaded @ lowers.T,
         raises[[0, n // 2]],
         np.ascontiguousarray(lowers[:, n // 2]),
         moved,
@@ -288,16 +289,34 @@ def _settled(
 
 
 def _free_step(part: Linear, modes: Modes | None, dt: float) -> tuple[Array, Integers, Array]:
-    """Entries of rows of a step without mesh and their columns, and what the load adds to a state."""
+    """Entries of rows of a step without mesh, their columns, and the step of a state with a one behind it, by the load."""
     from scipy.linalg import expm
 
     n = len(part.load)
-    whole = np.block([[part.matrix, part.load[:, None]], [np.zeros((1, n + 1))]])
-    linear = expm(whole * dt)
-    constant = np.ascontiguousarray(linear[:n, -1])
+    linear = expm(np.block([[part.matrix, part.load[:, None]], [np.zeros((1, n + 1))]]) * dt)
     if modes is None:
-        return np.ascontiguousarray(linear[:n, :n]), np.tile(np.arange(n), (n, 1)), constant
-    return *modes.step(dt), constant
+        return np.ascontiguousarray(linear[:n, :n]), np.tile(np.arange(n), (n, 1)), linear
+    return *modes.step(dt), linear
+
+
+def _loaded(oscillator: GearOscillator | DriveOscillator, system: Array, linear: Array, tau: Array) -> Array:
+    """What forces add to the state in each step between some times: the mean one, and those that are periodic.
+
+    A periodic motion z under a periodic force goes from one time to the next by z = E z + what the force adds.
+    """
+    n = len(system)
+    loaded = np.tile(linear[:n, -1], (len(tau) - 1, 1))
+    if not isinstance(oscillator, DriveOscillator):
+        return loaded
+    amplitudes, phases = oscillator.force_series
+    for direction in oscillator.moving_loads:
+        pushed = np.append(np.zeros(n // 2), direction)
+        for j, size in enumerate((amplitudes * np.exp(1j * phases)).tolist(), start=1):
+            rate = 1j * j * oscillator.frequency
+            moved = np.linalg.solve(rate * np.eye(n) - system, size * pushed)
+            path = np.real(np.exp(rate * tau)[:, None] * moved)
+            loaded += path[1:] - path[:-1] @ linear[:n, :n].T
+    return loaded
 
 
 def _error(oscillator: GearOscillator | DriveOscillator, tau: Array) -> tuple[Array, Array]:

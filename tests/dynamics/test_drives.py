@@ -57,6 +57,9 @@ def by_steps(drive: DriveOscillator, state, duration: float, max_step=0.1):
     inverse, d, w = np.linalg.inv(mass), drive.half_backlash, drive.frequency
     error, phase = (np.atleast_1d(part) for part in (drive.error_amplitude, drive.error_phase))
     j = np.arange(1, len(error) + 1)
+    swing, turn = (np.atleast_1d(part) for part in (drive.force_amplitude, drive.force_phase))
+    i = np.arange(1, len(swing) + 1)
+    along = np.zeros(n) if drive.force_direction is None else np.asarray(drive.force_direction)
 
     def gap(t, q):
         return g @ q - error @ np.cos(j * w * t + phase)
@@ -82,7 +85,8 @@ def by_steps(drive: DriveOscillator, state, duration: float, max_step=0.1):
             bent = inverse @ (
                 (stiffness + k * np.outer(g, g)) @ columns[:n] + (damping + c * np.outer(g, g)) @ columns[n:]
             )
-            bend = inverse @ (force - damping @ speed - stiffness @ q - g * push)
+            pressed = force + along * (swing @ np.cos(i * w * t + turn))
+            bend = inverse @ (pressed - damping @ speed - stiffness @ q - g * push)
             return np.concatenate([speed, bend, columns[n:].ravel(), -bent.ravel()])
 
         def upper(t, y):

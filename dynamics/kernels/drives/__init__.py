@@ -8,9 +8,10 @@ Arrays that travel together:
 - `par`, (9,): places as in `dynamics.kernels`; frequency, D, sides, and the force of y alone are used.
 - `systems`, (3, m, m): the stiffness of all but the mesh times h^2; the damping times h in contact and in the dead
   zone, that of the mesh in it.
-- `load`, (2, m): the mean force times h^2; the first column of the damping times h, without that of the mesh.
-- `series`, (cells, 2, degree + 1): Taylor coefficients about the start of a cell of the mesh stiffness (over the mass
-  of y, times h^2) and of the error e.
+- `load`, (2 + p, m): the mean force times h^2; the first column of the damping times h, without that of the mesh; then
+  directions of p periodic forces, times h^2.
+- `series`, (cells, 2 + p, degree + 1): Taylor coefficients about the start of a cell of the mesh stiffness (over the
+  mass of y, times h^2), of the error e, and of the periodic forces along their directions.
 - `maps`, (2 cells, 2 m + 2, 2 m): the map over the whole cell, A, b and d, transposed: z becomes A z + b + region D d.
   The first `cells` rows hold in contact, the others in the dead zone.
 - `reach`, (2 cells, 2 m + 2): factors which bound how far y departs from its chord, reach . (|z|, 1, D).

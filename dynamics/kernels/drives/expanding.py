@@ -4,16 +4,22 @@ from dynamics.kernels.compiling import FloatArray, helper
 
 
 @helper
-def excite(systems: FloatArray, load: FloatArray, error: FloatArray, push: FloatArray) -> None:
+def excite(
+    systems: FloatArray, load: FloatArray, error: FloatArray, forces: FloatArray, push: FloatArray
+) -> None:
     """Taylor coefficients `push`, (m, degree + 1), of all forces that do not depend on the state.
 
-    `error` are those of e: y is the first coordinate less e, which is left behind as a force.
+    `error` are those of e: y is the first coordinate less e, which is left behind as a force. `forces`,
+    (p, degree + 1), are those of the periodic forces along their directions.
     """
     m, n = push.shape
     for i in range(m):
         for k in range(n - 2):
             push[i, k] = -systems[0, i, 0] * error[k] - load[1, i] * (k + 1) * error[k + 1]
         push[i, 0] += load[0, i]
+        for j in range(len(forces)):
+            for k in range(n - 2):
+                push[i, k] += load[2 + j, i] * forces[j, k]
     for k in range(n - 2):
         push[0, k] -= (k + 1) * (k + 2) * error[k + 2]
 

@@ -28,18 +28,20 @@ from dynamics.kernels.roots import binomials, copy, shift
 Drive = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 """par, systems, load, series, maps, reach, strides"""
 Room = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
-"""A motion and its push (m, degree + 1), six rows of as many, a state (2 m,), what `binomials` gives; motions of many
-columns (degree + 1, m, 2 m), as many states (2 m, 2 m), and the end of a stride."""
+"""A motion and its push (m, degree + 1), six rows of as many and one for each periodic force, a state (2 m,), what
+`binomials` gives; motions of many columns (degree + 1, m, 2 m), as many states (2 m, 2 m), and the end of a stride."""
+PUSHED = 6
+"""First of the rows of periodic forces."""
 
 
 @maker
-def room_for(m: int, n: int) -> Room:
-    """Work space for m freedoms and n coefficients."""
+def room_for(m: int, n: int, rows: int) -> Room:
+    """Work space for m freedoms and n coefficients of so many rows of a cell's `series`."""
     many, square = np.empty((n, m, 2 * m)), np.empty((2 * m, 2 * m))
     return (
         np.empty((m, n)),
         np.zeros((m, n)),
-        np.zeros((6, n)),
+        np.zeros((PUSHED + rows - 2, n)),
         np.empty(2 * m),
         binomials(n - 1),
         many,
@@ -62,7 +64,9 @@ def aim(
     else:
         shift(series[cell, 0], s, choose, lines[0])
         shift(series[cell, 1], s, choose, lines[1])
-    excite(systems, load, lines[1], push)
+    for j in range(series.shape[1] - 2):
+        shift(series[cell, 2 + j], s, choose, lines[PUSHED + j])
+    excite(systems, load, lines[1], lines[PUSHED:], push)
     for i in range(m):
         a[i, 0] = z[i]
         a[i, 1] = z[m + i]
@@ -224,7 +228,7 @@ def iterate(
     par, _, load, series, _, _, _ = table
     m, n = load.shape[1], series.shape[2]
     h = 2.0 * math.pi / par[FREQUENCY] / len(series)
-    room = room_for(m, n)
+    room = room_for(m, n, series.shape[1])
     z, count = np.empty(2 * m), np.zeros(2, dtype=np.int64)
     region = enter_cells(par, h, state, z)
     if want > 0:
@@ -256,7 +260,7 @@ def settle(
     par, _, load, series, _, _, _ = table
     m, n = load.shape[1], series.shape[2]
     h = 2.0 * math.pi / par[FREQUENCY] / len(series)
-    room = room_for(m, n)
+    room = room_for(m, n, series.shape[1])
     z, count, jac = np.empty(2 * m), np.zeros(2, dtype=np.int64), np.zeros((2 * m + 1, 2 * m))
     used = 0
     for i in range(len(starts)):

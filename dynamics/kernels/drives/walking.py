@@ -31,7 +31,7 @@ def walk(
     par, systems, load, series, _, _, _ = table
     m, cells, n = load.shape[1], len(series), series.shape[2]
     d, h = par[HALF_BACKLASH], 2.0 * math.pi / par[FREQUENCY] / cells
-    room = room_for(m, n)
+    room = room_for(m, n, series.shape[1])
     a, _, lines, end, choose, _, _, _ = room
     z = np.empty(2 * m)
     g, b, rest, spare = lines[2], lines[3], lines[4], lines[5]
