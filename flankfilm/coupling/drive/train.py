@@ -9,15 +9,19 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 from scipy.linalg import block_diag, eigh
+from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import eigsh, splu
 
-from base import Array
+from base import Array, Integers
 from flankfilm.coupling.drive.drive_side import Side
 from flankfilm.coupling.vibration.part_loads import DriveOutput
 
 SIDES = ("pinion", "wheel")
 DENSE = 300
 """Freedoms up to which all modes are computed at once."""
+
+ROUNDED = 1e-12
+"""What joins two freedoms by less, over the root of the product of what holds both, is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,9 +149,31 @@ def lowest_modes(stiffness: Any, mass: Any, count: int, about: float) -> tuple[A
     if n <= DENSE or 3 * count > n:
         squares, modes = eigh(stiffness.toarray(), mass.toarray(), subset_by_index=(0, min(count, n) - 1))
         return np.asarray(squares), np.asarray(modes)
-    squares, modes = eigsh(stiffness, count, mass, sigma=-1e-3 * about, v0=np.ones(n))
-    order = np.argsort(squares)
+    apart = _apart(stiffness, mass)
+    if len(apart) == 1:
+        squares, modes = eigsh(stiffness, count, mass, sigma=-1e-3 * about, v0=np.ones(n))
+    else:  # planes of a shaft and shafts alike have frequencies in common, of which one start finds one mode alone
+        each = [
+            lowest_modes(stiffness[at][:, at], mass[at][:, at], min(count, len(at)), about) for at in apart
+        ]
+        squares, modes = np.concatenate([part for part, _ in each]), block_diag(*(part for _, part in each))
+        modes = modes[np.argsort(np.concatenate(apart))]
+    order = np.argsort(squares)[:count]
     return np.asarray(squares[order]), np.asarray(modes[:, order])
+
+
+def _apart(stiffness: Any, mass: Any) -> list[Integers]:
+    """Freedoms of each part that neither stiffness nor mass joins to others but by rounding."""
+    rows, columns = list[Integers](), list[Integers]()
+    for matrix in (stiffness.tocoo(), mass.tocoo()):
+        size = np.sqrt(np.abs(matrix.diagonal()))
+        joins = np.abs(matrix.data) > ROUNDED * size[matrix.row] * size[matrix.col]
+        rows.append(matrix.row[joins])
+        columns.append(matrix.col[joins])
+    ends = np.concatenate(rows), np.concatenate(columns)
+    graph = sparse.coo_array((np.ones(len(ends[0])), ends), stiffness.shape)
+    count, labels = connected_components(graph, directed=False)
+    return [np.flatnonzero(labels == part) for part in range(count)]
 
 
 @dataclass(frozen=True, eq=False)

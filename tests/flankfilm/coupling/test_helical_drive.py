@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 from base import InputError
 from fem import compliance
@@ -24,7 +25,7 @@ from flankfilm.coupling.drive.drive_side import drive_side
 from flankfilm.coupling.drive.gyroscopic import gyroscopic_change
 from flankfilm.coupling.drive.mesh_in_space import SpatialMesh, cell_wrenches
 from flankfilm.coupling.drive.tilting_mesh import resistance_and_place
-from flankfilm.coupling.drive.train import Train, joined, lowest_modes
+from flankfilm.coupling.drive.train import Train, joined, lowest_modes, shaft_damping
 from gears import Bearing, Gear, GearPair, Material, Shaft, ShaftSegment
 
 PAIR = GearPair(Gear(teeth=24), Gear(teeth=51), module=2e-3, face_width=40e-3)
@@ -155,6 +156,25 @@ def test_a_vanishing_helix_leaves_the_spur_train():
     assert loads(train(helical(1e-5), shafts()))["wheel bearing 2"] == pytest.approx(
         loads(train(helical(0.0), shafts()))["wheel bearing 2"], rel=1e-6
     )
+
+
+@pytest.mark.parametrize("tilt", [0.0, TILT])
+def test_modes_that_both_planes_have_in_common_are_all_found(tilt):
+    """Bearings and shafts alike in both planes: every frequency of bending twice, which damps both planes alike."""
+    of = train(helical(20.0), shafts(), tilt)
+    assert len(of.rotation) > 450
+    squares, modes = lowest_modes(of.out_of_mesh, of.mass, 150, 1e8)
+    every = eigh(of.out_of_mesh.toarray(), of.mass.toarray(), eigvals_only=True)
+    np.testing.assert_allclose(squares, every[:150], rtol=1e-7, atol=1e-9 * every[20])
+    np.testing.assert_allclose(modes.T @ (of.mass @ modes), np.eye(150), atol=1e-9)
+    stretched = of.out_of_mesh @ modes - of.mass @ (modes * squares)
+    assert np.max(np.abs(stretched)) < 1e-9 * np.max(np.abs(of.out_of_mesh @ modes))
+    found = shaft_damping(of, [0.01], None, 150, 1e8).of(np.eye(len(of.rotation)))
+    for side in ("pinion", "wheel"):
+        plane, across = (
+            np.flatnonzero(of.points[f"{side} {name}"])[0] for name in ("deflection", "deflection across")
+        )
+        assert found[across, across] == pytest.approx(found[plane, plane], rel=1e-6)
 
 
 def test_shafts_that_slide_are_refused_both_at_once():
