@@ -174,7 +174,9 @@ def coupled(u: Units) -> list[object]:
     series = coupling.mesh_series(cycle, order=2)
     error = {"error_amplitude": u(4e-6, "m")}
     moving = coupling.pair_oscillator(pair, series, torque, speed, **error)
-    train = coupling.pair_drive(pair, series, torque, speed, shafts=(shaft_in(u), shaft_in(u)), **error)
+    travel = coupling.LoadTravel([u(2e-4, "m"), u(1e-5j, "m")], u(1e-6, "m"))
+    shafts = shaft_in(u), shaft_in(u)
+    train = coupling.pair_drive(pair, series, torque, speed, shafts=shafts, travel=travel, **error)
     speeds = np.linspace(0.9, 1.1, 3) * speed
     return [
         cycle,

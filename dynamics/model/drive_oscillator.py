@@ -135,8 +135,7 @@ class DriveOscillator(PeriodicOscillator):
                     values[name] = faults.number(name, ratio, OSCILLATOR["damping_ratio"])
             for names in (ERROR, FORCE):
                 amplitude, phase = (getattr(self, name) for name in names)
-                found = checked_series(faults, amplitude, phase, names)
-                values |= dict(zip(names, found, strict=True))
+                values |= dict(zip(names, checked_series(faults, amplitude, phase, names), strict=True))
             if self.force_direction is None and np.any(values["force_amplitude"]):
                 allowed = "must be given beside force_amplitude"
                 faults.add("force_direction", "none", allowed, "one number for each freedom")

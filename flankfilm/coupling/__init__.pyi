@@ -9,6 +9,7 @@ from .drive.pair_in_space import spatial_pair as spatial_pair
 from .drive.spatial_bearings import SpatialBearing as SpatialBearing
 from .drive.spatial_bearings import bearing_stiffness as bearing_stiffness
 from .drive.tilting_mesh import tilting_mesh as tilting_mesh
+from .drive.travelling_load import LoadTravel as LoadTravel
 from .films.along_path import FilmAlongPath as FilmAlongPath
 from .films.face_films import FaceFilms as FaceFilms
 from .films.films import FilmModel as FilmModel

@@ -85,6 +85,7 @@ def outputs() -> tuple[Named, ...]:
         of_drive("tilt_stiffness", name="drive_tilt_stiffness"),
         of_drive("load_centre", name="drive_load_centre"),
         of_drive("tilt_change", name="drive_tilt_change"),
+        of_drive("load_travel", name="drive_load_travel"),
         of_carried(
             "greatest_bearing_force",
             error_output="drive_sampling_error",

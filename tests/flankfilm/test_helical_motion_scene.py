@@ -76,3 +76,48 @@ gear_position_mm = 90
     assert [f"pinion {name}" in data["drive_freedoms"].values for name in ("deflection across", "axial")] == [
         True
     ] * 2
+
+
+SMALL = """
+wants = ["sweep", "spectrum", "run-up"]
+tolerance = 0.05
+[pair]
+module_mm = 1.0
+face_width_mm = 5.0
+helix_angle_deg = 18.0
+backlash_um = 50
+pinion = { teeth = 18, bore_mm = 8.0 }
+wheel = { teeth = 23, bore_mm = 8.0 }
+[material]
+youngs_modulus_GPa = 206
+poisson_ratio = 0.3
+density_kg_per_m3 = 7850
+[operating]
+pinion_torque_Nm = 8
+pinion_speed_rpm = 4000
+[dynamics]
+damping_ratio = 0.05
+sweep = { speed_rpm = [20000, 40000], points = 2 }
+run_up = { speed_rpm = [20000, 22000], periods = 64 }
+"""
+SHORT = """
+segments = [{ length_mm = 60, diameter_mm = 8 }]
+bearings = [
+  { position_mm = 5, stiffness_N_per_m = 1e8 },
+  { position_mm = 55, stiffness_N_per_m = 1e8, axial_stiffness_N_per_m = 5e7 },
+]
+gear_position_mm = 25
+"""
+
+
+@pytest.mark.slow
+def test_the_load_that_travels_over_the_face_drives_the_train_of_a_scene(tmp_path):
+    scene = parse_scene(f"{SMALL}[shafts.pinion]{SHORT}[shafts.wheel]{SHORT}")
+    found = run_scene(scene, tmp_path, use_cache=False)
+    assert not found.failures
+    data = found.dataset
+    travel = float(data["drive_load_travel"])
+    assert 0.02 * 5e-3 < travel < 0.5 * 5e-3
+    assert 0.0 < float(data["drive_load_travel_error"]) < 0.5
+    assert float(data["drive_sweep_bearing_force_swing_up"].min()) > 0.0
+    assert {"spectrum_bearing_force", "run_up_bearing_force_up"} <= {*data.variables}

@@ -57,6 +57,7 @@ OF_TRAINS = {
     *("greatest_bearing_force_error", "greatest_shaft_torque_error", "drive_sampling_error"),
     *("greatest_bearing_force_model_error", "greatest_shaft_torque_model_error"),
     *("drive_tilt_stiffness_Nm_per_rad", "drive_load_centre_mm", "drive_tilt_change"),
+    *("drive_load_travel_mm", "drive_load_travel_error"),
     *(f"greatest_{of}_{what}" for of in ("run_up", "map") for what in ("bearing_force_N", "shaft_torque_Nm")),
 }
 """Outputs that need [shafts]: tests/flankfilm/test_drive_scene.py."""

@@ -119,12 +119,25 @@ def test_the_drive_train_has_the_tilt_of_the_mesh_on_its_shafts(overhung):
         assert float(data[f"drive_{figure}"]) == getattr(drive, figure)
         told = OUTPUTS[f"drive_{name}"].value(overhung)
         assert told == pytest.approx(scale * getattr(drive, figure), rel=1e-12)
+    osc = drive.oscillator
+    assert (
+        float(data["drive_load_travel"])
+        == drive.load_travel
+        == 1e-3 * OUTPUTS["drive_load_travel_mm"].value(overhung)
+    )
+    assert 1e-7 < drive.load_travel < 1e-3
+    assert np.linalg.norm(osc.moving_loads) > 0.0
     (note, *_) = drive_parts.drive(drive, data).notes
-    for words in (f"{number(drive.tilt_stiffness)} N m/rad", f"{number(1e3 * place)} mm from mid-face"):
+    for words in (
+        f"{number(drive.tilt_stiffness)} N m/rad",
+        f"{number(1e3 * place)} mm from mid-face",
+        f"{number(1e6 * drive.load_travel)} µm",
+    ):
         assert words in note
     plain = (OVERHUNG + SHAFTS).replace('[alignment]\ncells = 8\nface_model = "walls"\n', "")
     without = _engine(plain)[DRIVE]
-    assert without.tilt_stiffness == without.load_centre == 0.0
+    assert without.tilt_stiffness == without.load_centre == without.load_travel == 0.0
+    assert without.oscillator.force_direction is None
     assert 0.0 < drive.tilt_change < 0.5 * without.tilt_change
     assert "for a load that is even over the face" in drive_parts.drive(without, data).notes[0]
 

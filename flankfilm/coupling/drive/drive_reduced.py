@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -57,8 +58,8 @@ def mesh_frequencies(
     return RANGE[0] * scales.omega_n, max(RANGE[1] * scales.omega_n, teeth * abs(speed))
 
 
-def mesh_excitation(rigid: PairOscillator) -> MeshExcitation:
-    """What drives the train at its mesh."""
+def mesh_excitation(rigid: PairOscillator, moments: Array) -> MeshExcitation:
+    """What drives the train at its mesh, with harmonics of the travelling load's moment [N m]."""
     own, scales = rigid.oscillator, rigid.scales
     assert scales is not None
     swing = np.abs(own.stiffness.amplitudes) / own.stiffness.mean * abs(rigid.force)
@@ -68,9 +69,9 @@ def mesh_excitation(rigid: PairOscillator) -> MeshExcitation:
         np.pad(np.abs(amplitudes), (0, count - len(amplitudes)))
         for amplitudes in (swing, rigid.error_amplitude)
     )
-    if not (force.any() or error.any()):
+    if not (force.any() or error.any() or moments.any()):
         force[0] = 1.0  # nothing drives it: any force will do
-    return MeshExcitation(force, error, scales.mean_stiffness, mesh)
+    return MeshExcitation(force, error, scales.mean_stiffness, mesh, np.abs(moments))
 
 
 def reduced_oscillator(
@@ -79,8 +80,12 @@ def reduced_oscillator(
     damping: ShaftDamping,
     reduction: Reduction,
     free_damping_ratio: float | None,
+    moments: Array,
 ) -> dynamics.DriveOscillator:
-    """The reduced train in the units of the scales; what turns freely meets neither stiffness nor damping."""
+    """The reduced train in the units of the scales; what turns freely meets neither stiffness nor damping.
+
+    Harmonics of the travelling load's moment [N m] press the pinion's flank back where the load is, as the mesh does.
+    """
     scales, own = rigid.scales, rigid.oscillator
     assert scales is not None
     shapes, m, omega = reduction.shapes, scales.equivalent_mass, scales.omega_n
@@ -96,8 +101,18 @@ def reduced_oscillator(
         mean_force=own.mean_force * (shapes.T @ train.load), error_amplitude=own.error_amplitude,
         frequency=own.frequency, half_backlash=own.half_backlash, error_phase=own.error_phase,
         one_sided=own.one_sided,
-        free_mesh_damping=None if free_damping_ratio is None else 2.0 * own.damping_ratios[1],
+        free_mesh_damping=None if free_damping_ratio is None else 2.0 * own.damping_ratios[1], **_pushed(
+            moments / (scales.mean_stiffness * scales.length), -shapes.T @ train.tilt
+        ),
     )  # fmt: skip
+
+
+def _pushed(moments: Array, direction: Array) -> dict[str, Any]:
+    """Periodic force of an oscillator along a direction, if there is one."""
+    if not moments.any():
+        return {}
+    size, turn = (tuple(each.tolist()) for each in (np.abs(moments), np.angle(moments)))
+    return {"force_direction": direction, "force_amplitude": size, "force_phase": turn}
 
 
 def reduced_outputs(

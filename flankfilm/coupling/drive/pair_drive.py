@@ -27,6 +27,7 @@ from flankfilm.coupling.drive.gyroscopic import gyroscopic_change
 from flankfilm.coupling.drive.reduction import MOST_MODES, reduced_train
 from flankfilm.coupling.drive.tilting_mesh import change_over_cycle
 from flankfilm.coupling.drive.train import ShaftDamping, Train, joined, lowest_modes, shaft_damping
+from flankfilm.coupling.drive.travelling_load import LoadTravel, driving_moments
 from flankfilm.coupling.vibration.oscillator import PairOscillator, pair_oscillator
 from flankfilm.coupling.vibration.part_loads import DriveOutput
 from gears.pair.beams import ReducedShaft
@@ -115,6 +116,18 @@ class PairDrive:
         "1",
         "largest relative change of a natural frequency by tilt and place of the mesh at one position of its cycle; "
         "where these are not known, by a stiffness spread evenly over its face",
+        no_error=ITSELF,
+    )
+    load_travel: float = quantity(
+        "m",
+        "travel of the mesh force along the face over the mesh cycle, whose moment drives the tilt of both gears; "
+        "0 where it is not known",
+        shown="mm",
+        error="load_travel_error",
+    )
+    load_travel_error: float | None = quantity(
+        "1",
+        "estimated relative error of that travel, by cells and by harmonics left out; None where it is unknown",
         no_error=ITSELF,
     )
     damping_band: tuple[float, float] = part(
@@ -212,6 +225,7 @@ def pair_drive(
     tilt_stiffness: float = 0.0,
     load_centre: float = 0.0,
     mesh_matrix: Array | None = None,
+    travel: LoadTravel | None = None,
     fourier_order: int | Literal["auto"] = "auto",
     tolerance: float = 0.005,
 ) -> PairDrive:
@@ -261,6 +275,9 @@ def pair_drive(
     mesh_matrix : ndarray, shape (positions, 2, 2), optional
         The mesh between gears that tilt over its cycle (`tilting_mesh`), of which both are means: what its variation
         changes of the frequencies is `tilt_change`, beside that of the stiffness, which is in the series.
+    travel : LoadTravel, optional
+        Place of the mesh force over its cycle (`tilting_mesh`), about the mean: its moment under the mean force drives
+        the tilt of both gears. What the place times the swing of the force adds is left out.
     fourier_order, tolerance
         As of `pair_oscillator`, by the pair on rigid shafts, within `speeds` where they are given.
 
@@ -312,10 +329,14 @@ def pair_drive(
     train, turning = train_of(False, tilt_stiffness), (pair.pinion.teeth, pair.wheel.teeth)
     ends = mesh_frequencies(pair, scales, speed, speeds)
     damping = shaft_damping(train, ratios, rayleigh, MOST_MODES, ends[1] ** 2)
-    reduction = reduced_train(train, damping, mesh_excitation(rigid), ends, reduction_tolerance)
+    share = tolerance if rigid.series.share is None else rigid.series.share
+    bounds = ends[0] / scales.omega_n, ends[1] / scales.omega_n
+    travel = (travel or LoadTravel(())).kept(pair.face_width, share, bounds, damping_ratio)
+    moments = driving_moments(train, rigid.force, travel)
+    reduction = reduced_train(train, damping, mesh_excitation(rigid, moments), ends, reduction_tolerance)
     if not math.isinf(reduction.valid_to):  # of the gears' mass: displacements of the size of the train's
         reduction = reduction._replace(shapes=reduction.shapes * math.sqrt(scales.equivalent_mass))
-    oscillator = reduced_oscillator(rigid, train, damping, reduction, free_damping_ratio)
+    oscillator = reduced_oscillator(rigid, train, damping, reduction, free_damping_ratio, moments)
     reached = max(
         int(np.sum(reduction.squares <= ends[1] ** 2)), int(np.flatnonzero(reduction.retained)[-1]) + 1
     )
@@ -361,6 +382,8 @@ def pair_drive(
         tilt_stiffness=tilt_stiffness,
         load_centre=load_centre,
         tilt_change=tilt_change(),
+        load_travel=travel.range,
+        load_travel_error=travel.range_error,
         damping_band=(damping_band[0], damping_band[1]),
         shaft_damping=damping,
         cost=Cost(watch.seconds, unknowns=len(train.rotation)),

@@ -1,13 +1,15 @@
 r"""Drive train reduced to the modes that the harmonics of its mesh reach, and the static deflection of all others.
 
 Shapes are the free rotation, modes of the whole train in contact, and what these leave of the static deflections under
-the mesh force and under motor and load (MacNeal, Computers & Structures 1, 1971, 581,
-doi:10.1016/0045-7949(71)90031-9). Every static answer is kept, in contact and out of it; frequencies err upwards. Modes
-are taken until no force that the linear response has within the speeds changes by more than a tolerance.
+the mesh force, under its moment where the load travels over the face, and under motor and load (MacNeal, Computers &
+Structures 1, 1971, 581, doi:10.1016/0045-7949(71)90031-9). Every static answer is kept, in contact and out of it;
+frequencies err upwards. Modes are taken until no force that the linear response has within the speeds changes by more
+than a tolerance.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -48,12 +50,15 @@ class MeshExcitation:
         Of the transmission error's harmonics [m].
     stiffness, damping : float
         Mean ones of the mesh [N/m], [N s/m].
+    moment : ndarray, shape (any,)
+        Of the harmonics of the load that travels over the face [N m]; none where it stays.
     """
 
     force: Array
     error: Array
     stiffness: float
     damping: float
+    moment: Array
 
     def amplitudes(self, frequencies: Array) -> Array:
         """Force [N] by mesh frequency [rad/s] and harmonic; that of stiffness and error added up."""
@@ -63,9 +68,23 @@ class MeshExcitation:
 
     def reaching(self, frequency: float, tolerance: float) -> MeshExcitation:
         """Harmonics up to the last that counts at a mesh frequency [rad/s]."""
-        amplitudes = self.amplitudes(np.array([frequency]))[0]
-        last = int(np.flatnonzero(amplitudes >= FADED * tolerance * amplitudes.max(initial=0.0))[-1]) + 1
-        return MeshExcitation(self.force[:last], self.error[:last], self.stiffness, self.damping)
+        last = _last(self.amplitudes(np.array([frequency]))[0], tolerance)
+        moment = self.moment[: _last(self.moment, tolerance)]
+        return MeshExcitation(self.force[:last], self.error[:last], self.stiffness, self.damping, moment)
+
+    def sources(self, train: Train, frequencies: Array) -> list[tuple[Array, Array]]:
+        """Directions (n,) and amplitudes (frequencies, harmonics) of the force and of the moment, if there is one."""
+        force = self.amplitudes(frequencies)
+        moment = np.tile(self.moment, (len(frequencies), 1))
+        count = max(force.shape[1], moment.shape[1])
+        of_force, of_moment = (np.pad(each, ((0, 0), (0, count - each.shape[1]))) for each in (force, moment))
+        return [(train.direction, of_force), (train.tilt, of_moment)][: 2 if self.moment.any() else 1]
+
+
+def _last(amplitudes: Array, tolerance: float) -> int:
+    """Number of harmonics up to the last that counts."""
+    counts = np.flatnonzero(amplitudes >= FADED * tolerance * amplitudes.max(initial=0.0))
+    return int(counts[-1]) + 1 if counts.size else 0
 
 
 class Reduction(NamedTuple):
@@ -155,43 +174,52 @@ class _Forced:
         self.rotation = rotation / np.sqrt(rotation @ (train.mass @ rotation))
         self.factors = train.held()
         self.mesh_damping = excitation.damping
-        orders = np.arange(1, len(excitation.force) + 1)
+        orders = np.arange(1, max(len(excitation.force), len(excitation.moment)) + 1)
         met = np.sqrt(squares)[:, None] / orders
         grid = np.geomspace(ends[0], BEYOND * ends[1], SPEEDS)
         self.frequencies = np.unique(
             np.concatenate([grid, ends, met[(met > ends[0]) & (met < BEYOND * ends[1])]])
         )
         self.within = self.frequencies <= ends[1]
-        self.forces = excitation.amplitudes(self.frequencies)
+        sources = excitation.sources(train, self.frequencies)
+        self.directions, self.forces = zip(*sources, strict=True)
         self.nu = self.frequencies[:, None] * orders
         firm = excitation.stiffness * train.direction
         self.push = np.array([*(output.displacement for output in train.outputs), firm])
         self.drag = np.array([*(output.speed for output in train.outputs), np.zeros_like(firm)])
         self.rates = self._rates(modes)
         self.answer = self._answer(squares, self.rates)
-        driven = modes.T @ train.direction
-        residual = self.factors.solve(train.direction - train.mass @ (modes @ driven))
-        self.whole = self._outputs(modes, self.answer * driven[:, None, None])
-        self.whole += self._outputs(residual[:, None], np.ones((1, *self.nu.shape), dtype=np.complex128))
+        self.driven = [modes.T @ direction for direction in self.directions]
+        self.whole = self._outputs(modes, self.answer, self.driven)
+        ones = np.ones((1, *self.nu.shape), dtype=np.complex128)
+        self.whole += np.concatenate(
+            [
+                self._under(
+                    self.factors.solve(direction - train.mass @ (modes @ driven))[:, None], ones, forces
+                )
+                for direction, driven, forces in zip(self.directions, self.driven, self.forces, strict=True)
+            ],
+            axis=-1,
+        )
         swing = self._swing(self.whole)
         self.scale = np.maximum(swing, FLOOR * swing[:, self.within].max(axis=1, keepdims=True))
         self.scale = np.maximum(self.scale, 1e-300)
-        self.driven = driven
 
     @property
     def importance(self) -> Array:
         """Maximum force of what a mode adds to its static deflection, over the force's scale, within the speeds."""
-        more = (self.answer - 1.0 / self.squares[:, None, None]) * self.driven[:, None, None]
+        more = self.answer - 1.0 / self.squares[:, None, None]
         peaks = []
         for mode in range(len(self.squares)):
-            contribution = self._outputs(self.modes[:, [mode]], more[[mode]])
+            driven = [each[[mode]] for each in self.driven]
+            contribution = self._outputs(self.modes[:, [mode]], more[[mode]], driven)
             peaks.append(np.max((self._swing(contribution) / self.scale)[:, self.within], initial=0.0))
         return np.array(peaks)
 
     def rest(self, kept: Chosen) -> tuple[Array, Array]:
         """What chosen modes leave of the static deflections, as shapes of a mass of one, and squares of frequencies."""
         mass, taken = self.train.mass, np.column_stack([self.rotation, self.modes[:, kept]])
-        loads = np.column_stack([self.train.direction, self.train.load])
+        loads = np.column_stack([*self.directions, self.train.load])
         residual = self.factors.solve(loads - mass @ (taken @ (taken.T @ loads)))
         for _ in range(2):
             residual = residual / np.sqrt(np.sum(residual * (mass @ residual), axis=0))
@@ -207,7 +235,7 @@ class _Forced:
         rest, squares = self.rest(kept)
         shapes = np.column_stack([self.modes[:, kept], rest])
         answer = np.concatenate([self.answer[kept], self._answer(squares, self._rates(rest))])
-        outputs = self._outputs(shapes, np.asarray(answer * (shapes.T @ self.train.direction)[:, None, None]))
+        outputs = self._outputs(shapes, answer, [shapes.T @ direction for direction in self.directions])
         over = np.max(self._swing(outputs - self.whole) / self.scale, axis=0)
         return float(np.max(over[self.within])), over
 
@@ -221,11 +249,19 @@ class _Forced:
         nu = self.nu
         return np.asarray(1.0 / (squares[:, None, None] - nu**2 + 1j * rates[:, None, None] * nu))
 
-    def _outputs(self, shapes: Array, amplitudes: Complexes) -> Complexes:
-        """Forces of parts and of the mesh, (outputs, frequencies, harmonics)."""
+    def _outputs(self, shapes: Array, answer: Complexes, driven: Sequence[Array]) -> Complexes:
+        """Forces of parts and of the mesh, (outputs, frequencies, harmonics), each source along shapes."""
+        each = [
+            self._under(shapes, answer * along[:, None, None], forces)
+            for along, forces in zip(driven, self.forces, strict=True)
+        ]
+        return np.concatenate(each, axis=-1)
+
+    def _under(self, shapes: Array, amplitudes: Complexes, forces: Array) -> Complexes:
+        """Forces of parts and of the mesh, (outputs, frequencies, harmonics), under one source."""
         flat = amplitudes.reshape(len(amplitudes), -1)
         push, drag = ((rows @ shapes @ flat).reshape(-1, *self.nu.shape) for rows in (self.push, self.drag))
-        return np.asarray((push + 1j * self.nu * drag) * self.forces)
+        return np.asarray((push + 1j * self.nu * drag) * forces)
 
     def _swing(self, forces: Complexes) -> Array:
         """Root mean square over a period, (outputs, frequencies)."""

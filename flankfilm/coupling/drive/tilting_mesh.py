@@ -8,6 +8,7 @@ import numpy as np
 
 from base import Array
 from flankfilm.coupling.drive.train import Train
+from flankfilm.coupling.drive.travelling_load import load_travel
 from flankfilm.coupling.mesh.mesh_curves import MeshCycle
 
 
@@ -16,7 +17,8 @@ def tilting_mesh(cycle: MeshCycle | None) -> dict[str, Any]:
 
     With the mean matrix M between (approach, tilt) and (force, moment) about mid-face, the force acts at
     :math:`z = M_{10} / M_{00}`, and :math:`M_{11} - M_{10}^2 / M_{00}` resists tilt about that place. Along lines of
-    contact z has :math:`(\rho_1 - \rho_{1C}) \tan\beta_b` besides. There are none of any other cycle.
+    contact z has :math:`(\rho_1 - \rho_{1C}) \tan\beta_b` besides. The load travels about the mean of its place. There
+    are none of any other cycle.
 
     Parameters
     ----------
@@ -25,7 +27,7 @@ def tilting_mesh(cycle: MeshCycle | None) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``tilt_stiffness``, ``load_centre`` and ``mesh_matrix``, or empty.
+        ``tilt_stiffness``, ``load_centre``, ``mesh_matrix`` and ``travel``, or empty.
 
     Examples
     --------
@@ -37,14 +39,17 @@ def tilting_mesh(cycle: MeshCycle | None) -> dict[str, Any]:
     >>> tilting = tilting_mesh(mesh_cycle(pair, 80.0, tolerance=0.02, flanks=flanks))
     >>> tilting["tilt_stiffness"] > 0.0, abs(tilting["load_centre"]) < 0.5 * pair.face_width
     (True, True)
+    >>> 0.0 < tilting["travel"].range < pair.face_width
+    True
     """
     matrix = None if cycle is None or cycle.face is None else cycle.face.mesh_matrix
     if cycle is not None and cycle.lines is not None and any(cycle.lines.setting.shafts):
         matrix = cycle.lines.tilting[0]
-    if matrix is None:
+    if cycle is None or matrix is None:
         return {}
     resists, place = resistance_and_place(matrix.mean(axis=0))
-    return {"tilt_stiffness": float(resists), "load_centre": float(place), "mesh_matrix": matrix}
+    means = {"tilt_stiffness": float(resists), "load_centre": float(place)}
+    return means | {"mesh_matrix": matrix, "travel": load_travel(cycle)}
 
 
 def resistance_and_place(matrix: Array) -> tuple[Array, Array]:

@@ -75,6 +75,16 @@ class Train:
         t = sparse.csc_array(self.tilt[:, None])
         return (self.stiffness - self.tilt_stiffness * (t @ t.T)).tocsc()
 
+    @property
+    def tilting_gain(self) -> float:
+        """Moment that makes the train tilt as its shafts and bearings alone would under a moment of one.
+
+        The mesh resists tilt about the loaded state, whose tilt the travelling load of the mesh cycle has brought: the
+        moment that the train is driven by is as much larger as that resistance takes of it.
+        """
+        yields = float(self.tilt @ self.held().solve(self.tilt))
+        return 1.0 / (1.0 - self.tilt_stiffness * yields)
+
     def held(self) -> Any:
         """Factors of the stiffness in contact, with the free rotation held at one freedom."""
         held = self.in_contact.tolil()

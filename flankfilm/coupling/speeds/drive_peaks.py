@@ -243,8 +243,12 @@ def linear_heights(drive: PairDrive, low: float, high: float) -> tuple[Array, Ar
     mass, damping, stiffness, g = map(np.asarray, (osc.mass, osc.damping, osc.stiffness, osc.direction))
     swing = np.abs(osc.mesh_stiffness.amplitudes) / osc.mesh_stiffness.mean * abs(drive.mean_force)
     error = osc.error_series[0]
-    count = max(len(swing), len(error))
-    swing, error = (np.pad(np.abs(amplitudes), (0, count - len(amplitudes))) for amplitudes in (swing, error))
+    pushed = osc.force_series[0]
+    moved = [] if osc.force_direction is None else [np.asarray(osc.force_direction)]
+    count = max(len(swing), len(error), len(pushed))
+    swing, error, pushed = (
+        np.pad(np.abs(amplitudes), (0, count - len(amplitudes))) for amplitudes in (swing, error, pushed)
+    )
     natural = drive.natural_frequencies / drive.scales.natural_frequency
     met = (natural[:, None] / np.arange(1, count + 1)).ravel()
     near = (met[:, None] * (1.0 + 0.01 * np.arange(-4, 5))).ravel()
@@ -261,11 +265,13 @@ def linear_heights(drive: PairDrive, low: float, high: float) -> tuple[Array, Ar
         nu = j * at[:, None, None]
         mesh = osc.mesh_stiffness.mean + 1j * nu * osc.mesh_damping
         whole = stiffness + 1j * nu * damping - nu**2 * mass + mesh * np.outer(g, g)
-        answer = np.linalg.solve(
-            whole, np.broadcast_to(g.astype(np.complex128), (len(at), len(g)))[..., None]
-        )
-        force = swing[j - 1] + np.abs(mesh[:, 0, 0]) * error[j - 1]
-        parts = np.abs((push + 1j * nu * drag) @ answer)[..., 0]
-        own = np.abs(1.0 - mesh[:, 0, 0] * (answer[..., 0] @ g)) * force / abs(drive.mean_force or 1.0)
-        heights += np.column_stack([own, parts * force[:, None]])
+        at_mesh = g, 1.0, swing[j - 1] + np.abs(mesh[:, 0, 0]) * error[j - 1]
+        travelling = [(along, 0.0, np.full(len(at), pushed[j - 1])) for along in moved if pushed[j - 1]]
+        for direction, direct, force in (at_mesh, *travelling):
+            answer = np.linalg.solve(
+                whole, np.broadcast_to(direction.astype(np.complex128), (len(at), len(g)))[..., None]
+            )
+            parts = np.abs((push + 1j * nu * drag) @ answer)[..., 0]
+            own = np.abs(direct - mesh[:, 0, 0] * (answer[..., 0] @ g)) * force / abs(drive.mean_force or 1.0)
+            heights += np.column_stack([own, parts * force[:, None]])
     return at, heights

@@ -199,7 +199,7 @@ def over_revolution(motion: PairOscillator | PairDrive, error: ErrorSeries) -> P
     together[meshes - 1 : meshes * len(mesh) : meshes] += mesh
     together[: error.order] += error.amplitude / motion.scales.length * np.exp(1j * error.phase)
     series = dynamics.FourierStiffness(stiffness.mean, tuple(amplitudes.tolist()), tuple(phases.tolist()))
-    changed: Any = own.with_contact_stiffness(series)
+    changed: Any = _over_meshes(own.with_contact_stiffness(series), meshes, most)
     oscillator: PeriodicOscillator = replace(
         changed,
         frequency=own.frequency / meshes,
@@ -207,6 +207,17 @@ def over_revolution(motion: PairOscillator | PairDrive, error: ErrorSeries) -> P
         error_phase=tuple(np.angle(together).tolist()),
     )
     return oscillator
+
+
+def _over_meshes(oscillator: PeriodicOscillator, meshes: int, most: int) -> PeriodicOscillator:
+    """Oscillator whose periodic force, if it has one, repeats every mesh of a period of several."""
+    if not isinstance(oscillator, dynamics.DriveOscillator) or oscillator.force_direction is None:
+        return oscillator
+    kept = oscillator.force_series[:, :most]
+    spread = np.zeros((2, meshes * kept.shape[1]))
+    spread[:, meshes - 1 :: meshes] = kept
+    size, turn = (tuple(each.tolist()) for each in spread)
+    return replace(oscillator, force_amplitude=size, force_phase=turn)
 
 
 def mesh_spectrum(

@@ -92,6 +92,12 @@ def test_both_are_means_over_the_cycle(found):
     assert given["load_centre"] == mean[1, 0] / mean[0, 0]
     assert given["tilt_stiffness"] == mean[1, 1] - mean[1, 0] ** 2 / mean[0, 0]
     assert given["mesh_matrix"] is matrix
+    load = found.face.line_load
+    place = (load * found.face.face_position).sum(axis=(1, 2)) / load.sum(axis=(1, 2))
+    angle = 2.0 * np.pi * np.outer(found.position, np.arange(1, 4))
+    rest = place - place.mean() - np.real(np.exp(1j * angle) @ given["travel"].harmonics)
+    assert rest[1:] == pytest.approx(-rest[:-1], abs=1e-9 * np.ptp(place))  # the fourth of eight positions
+    assert np.max(np.abs(rest)) < 0.2 * np.ptp(place)  # jumps as pairs come and go
     assert tilting_mesh(None) == {}
     assert 1e-3 < abs(given["load_centre"]) < 0.5 * PAIR.face_width
 
