@@ -43,10 +43,10 @@ def step_through(
     The linear part moves exactly, z = A z + `loaded`[step], the row i of A with the entries `over`[i] in `columns`[i],
     and `loaded` what forces add in each step; the mesh pushes it along `pushed` before and after each step by half of
     what it does in one. `reads`: displacement and speed of the mesh of a state. `figures`: lowest depth and spacing of
-    the grid, half the backlash, 1 if the back flanks can touch, what a force changes of the speed in half a step, damping
-    of the mesh in contact, and how much less it is without. `places`, (steps + 1, 2): rows of the grid for front and
-    back flanks; `errors`, (steps + 1,): error of the angle; `rates`, (steps, 2): the rate that the damper feels, before
-    and after a step.
+    the grid, half the backlash, 1 if the back flanks can touch, what a force changes of the speed in half a step,
+    damping of the mesh in contact, and how much less it is without. `places`, (steps + 1, 2): rows of the grid for
+    front and back flanks; `errors`, (steps + 1,): error of the angle; `rates`, (steps, 2): the rate that the damper
+    feels, before and after a step.
     """
     lowest, spacing, half_backlash, back, push, damping, freed = figures
     size, steps, entries = len(state), len(rates), over.shape[1]

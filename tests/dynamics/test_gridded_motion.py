@@ -10,7 +10,7 @@ import pytest
 import dynamics
 from dynamics.flow.motions import trajectory
 from dynamics.flow.samples import mesh_force
-from dynamics.motion import gridded_motion
+from dynamics.motion import free_motion, gridded_motion
 from dynamics.motion.gridded_motion import GriddedContact, gridded_motions, unsettled
 from dynamics.motion.sweeps import sweep
 
@@ -59,9 +59,9 @@ def test_modes_that_coincide_are_left_alone():
     """A mass without spring or damper moves on evenly: a matrix without a whole set of modes."""
     matrix = np.zeros((4, 4))
     matrix[0, 2] = matrix[1, 3] = 1.0
-    assert gridded_motion.modes_of(matrix) is None
+    assert free_motion.modes_of(matrix) is None
     matrix[2, 0], matrix[3, 1] = -1.0, -4.0
-    modes = gridded_motion.modes_of(matrix)
+    modes = free_motion.modes_of(matrix)
     over, columns = modes.step(0.3)
     dense = np.zeros((4, 4))
     np.put_along_axis(dense, columns, over, axis=1)
