@@ -57,3 +57,18 @@ def test_modules_that_a_command_runs_beside_itself_look_rarely(tmp_path):
         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *filter(None, sys.path)])},
     )
     assert done.stdout.strip() == str(RARELY)
+
+
+AT_THE_END = """
+from flankfilm.processes.garbage import collect_rarely
+collect_rarely()
+class Ring:
+    def __init__(self): self.next = self
+    def __del__(self): print("looked at")
+kept = Ring()
+"""
+
+
+def test_nothing_is_looked_at_when_the_process_ends():
+    done = subprocess.run(python("-c", AT_THE_END), capture_output=True, text=True, check=True)
+    assert done.stdout == ""
