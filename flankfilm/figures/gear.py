@@ -60,8 +60,8 @@ def gears_in_mesh(results: xr.Dataset, *, style: Style | None = None) -> Figure:
                 "linestyle": "-",
                 "linewidth": 0.7,
             }
-            whole.fill(*shape.values.T, **look)
-            close.fill(*_nearby(shape.values, middle, reach).T, **look)
+            _fill(whole, shape.values, **look)
+            _fill(close, _nearby(shape.values, middle, reach), **look)
         turn = np.linspace(0, 2 * np.pi, 181)
         around = np.column_stack([np.cos(turn), np.sin(turn)])
         roots, rims, webs, width = (read(results, name).values for name in BODY[1:])
@@ -77,6 +77,15 @@ def gears_in_mesh(results: xr.Dataset, *, style: Style | None = None) -> Figure:
             axes.set(ylabel=shape.named("y"))
         close.set(xlabel=shape.named("x"))
     return drawn
+
+
+def _fill(axes: Axes, outline: Array, **look: Any) -> None:
+    """Fill a closed outline; ``Axes.fill`` seeks limits among its sides one by one, as if they were curved."""
+    from matplotlib.patches import Polygon
+
+    axes.add_artist(Polygon(outline, closed=True, **look))
+    axes.update_datalim(outline)
+    axes.autoscale_view()
 
 
 def _path(axes: Axes, results: xr.Dataset) -> tuple[Array, float]:
@@ -188,6 +197,8 @@ def tooth_stress(results: xr.Dataset, *, style: Style | None = None) -> Figure:
         painted = axes.tripcolor(
             Triangulation(x, y, cells), stress.values, shading="gouraud", vmin=0.0, vmax=top, rasterized=True
         )
+        # it ends at the panel's edge, and its limits take half the time of the picture
+        painted.set_in_layout(False)
         drawn.colorbar(painted, ax=axes, label=stress.label, extend="max")
         axes.set_aspect("equal")
         axes.grid(visible=False)

@@ -5,6 +5,7 @@ Those of the report's run are tried in `test_report`, which refuses a function t
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -16,6 +17,7 @@ from base import InputError
 from flankfilm import coupling, figures
 from flankfilm.figures.reading import drawable
 from flankfilm.figures.records import dataset, function
+from flankfilm.figures.style import THEME, sheet, to_svg
 from flankfilm.figures.views import OF_PRODUCT, PICTURES, register
 from flankfilm.products.catalogue import PRODUCTS
 from flankfilm.products.product import Product
@@ -215,3 +217,19 @@ def test_a_given_series_has_no_samples_and_may_be_over_its_mean():
     assert left.get_ylabel() == "stiffness [-]"
     assert left.lines[0].get_ydata().max() == pytest.approx(1.2)
     assert [bar.get_height() for bar in right.patches] == pytest.approx([0.2])
+
+
+def test_ids_of_an_inline_drawing_begin_with_its_name_and_its_colours_follow_the_page():
+    with sheet() as (drawn, (axes,)):
+        axes.plot([0.0, 1.0], [0.0, 1.0], "o-", label="#0072b2:#0072b2")
+        axes.plot([0.0, 1.0], [1.0, 0.0], color="#123456")
+    text = to_svg(drawn, "own")
+    ids = set(re.findall(r'\bid="(.*?)"', text))
+    used = re.findall(r'(?:url\(|href=")#(.*?)[")]', text)
+    assert used
+    assert set(used) <= ids
+    assert all(name.startswith("own-") for name in ids)
+    assert f"stroke: var({THEME['#0072b2']},#0072b2)" in text
+    assert "stroke: #123456" in text
+    # not a colour alone: words that hold one
+    assert f">#0072b2:var({THEME['#0072b2']},#0072b2)<" in text
