@@ -47,10 +47,12 @@ class Drawing:
     function: str = ""
     redraw: Callable[[], str] | None = None
 
-    def drawn(self, helper: Assistant) -> Drawing:
-        """The figure, whose drawing for a phone waits in the queue of a helper."""
+    def drawn(self, helper: Assistant | None) -> Drawing:
+        """The figure, whose drawing for a phone waits in the queue of a helper, or is made at once without one."""
         if self.redraw is None:
             return self
+        if helper is None:
+            return replace(self, redraw=partial(str, self.redraw()))
         return replace(self, redraw=partial(helper.result, helper.submit(self.redraw)))
 
     @cached_property
@@ -151,8 +153,8 @@ class Part:
     unfolded: bool = False
     inset: str = ""
 
-    def drawn(self, helper: Assistant) -> Part:
-        """Have what is seen at once drawn for a phone too, by the helper or here; the rest has no other picture."""
+    def drawn(self, helper: Assistant | None) -> Part:
+        """Have what is seen at once drawn for a phone too, as `Drawing.drawn`; the rest has no other picture."""
         seen = (figure.drawn(helper) for figure in self.figures[: self.seen])
         return replace(self, figures=(*seen, *self.figures[self.seen :]))
 

@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flankfilm.output.variables import merged
 from flankfilm.plan.decisions import decisions
 from flankfilm.processes.assistant import Assistant
+from flankfilm.products import geometry
 from flankfilm.products.catalogue import PRODUCTS
 from flankfilm.report import pair_parts, run_parts
-from flankfilm.report.page import Fact, Head, Headline, Part, write_page
+from flankfilm.report.page import Drawing, Fact, Head, Headline, Part, write_page
 from flankfilm.report.text import counted, percent, seconds
 from flankfilm.runs.dataset import results_dataset
 from flankfilm.stages.computed import Computed
+from flankfilm.stages.mesh import PAIR
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from flankfilm.outcome.results import Results
     from flankfilm.scene import Scene
 
@@ -78,35 +83,65 @@ def _line(headline: Headline) -> str:
     return f"{headline.name}: {headline.with_unit}{note}"
 
 
-def sections(results: Results, helper: Assistant) -> tuple[Part, ...]:
-    """Parts of the report that show results, their pictures drawn: the longest work of a report.
+@dataclass(frozen=True)
+class Shown:
+    """What of a report shows results, its pictures drawn: the longest work of a report.
 
-    The helper draws those for phones meanwhile, where it has nothing else to do.
+    Attributes
+    ----------
+    head : Drawing or None
+        The pair in mesh.
+    parts : tuple of Part
+        In the order of the report.
     """
-    each = (product.sections(results.computed, results.dataset) for product in PRODUCTS)
-    return tuple(part.drawn(helper) for parts in each for part in parts)
+
+    head: Drawing | None
+    parts: tuple[Part, ...]
 
 
-def write_report(results: Results, folder: Path, shown: Sequence[Part] | None = None) -> Path:
+def draw_pair(computed: Computed) -> Shown:
+    """Draw what shows the geometry: it needs no other stages, and so can be drawn while these are computed."""
+    return _of_pair(computed, merged(geometry.PRODUCT.variables(computed), {}), None)
+
+
+def draw(results: Results, helper: Assistant, of_pair: Shown | None = None) -> Shown:
+    """Draw what shows results, but for what `draw_pair` has drawn.
+
+    The helper draws pictures for phones meanwhile, where it has nothing else to do.
+    """
+    computed, data = results.computed, results.dataset
+    first = of_pair or _of_pair(computed, data, helper)
+    rest = (product.sections(computed, data) for product in PRODUCTS if product is not geometry.PRODUCT)
+    return Shown(first.head, (*first.parts, *(part.drawn(helper) for parts in rest for part in parts)))
+
+
+def _of_pair(computed: Computed, data: xr.Dataset, helper: Assistant | None) -> Shown:
+    """Draw what shows the geometry; nothing without a pair."""
+    parts = geometry.PRODUCT.sections(computed, data)
+    head = None if computed.get(PAIR) is None else pair_parts.drawing(data)
+    return Shown(head, tuple(part.drawn(helper) for part in parts))
+
+
+def write_report(results: Results, folder: Path, shown: Shown | None = None) -> Path:
     """Write ``report.html`` into a folder and return its path.
 
     Parameters
     ----------
     results : Results
     folder : Path
-    shown : sequence of Part, optional
-        Of `sections`, where they are at hand.
+    shown : Shown, optional
+        Of `draw`, where it is at hand.
     """
     scene, warned = results.scene, run_parts.warnings(results, misses(results.computed))
+    shown = shown or draw(results, Assistant())
     parts = [
         *run_parts.failures(results),
-        *(sections(results, Assistant()) if shown is None else shown),
+        *shown.parts,
         run_parts.costs(results, [_work(name, results) for name in results.runs]),
         *run_parts.decisions(results, warned),
         run_parts.inputs(_asked(scene), results.dataset.attrs["versions_json"]),
     ]
-    drawing = None if results.values.get("pair") is None else pair_parts.drawing(results.dataset)
-    head = Head(scene.title or "flankfilm", _facts(results), headlines(results.computed), warned, drawing)
+    head = Head(scene.title or "flankfilm", _facts(results), headlines(results.computed), warned, shown.head)
     return write_page(folder, head, parts)
 
 

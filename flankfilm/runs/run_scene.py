@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -14,13 +14,13 @@ from flankfilm.files.cache import results_cache
 from flankfilm.files.folder import occupied, unfinished
 from flankfilm.outcome.outcome import Outcome, concluded
 from flankfilm.outcome.results import Results
-from flankfilm.output.files import write_results
-from flankfilm.processes.assistant import Assistant, assistant
+from flankfilm.processes.assistant import Assistant, Task, assistant
 from flankfilm.processes.exit_status import PART_FAILED
 from flankfilm.processes.progress import Progress, silent
 from flankfilm.products.fields import in_space
+from flankfilm.runs.ahead import Ahead
 from flankfilm.runs.begin import begin
-from flankfilm.runs.dataset import not_computed, results_dataset, results_tables, write_data
+from flankfilm.runs.dataset import not_computed, results_dataset, write_data
 from flankfilm.scene import Scene
 from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine
@@ -31,7 +31,7 @@ from flankfilm.stages.vtk import FieldFiles, begin_fields
 if TYPE_CHECKING:
     import xarray as xr
 
-    from flankfilm.report.page import Part
+    from flankfilm.runs.report import Shown
 
 OF_FIELDS = (
     "fem.fields.vtk",
@@ -42,7 +42,7 @@ OF_FIELDS = (
     "scipy.interpolate",
 )
 
-LOADED = (*OF_FIELDS, "xarray", "matplotlib.backends.backend_svg")
+LOADED = (*OF_FIELDS, "flankfilm.runs.report", "matplotlib.backends.backend_svg")
 """What an assistant loads while the scene is computed, also what fields load where they first need it. Fields for
 ParaView alone are worth a process."""
 
@@ -66,6 +66,8 @@ class RunOutcome(Outcome[Results]):
         With which files are written beside each other.
     fields : FieldFiles or None
         Files for ParaView that are begun.
+    of_pair : Task or None
+        Draws what shows the geometry, where that is begun.
     """
 
     data = "results.nc"
@@ -76,6 +78,7 @@ class RunOutcome(Outcome[Results]):
     progress: Progress = field(kw_only=True)
     helper: Assistant = field(kw_only=True)
     fields: FieldFiles | None = field(kw_only=True, default=None)
+    of_pair: Task[Shown] | None = field(kw_only=True, default=None)
 
     @property
     def dataset(self) -> xr.Dataset:
@@ -103,8 +106,8 @@ class RunOutcome(Outcome[Results]):
         """Write the data, and a table for each curve."""
         return write_data(folder, self.dataset)
 
-    def page(self, folder: Path, shown: Sequence[Part] | None = None) -> Path:
-        """Write the report, of sections that are drawn already where they are given."""
+    def page(self, folder: Path, shown: Shown | None = None) -> Path:
+        """Write the report, of what is drawn already where that is given."""
         from flankfilm.runs.report import write_report
 
         return write_report(self.result, folder, shown)
@@ -113,18 +116,19 @@ class RunOutcome(Outcome[Results]):
         """Write all that the scene wants; fields that cannot be written are a part that failed, which the data say.
 
         The assistant began with the fields, and goes on with the data and pictures for phones, while the report's
-        pictures are drawn here. It gets the tables with the data: products make them, which it has not loaded.
+        pictures are drawn here.
         """
         results, engine, began, wants = self.result, self.engine, time.perf_counter(), self.result.scene.wants
         fields = self._begun(folder) if "vtk" in wants else None
-        data = self.helper.submit(write_results, folder, self.dataset, results_tables(self.dataset))
-        shown = self._drawn() if "report" in wants else ()
+        data = self.helper.submit(write_data, folder, self.dataset)
+        shown = self._drawn() if "report" in wants else None
         self.progress("netCDF and CSV files", 1, 1)
         files = engine.timed("data files", "netCDF and CSV files", lambda: self.helper.result(data))
         if fields is not None:
             files += self._fields(fields, folder)
-            if "report" in wants and len(engine.failures) == len(results.failures):
-                shown = (*shown, *in_space(fields.surfaces(self.helper), self.dataset))
+            if shown is not None and len(engine.failures) == len(results.failures):
+                turning = in_space(fields.surfaces(self.helper), self.dataset)
+                shown = replace(shown, parts=(*shown.parts, *turning))
         if len(engine.failures) > len(results.failures):
             results = replace(results, failures=tuple(engine.failures.values()))
             results = replace(results, dataset=results.dataset.assign_attrs(not_computed(results.failures)))
@@ -133,16 +137,17 @@ class RunOutcome(Outcome[Results]):
         outcome = replace(
             self, result=replace(results, folder=folder, files=tuple(files), seconds=seconds), folder=folder
         )
-        if "report" in wants:
+        if shown is not None:
             files.append(outcome.page(folder, shown))
         return replace(outcome, files=tuple(files))
 
-    def _drawn(self) -> tuple[Part, ...]:
+    def _drawn(self) -> Shown:
         """Sections of the report with their pictures."""
-        from flankfilm.runs.report import sections
+        from flankfilm.runs.report import draw
 
         self.progress("writing the report", 1, 1)
-        return sections(self.result, self.helper)
+        of_pair = None if self.of_pair is None else self.helper.result(self.of_pair)
+        return draw(self.result, self.helper, of_pair)
 
     def _begun(self, folder: Path) -> FieldFiles | None:
         """Begin with the files for ParaView; None where fields failed, which the engine notes."""
@@ -226,16 +231,17 @@ def _computed(
     computed: Callable[[Computed], None] | None,
 ) -> RunOutcome:
     """Results without files, but for those that the helper writes meanwhile into a folder beside the run's."""
-    start, fields = time.perf_counter(), None
+    start = time.perf_counter()
     engine, wanted = begin(scene, results_cache(use_cache), progress)
+    ahead = None
+    if FIELDS in wanted and beside is not None and helper.there:
+        ahead = Ahead(engine, helper, beside)
+        engine.on_end = ahead.ended
+        # the helper computes them meanwhile
+        wanted = (*(stage for stage in wanted if stage is not FIELDS), FIELDS)
     for stage in wanted:
-        if stage is FIELDS and beside is not None and helper.there:
-            with suppress(InputError, SolverError):  # what the stage needs as well, and so the engine keeps
-                fields = begin_fields(beside, engine, helper, "report" in scene.wants)
         with suppress(InputError, SolverError):  # the engine keeps it, and the other stages go on
             engine[stage]
-    if FIELDS.name in engine.failures:
-        fields = None
     failures = tuple(engine.failures.values())
     asked = {stage.name for stage in wanted} - PREPARATIONS
     if failures and asked <= set(engine.failures):
@@ -247,4 +253,8 @@ def _computed(
         computed(stages)
     dataset, seconds = results_dataset(stages), time.perf_counter() - start
     results = Results(scene, None, stages.values, stages.runs, (), seconds, dataset, failures=failures)
-    return RunOutcome(results, engine=engine, progress=progress, helper=helper, fields=fields)
+    outcome = RunOutcome(results, engine=engine, progress=progress, helper=helper)
+    if ahead is None:
+        return outcome
+    fields = None if FIELDS.name in engine.failures else ahead.fields
+    return replace(outcome, fields=fields, of_pair=ahead.of_pair)

@@ -156,15 +156,20 @@ class KeptPart:
 
 @dataclass
 class Engine:
-    """Holds the results of one run; the only thing here that changes."""
+    """Holds the results of one run; the only thing here that changes.
+
+    `on_start` is called with each stage before it is computed, `on_end` when its result is there.
+    """
 
     scene: Scene
     cache: Cache
     on_start: Callable[[Stage[Any]], None] = lambda stage: None
+    on_end: Callable[[Stage[Any]], None] = lambda stage: None
     runs: dict[str, StageRun] = field(default_factory=dict)
     failures: dict[str, Failure] = field(default_factory=dict)
     progress: Progress = silent
     _values: dict[str, Any] = field(default_factory=dict)
+    _promised: dict[str, Callable[[], Any]] = field(default_factory=dict)
     _elsewhere: list[float] = field(default_factory=list)
     _parts: list[KeptPart] = field(default_factory=list)
 
@@ -175,6 +180,7 @@ class Engine:
         if stage.name not in self._values:
             with self._noting(stage.name, stage.title):
                 self._values[stage.name] = self._obtain(stage)
+            self.on_end(stage)
         stage_result: T = self._values[stage.name]
         return stage_result
 
@@ -183,6 +189,10 @@ class Engine:
         # apart: a setting may be called like a section, as the film's tolerance and [film] are
         own = {"keys": stage.inputs(self.scene), "decided": stage.settings(self)}
         return {stage.name: own, **{need.name: self.inputs(need) for need in stage.needs}}
+
+    def promise(self, stage: Stage[T], result: Callable[[], T]) -> None:
+        """Have the result of a stage that somebody else computes taken from there when it is asked for."""
+        self._promised[stage.name] = result
 
     def results(self) -> dict[str, Any]:
         """Results that have been asked for so far, by the names of their stages."""
@@ -244,7 +254,8 @@ class Engine:
             self.on_start(stage)
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            value = stage.compute(self)
+            promised = self._promised.get(stage.name)
+            value = stage.compute(self) if promised is None else promised()
         computed = value, tuple(str(warning.message) for warning in distinct(caught))
         if whole_kept:
             self.cache.put(key, computed)

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from flankfilm import coupling
 from flankfilm.processes.assistant import Assistant, Task
 from flankfilm.processes.progress import Progress, silent
 from flankfilm.stages.engine import Engine
-from flankfilm.stages.mesh import COMPLIANCE, PAIR, loaded_contact
+from flankfilm.stages.mesh import COMPLIANCE, FIELDS, PAIR, loaded_contact
 
 if TYPE_CHECKING:
+    import fem
     from fem.cycle.result import MeshCycle
     from fem.fields.surface_frames import SurfaceFrame, Surfaces
     from fem.fields.vtk import Frames
@@ -99,17 +102,26 @@ class FieldFiles:
         return parts[0].surfaces, dict(zip(places, frames, strict=True))
 
 
+def factorise(bodies: fem.PairCompliance) -> None:
+    """Factorise both gears of a pair, before there are forces: fields find them in the process."""
+    bodies.rings()
+
+
 def begin_fields(folder: Path, run: Engine, helper: Assistant, surfaces: bool = False) -> FieldFiles:
     """Give the mesh cycle to be written for ParaView, in parts that two processes can share.
 
-    Solids of gears over the face are factorised for all rows, so that one process writes them. With `surfaces` the
-    teeth are kept for a page besides.
+    Fields at the pitch point, where the scene has them, are computed beside them: the engine waits for them when they
+    are asked for. Solids of gears over the face are factorised for all rows, so that one process writes them. With
+    `surfaces` the teeth are kept for a page besides.
     """
     from fem.fields.vtk import write_frames
 
     pair, cycle, bodies = run[PAIR], loaded_contact(run), run[COMPLIANCE]
     rows = even_rows(len(cycle.position))
     plane = cycle.face is None and cycle.lines is None
+    if plane and FIELDS.name not in run.results():
+        at_pitch_point = helper.submit(coupling.pitch_point_fields, pair, cycle, bodies)
+        run.promise(FIELDS, partial(helper.result, at_pitch_point))
     size = PART if plane else len(rows)
     parts = [rows[start : start + size] for start in range(0, len(rows), size)]
     tasks = tuple(

@@ -131,7 +131,7 @@ def test_fields_that_cannot_be_written_leave_the_rest(tmp_path, monkeypatch):
 
 
 def test_fields_are_begun_before_their_stage_and_not_written_where_it_fails(tmp_path, monkeypatch):
-    from flankfilm.runs import begin
+    from flankfilm.runs import ahead, begin
     from flankfilm.runs import run_scene as running
 
     order = []
@@ -145,15 +145,17 @@ def test_fields_are_begun_before_their_stage_and_not_written_where_it_fails(tmp_
         return SimpleNamespace(written=lambda *_: pytest.fail("fields of a stage that failed"))
 
     fields = Stage(FIELDS.name, FIELDS.title, fail, lambda scene: {})
+    mesh = Stage("some mesh", "some mesh", lambda run: order.append("mesh"), lambda scene: {})
     monkeypatch.setattr(running, "FIELDS", fields)
-    monkeypatch.setattr(running, "begin_fields", begin_fields)
+    monkeypatch.setattr(ahead, "MESH", mesh)
+    monkeypatch.setattr(ahead, "begin_fields", begin_fields)
     monkeypatch.setattr(running, "assistant", lambda _: nullcontext(Assistant()))
     monkeypatch.setattr(Assistant, "there", True)
-    monkeypatch.setattr(begin, "goals", lambda _: (PAIR, fields))
+    monkeypatch.setattr(begin, "goals", lambda _: (PAIR, fields, mesh))
     text = ISHIKAWA.replace("[WANTS]", '["geometry", "vtk"]')
     scene = parse_scene(text.replace('"ishikawa"', '"fem"').replace('"independent"', '"coupled"'))
     found = run_scene(scene, tmp_path, use_cache=False)
-    assert order == ["files", "stage"]
+    assert order == ["mesh", "files", "stage"]
     assert [one.title for one in found.failures] == [FIELDS.title]
 
 
