@@ -191,7 +191,10 @@ class Engine:
         return {stage.name: own, **{need.name: self.inputs(need) for need in stage.needs}}
 
     def promise(self, stage: Stage[T], result: Callable[[], T]) -> None:
-        """Have the result of a stage that somebody else computes taken from there when it is asked for."""
+        """Have a result that somebody else computes taken from there when its stage is asked for.
+
+        The time of the stage is that of waiting for it.
+        """
         self._promised[stage.name] = result
 
     def results(self) -> dict[str, Any]:
