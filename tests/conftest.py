@@ -83,6 +83,6 @@ def no_gear_solved(monkeypatch: pytest.MonkeyPatch) -> None:
     """A memory of gears for this test alone: it finds none of those that others solved, and leaves them theirs."""
     from fem.influence import gear_store
 
-    for name in ("_RECORDS", "_SIZED", "_RINGS", "_FACES"):
+    for name in ("_RECORDS", "_SIZED", "_RINGS", "_FACES", "_DRAWINGS"):
         memory = getattr(gear_store, name)
         monkeypatch.setattr(gear_store, name, type(memory)(memory.most))

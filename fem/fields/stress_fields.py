@@ -8,6 +8,7 @@ too, and on free edges follow from the tangential strain (``fem.elasticity.recov
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +28,7 @@ from fem.fields.drawing import DrawnSector, GearDrawing, gear_drawing
 from fem.fields.loaded_gears import frames
 from fem.fields.near_field import Contact
 from fem.fields.turn import Turn
+from fem.influence.gear_store import GearStore
 from fem.pair.compliance import compliance as _compliance
 from fem.pair.pair_compliance import PairCompliance
 
@@ -116,10 +118,14 @@ def draw_gears(
         Other ones.
     """
     if refinements is None or refinements == compliance.refinements:
-        pinion, wheel = compliance.rings()
-    else:
-        profiles = held_profiles(pair, compliance.supports)
-        pinion, wheel = mesh_and_factor(pair, compliance.plane, compliance.sizes, refinements, profiles)
+        # parts of a series come with copies of the pair: what draws its gears is found again
+        first, second = (
+            GearStore().drawing((meshed, compliance.pair.module, ring.law), partial(gear_drawing, ring))
+            for meshed, ring in zip(compliance.meshed, compliance.rings(), strict=True)
+        )
+        return first, second
+    profiles = held_profiles(pair, compliance.supports)
+    pinion, wheel = mesh_and_factor(pair, compliance.plane, compliance.sizes, refinements, profiles)
     return gear_drawing(pinion), gear_drawing(wheel)
 
 

@@ -36,6 +36,7 @@ _RECORDS: Memo[Any] = Memo(MOST_RECORDS)
 _SIZED: Memo[Any] = Memo(MOST_RECORDS)
 _RINGS: Memo[Mapping[MeshLevel, Ring]] = Memo(MOST_RINGS)
 _FACES: Memo[Any] = Memo(MOST_FACES)
+_DRAWINGS: Memo[Any] = Memo(MOST_RINGS)
 
 
 def forget_gears() -> None:
@@ -50,6 +51,7 @@ def forget_gears() -> None:
     _SIZED.clear()
     _RINGS.clear()
     _FACES.clear()
+    _DRAWINGS.clear()
 
 
 class ResultStore(Protocol):
@@ -178,6 +180,11 @@ class GearStore:
         """Give what gears do between cells of a face: large, and kept for the few that were used last."""
         influence: T = _FACES.obtain((name, key), compute)
         return influence
+
+    def drawing(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
+        """Give what draws a gear in its size: as large as its factors, and kept like them."""
+        drawn: T = _DRAWINGS.obtain(key, compute)
+        return drawn
 
     def _rings(self, meshed: MeshedShape) -> Mapping[MeshLevel, Ring]:
         from meshes import mesh_sector

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import pickle
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import meshio
 import numpy as np
@@ -377,3 +379,18 @@ def test_flanks_are_drawn_round(article_pair):
     middle = ends[on_flank].mean(axis=1)
     assert len(middle) > 20
     assert off_flank(middle).max() < 1e-3 * article_pair.module
+
+
+@pytest.mark.usefixtures("no_gear_solved")
+def test_gears_are_made_ready_once_for_copies_of_a_pair_and_anew_for_another_material(
+    article_pair, article_bodies
+):
+    first = draw_gears(article_pair, article_bodies)
+    again = draw_gears(article_pair, pickle.loads(pickle.dumps(article_bodies)))
+    assert all(one is other for one, other in zip(first, again, strict=True))
+    steel = article_pair.materials[0]
+    stiffer = replace(article_pair, material=replace(steel, youngs_modulus=2 * steel.youngs_modulus))
+    own = draw_gears(stiffer, fem.compliance(stiffer))
+    for one, other in zip(own, first, strict=True):
+        size = float(np.abs(one.stress_by_cut).max())
+        np.testing.assert_allclose(one.stress_by_cut, 2 * other.stress_by_cut, atol=1e-9 * size)
