@@ -278,6 +278,10 @@ class MeshCycle(PairFigures, MeshFigures):
         except SolverError as error:
             return str(error)
 
+    def without_arcs(self) -> MeshCycle:
+        """The positions alone, for what asks for no errors: a copy to send, for which nothing more is solved."""
+        return replace(self, problem=None, origin=None, known_arcs=None)
+
     def __getstate__(self) -> dict[str, Any]:
         """Take the arcs along instead of what they are found from."""
         state = {field.name: getattr(self, field.name) for field in fields(self)}

@@ -119,13 +119,15 @@ def begin_fields(folder: Path, run: Engine, helper: Assistant, surfaces: bool = 
     pair, cycle, bodies = run[PAIR], loaded_contact(run), run[COMPLIANCE]
     rows = even_rows(len(cycle.position))
     plane = cycle.face is None and cycle.lines is None
+    # with its arcs, what their errors are compared with would be solved before the helper can begin
+    sent = cycle.without_arcs()
     if plane and FIELDS.name not in run.results():
-        at_pitch_point = helper.submit(coupling.pitch_point_fields, pair, cycle, bodies)
+        at_pitch_point = helper.submit(coupling.pitch_point_fields, pair, sent, bodies)
         run.promise(FIELDS, partial(helper.result, at_pitch_point))
     size = PART if plane else len(rows)
     parts = [rows[start : start + size] for start in range(0, len(rows), size)]
     tasks = tuple(
-        helper.submit(write_frames, folder, pair, cycle, bodies, part, None, surfaces) for part in parts
+        helper.submit(write_frames, folder, pair, sent, bodies, part, None, surfaces) for part in parts
     )
     return FieldFiles(folder, pair, cycle, rows, tasks)
 

@@ -394,3 +394,17 @@ def test_gears_are_made_ready_once_for_copies_of_a_pair_and_anew_for_another_mat
     for one, other in zip(own, first, strict=True):
         size = float(np.abs(one.stress_by_cut).max())
         np.testing.assert_allclose(one.stress_by_cut, 2 * other.stress_by_cut, atol=1e-9 * size)
+
+
+def test_positions_alone_are_sent_without_solving_more_and_have_the_same_fields(article_pair, article_bodies):
+    cycle = fem.mesh_cycle(article_pair, 600.0, 4, article_bodies, beyond_path=False)
+    assert cycle.arcs is not None
+    sent = pickle.loads(pickle.dumps(cycle.without_arcs()))
+    assert "value" not in vars(cycle.arcs.others)
+    assert sent.arcs is None
+    for one, other in zip(
+        loaded_fields(article_pair, cycle, 1, article_bodies),
+        loaded_fields(article_pair, sent, 1, article_bodies),
+        strict=True,
+    ):
+        np.testing.assert_array_equal(one.stress_Pa, other.stress_Pa)
