@@ -102,16 +102,6 @@ def cell(value: object) -> object:
     )
 
 
-def write_results(folder: Path, dataset: xr.Dataset, tables: Mapping[str, Mapping[str, Any]]) -> list[Path]:
-    """Write ``results.nc`` and a CSV file for each table; return what was written."""
-    write_netcdf(folder / "results.nc", dataset)
-    files = [folder / "results.nc"]
-    for name, table in tables.items():
-        files.append(folder / "csv" / f"{name}.csv")
-        write_csv(files[-1], table)
-    return files
-
-
 def write_text(path: Path, text: str) -> None:
     """Replace the file `path` by `text` in UTF-8."""
     with replacing(path) as beside:

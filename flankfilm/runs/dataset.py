@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flankfilm.output.convergence import with_convergence
-from flankfilm.output.files import provenance, write_results
+from flankfilm.output.files import provenance, write_csv, write_netcdf
 from flankfilm.output.geometry import geometry_columns
 from flankfilm.output.tables import column_errors, columns, uncertainties
 from flankfilm.output.variables import joined, merged, with_tolerance
@@ -73,4 +73,9 @@ def results_tables(data: xr.Dataset) -> dict[str, dict[str, Any]]:
 
 def write_data(folder: Path, data: xr.Dataset) -> list[Path]:
     """Write ``results.nc`` and the CSV files; return what was written."""
-    return write_results(folder, data, results_tables(data))
+    write_netcdf(folder / "results.nc", data)
+    files = [folder / "results.nc"]
+    for name, table in results_tables(data).items():
+        files.append(folder / "csv" / f"{name}.csv")
+        write_csv(files[-1], table)
+    return files
