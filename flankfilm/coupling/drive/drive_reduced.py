@@ -84,13 +84,15 @@ def reduced_oscillator(
 ) -> dynamics.DriveOscillator:
     """The reduced train in the units of the scales; what turns freely meets neither stiffness nor damping.
 
-    Harmonics of the travelling load's moment [N m] press the pinion's flank back where the load is, as the mesh does.
+    Mean and harmonics of the travelling load's moment [N m] press the pinion's flank back where the load is, as the
+    mesh does.
     """
     scales, own = rigid.scales, rigid.oscillator
     assert scales is not None
     shapes, m, omega = reduction.shapes, scales.equivalent_mass, scales.omega_n
     mass, firm = (shapes.T @ (matrix @ shapes) for matrix in (train.mass, train.stiffness))
-    held = damping.of(shapes)
+    held, along = damping.of(shapes), -shapes.T @ train.tilt
+    moments = moments / (scales.mean_stiffness * scales.length)
     if not math.isinf(reduction.valid_to):
         for matrix in (firm, held):
             matrix[0, :] = matrix[:, 0] = 0.0
@@ -98,12 +100,12 @@ def reduced_oscillator(
         mass=0.5 * (mass + mass.T) / m, damping=0.5 * (held + held.T) / (m * omega),
         stiffness=0.5 * (firm + firm.T) / scales.mean_stiffness, direction=shapes.T @ train.direction,
         mesh_stiffness=own.stiffness, mesh_damping=2.0 * own.damping_ratio,
-        mean_force=own.mean_force * (shapes.T @ train.load), error_amplitude=own.error_amplitude,
+        mean_force=own.mean_force * (shapes.T @ train.load) + moments[0].real * along,
+        error_amplitude=own.error_amplitude,
         frequency=own.frequency, half_backlash=own.half_backlash, error_phase=own.error_phase,
         one_sided=own.one_sided,
-        free_mesh_damping=None if free_damping_ratio is None else 2.0 * own.damping_ratios[1], **_pushed(
-            moments / (scales.mean_stiffness * scales.length), -shapes.T @ train.tilt
-        ),
+        free_mesh_damping=None if free_damping_ratio is None else 2.0 * own.damping_ratios[1],
+        **_pushed(moments[1:], along),
     )  # fmt: skip
 
 

@@ -276,8 +276,8 @@ def pair_drive(
         The mesh between gears that tilt over its cycle (`tilting_mesh`), of which both are means: what its variation
         changes of the frequencies is `tilt_change`, beside that of the stiffness, which is in the series.
     travel : LoadTravel, optional
-        Place of the mesh force over its cycle (`tilting_mesh`), about the mean: its moment under the mean force drives
-        the tilt of both gears. What the place times the swing of the force adds is left out.
+        Place of the mesh force over its cycle (`tilting_mesh`): its moment about `load_centre` under the mean force
+        drives the tilt of both gears. What the place times the swing of the force adds is left out.
     fourier_order, tolerance
         As of `pair_oscillator`, by the pair on rigid shafts, within `speeds` where they are given.
 
@@ -332,8 +332,8 @@ def pair_drive(
     share = tolerance if rigid.series.share is None else rigid.series.share
     bounds = ends[0] / scales.omega_n, ends[1] / scales.omega_n
     travel = (travel or LoadTravel(())).kept(pair.face_width, share, bounds, damping_ratio)
-    moments = driving_moments(train, rigid.force, travel)
-    reduction = reduced_train(train, damping, mesh_excitation(rigid, moments), ends, reduction_tolerance)
+    moments = driving_moments(train, rigid.force, travel, load_centre)
+    reduction = reduced_train(train, damping, mesh_excitation(rigid, moments[1:]), ends, reduction_tolerance)
     if not math.isinf(reduction.valid_to):  # of the gears' mass: displacements of the size of the train's
         reduction = reduction._replace(shapes=reduction.shapes * math.sqrt(scales.equivalent_mass))
     oscillator = reduced_oscillator(rigid, train, damping, reduction, free_damping_ratio, moments)

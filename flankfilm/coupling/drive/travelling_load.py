@@ -1,9 +1,9 @@
 r"""The load that travels over the face: places of the mesh force over the mesh cycle, and the moment they make.
 
-A force F whose place moves by :math:`z_F(t) - \bar z` about its mean has the moment :math:`F (z_F - \bar z)` about that
-place. It tilts both gears against each other and drives their bearings, even where stiffness and transmission error
-stand still. The force of this moment is the mean one: what the place times the swing of the force adds is left out, and
-so is that no moment acts while contact is lost.
+A force F whose place is at :math:`z_F(t)` has the moment :math:`F (z_F - z)` about the place z at which a train has it,
+that of slopes. It tilts both gears against each other and drives their bearings, even where stiffness and transmission
+error stand still. The force of this moment is the mean one: what the place times the swing of the force adds is left
+out, and so is that no moment acts while contact is lost.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ class LoadTravel:
         of the stiffness' series.
     error : float, optional
         Estimated error of the place, root mean square over the cycle [m]; None where it is unknown.
+    mean : float, optional
+        Mean place from mid-face [m]; that of the train if left out.
 
     Raises
     ------
@@ -49,6 +51,7 @@ class LoadTravel:
 
     harmonics: npt.ArrayLike
     error: float | None = None
+    mean: float | None = None
 
     def __post_init__(self) -> None:
         """Check and convert."""
@@ -99,8 +102,11 @@ class LoadTravel:
         return replace(self, harmonics=values[:order], error=error)
 
 
-def driving_moments(train: Train, force: float, travel: LoadTravel) -> Array:
-    """Complex harmonics of the moment that drives the tilt of a train [N m]; none where nothing tilts.
+def driving_moments(train: Train, force: float, travel: LoadTravel, centre: float) -> Array:
+    r"""Mean and complex harmonics of the moment on the tilt of a train [N m]; all 0 where nothing tilts.
+
+    The mean :math:`m_0` and what :math:`k_\psi` resists of the train's static tilt are together
+    :math:`F (\bar z_F - z)`.
 
     Parameters
     ----------
@@ -108,9 +114,17 @@ def driving_moments(train: Train, force: float, travel: LoadTravel) -> Array:
     force : float
         Mean one of the mesh [N].
     travel : LoadTravel
+    centre : float
+        Place z of the mesh force of the train from mid-face [m].
     """
     values = np.asarray(travel.harmonics)
-    return force * train.tilting_gain * values if train.tilt.any() and values.any() else np.zeros(0)
+    if not train.tilt.any():
+        return np.zeros(1)
+    mean = 0.0
+    if travel.mean is not None:
+        tilted = float(train.tilt @ train.held().solve(train.load))
+        mean = travel.mean - centre - train.tilt_stiffness * tilted
+    return force * train.tilting_gain * np.append(mean, values)
 
 
 def load_travel(cycle: MeshCycle) -> LoadTravel | None:
@@ -124,10 +138,14 @@ def load_travel(cycle: MeshCycle) -> LoadTravel | None:
         # forces at tip edges and on relief along the line of action, as large as the torque about the pinion makes them
         force = lines.force * np.nan_to_num(lines.levers[0])
         place = np.nan_to_num(lines.z + (lines.rho[0] - lines.pair.points.C) * lines.slope)
-        return LoadTravel(_harmonics(cycle.position, _centre(force, place)), lines.centre_error)
+        return _travel(cycle.position, _centre(force, place), lines.centre_error)
     if cycle.face is not None:
-        return LoadTravel(_harmonics(cycle.position, _centre(cycle.face.line_load, cycle.face.face_position)))
+        return _travel(cycle.position, _centre(cycle.face.line_load, cycle.face.face_position), None)
     return None
+
+
+def _travel(position: Array, centre: Array, error: float | None) -> LoadTravel:
+    return LoadTravel(_harmonics(position, centre), error, float(centre.mean()))
 
 
 def _centre(force: Array, place: Array) -> Array:

@@ -132,6 +132,22 @@ def test_slow_bearings_carry_what_statics_gives(angle, thick):
     assert np.max(np.abs(found[:, torques]), initial=0.0) < 1e-7 * TORQUE
 
 
+@pytest.mark.parametrize("angle", [0.0, 20.0])
+@pytest.mark.parametrize("tilt", [0.0, TILT])
+def test_mean_loads_of_bearings_are_those_of_the_mean_place(angle, tilt):
+    """Whatever resists tilt, and wherever slopes place the force."""
+    at, pair, shafts = 7e-3, helical(angle), on_shafts(0.03, STEEL)
+    given = {"tilt_stiffness": tilt, "travel": LoadTravel(PLACES, mean=at), "damping_ratio": 1e-6}
+    drive = train(pair, shafts, shaft_damping_ratio=0.0, **given)
+    found, force = balanced(drive, 1e-2)[0].real, drive.rigid.force
+    for i, (side, (left, right)) in enumerate(zip(("pinion", "wheel"), BEARINGS, strict=True)):
+        lean = pair.helix.base_tangent if angle else 0.0
+        lever = AT + at + lean * (pair.points.C - i * pair.line_of_action)
+        loads = [(right.position - lever), (lever - left.position)] / np.array(right.position - left.position)
+        names = [f"{side} bearing {k}" for k in (1, 2)]
+        assert found[[column(drive, name) for name in names]] == pytest.approx(force * loads, rel=1e-6)
+
+
 def in_space(pair: GearPair, speed: float, swing: float = 0.0, error: float = 0.0) -> BearingForces:
     """Two bodies of six freedoms with the same mesh, whose load travels as much."""
     pitch_point, cosine = np.array(pair.points.C), pair.helix.base_cosine
@@ -332,7 +348,7 @@ def test_gears_that_cannot_tilt_are_not_driven():
 @pytest.mark.long
 @pytest.mark.parametrize("angle", [0.0, 15.0, -15.0])
 def test_of_a_mesh_cycle_on_its_shafts_slow_bearings_carry_its_loads(angle):
-    """Harmonics of the radial forces that statics of every position gives, cell by cell."""
+    """Means and harmonics of the radial forces that statics of every position gives, cell by cell."""
     pair = replace(
         GearPair(Gear(teeth=20), Gear(teeth=30), module=2e-3, face_width=20e-3),
         helix_angle=math.radians(angle),
@@ -355,15 +371,21 @@ def test_of_a_mesh_cycle_on_its_shafts_slow_bearings_carry_its_loads(angle):
         speeds=(100.0, 300.0), tolerance=1e-5, **given,
     )  # fmt: skip
     found = balanced(drive, 1e-2)
-    turned = 2.0 * np.exp(-2j * np.pi * np.outer([1, 2, 3], cycle.position)) / len(cycle.position)
+    turned = 2.0 * np.exp(-2j * np.pi * np.outer([0, 1, 2, 3], cycle.position)) / len(cycle.position)
+    turned[0] *= 0.5
     loads = cycle.lines if angle else cycle.face
     assert drive.load_travel > 1e-6
-    for i, side in enumerate(("pinion", "wheel")):
+    for i, (side, at) in enumerate((("pinion", 0.05), ("wheel", 0.14))):
         if angle:
             expected = turned @ loads.bearing_forces(i)[:, :, 0].T
         else:
             force = loads.line_load
             place = (force * loads.face_position).sum(axis=(1, 2)) / force.sum(axis=(1, 2))
-            expected = np.outer(turned @ (drive.rigid.force * place), [-1.0, 1.0]) / 0.19
-        ours = found[1:, [column(drive, f"{side} bearing {k}") for k in (1, 2)]]
-        np.testing.assert_allclose(ours, expected, rtol=0.0, atol=2e-3 * np.max(np.abs(expected)))
+            expected = (
+                turned
+                @ (drive.rigid.force * np.column_stack([0.195 - at - place, at + place - 0.005]))
+                / 0.19
+            )
+        ours = found[:, [column(drive, f"{side} bearing {k}") for k in (1, 2)]]
+        np.testing.assert_allclose(ours[0], expected[0], rtol=2e-3)
+        np.testing.assert_allclose(ours[1:], expected[1:], rtol=0.0, atol=2e-3 * np.max(np.abs(expected[1:])))
