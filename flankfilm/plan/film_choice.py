@@ -3,7 +3,7 @@
 What a film changes of the stiffness is seen by computing the cycle with the cheapest models: teeth by the
 potential-energy method, films by Dowson's formula, at the coarsest. That takes a twentieth of the films' own time.
 How far it may be off was measured over many oils, speeds and torques (by
-``python tests/validation/studies/film_scatter.py``).
+``python benchmarks/studies/film_scatter.py``).
 """
 
 from __future__ import annotations

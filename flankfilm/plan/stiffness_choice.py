@@ -1,7 +1,7 @@
 """Which stiffness model a scene may have: what each leaves out, and what each costs.
 
 A closed form has no error bound. Known is only how far it was from finite elements over many
-pairs (``python tests/validation/studies/closed_form_scatter.py``); inside the ranges of that comparison the largest
+pairs (``python benchmarks/studies/closed_form_scatter.py``); inside the ranges of that comparison the largest
 difference found stands for its error. A comparison for the pair at hand, as ``flankfilm verify`` makes it, needs the
 same mesh and factors as the finite elements themselves: 0.35 s of which the loaded contact is the smallest part, so
 that nothing could be saved after it.

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from base import RangeWarning
+from benchmarks.studies.film_estimates import SUPPLIES, outcomes
 from ehl import solve_thermal
 from tests.hard.random_contacts import random_gear_contact
-from tests.validation.studies.film_estimates import SUPPLIES, outcomes
 
 TOLERANCE = 0.01
 NONE = 0.1 * TOLERANCE  # errors below this count as none

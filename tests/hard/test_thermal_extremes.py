@@ -81,7 +81,7 @@ def test_a_reversal_of_entrainment_is_refused_with_the_reason():
 
 @pytest.mark.slow
 def test_random_gear_contacts_are_solved():
-    """Of those with eta0 beta u^2/k up to 10; 40 of the 400 of tests/validation/studies/thermal_errors.py."""
+    """Of those with eta0 beta u^2/k up to 10; 40 of the 400 of benchmarks/studies/thermal_errors.py."""
     rng = np.random.default_rng(3)
     solved, counted = 0, 0
     for _ in range(40):

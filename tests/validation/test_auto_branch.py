@@ -1,6 +1,6 @@
 """Special points of the lubricated scan by AUTO-07p 0.9.2 (orthogonal collocation), with a smoothed backlash.
 
-Printed by tests/validation/studies/auto_branches.py, which needs AUTO and a Fortran compiler: 200 intervals of four
+Printed by benchmarks/studies/auto_branches.py, which needs AUTO and a Fortran compiler: 200 intervals of four
 collocation points a period, steps of at most 0.001, special points to EPSS = 1e-9. The law of AUTO is that of
 `SmoothedBacklash`, so that the stepwise flow must find the same points at the same width; at no width it is the exact
 flow's.

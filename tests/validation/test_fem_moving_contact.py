@@ -1,6 +1,6 @@
 """One pair of teeth whose contact moves under load, against CalculiX with NLGEOM on two gears.
 
-Source: own runs of CalculiX 2.20, ``tests/validation/studies/fem_moving_contact.py``: surface-to-surface contact,
+Source: own runs of CalculiX 2.20, ``benchmarks/studies/fem_moving_contact.py``: surface-to-surface contact,
 penalty 1e7 N/mm^3, curved CPE6, 33 000 nodes, edges of 40 um at the contact, whole annuli held at their bores.
 Steel 17 on PA66 51 (E 3 GPa, nu 0.4), m 2 mm, b 20 mm, one pair 0.8 base pitches after A. The bore of one gear is
 turned by D over its base radius, the other is held. The figure is the change of the secant stiffness against Hertz's

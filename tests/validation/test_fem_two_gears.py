@@ -1,6 +1,6 @@
 """Loaded contact against two whole gears whose contacts are all resolved by their elements.
 
-Reference: tests/validation/studies/fem_two_gears.py (docs/validation/two_gears.md), which uses nothing of the
+Reference: benchmarks/studies/fem_two_gears.py (docs/validation/two_gears.md), which uses nothing of the
 compliance, of the local laws or of the tip strips: pressures on element edges of 3 um at the tip corners and 8 um on
 the flanks, exact complementarity, gaps and directions of the deformed flanks. Its own error is a few hundredths of a
 per cent, at C with the edges free a tenth (15.613 with edges of 3 um and deformed flanks, 15.625 with edges of 1 um,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.validation.studies.helix_errors import SEED, one, ratios
+from benchmarks.studies.helix_errors import SEED, one, ratios
 
 
 @pytest.mark.slow

@@ -14,13 +14,7 @@ import pytest
 
 import flankfilm as ff
 from base import RangeWarning
-from ehl import Roughness
-from ehl.discrete import film_ratio
-from flankfilm.coupling import LoadedTeeth, MeshLosses
-from gears import TipRelief
-from gears.closed_form import ohlendorf_loss_factor, schlenk_friction
-from tests.validation.article import PAIR, TORQUE
-from tests.validation.studies.mesh_losses import (
+from benchmarks.studies.mesh_losses import (
     HELD,
     OIL,
     RIG_OIL,
@@ -32,6 +26,12 @@ from tests.validation.studies.mesh_losses import (
     fzg_pair,
     rig_friction,
 )
+from ehl import Roughness
+from ehl.discrete import film_ratio
+from flankfilm.coupling import LoadedTeeth, MeshLosses
+from gears import TipRelief
+from gears.closed_form import ohlendorf_loss_factor, schlenk_friction
+from tests.validation.article import PAIR, TORQUE
 
 
 def losses(stress: float, **options) -> MeshLosses:
