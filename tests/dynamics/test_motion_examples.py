@@ -55,6 +55,7 @@ def test_ends_of_chaos():
     middle = lines.index("")
     crises, ends = lines[2:middle], lines[middle + 3 :]
     assert all("| aperiodic |" in line for line in crises)
+    assert "0.90883842" in crises[0]
     assert "1.119740782" in crises[1]
     # the chaos of 4-3-0 ends by escapes alone
     assert [line.split(" | ")[3] for line in ends] == [
