@@ -59,7 +59,7 @@ def mesh_frequencies(
 
 
 def mesh_excitation(rigid: PairOscillator, moments: Array) -> MeshExcitation:
-    """What drives the train at its mesh, with harmonics of the travelling load's moment [N m]."""
+    """What drives the train at its mesh, with mean and harmonics of the travelling load's moment [N m]."""
     own, scales = rigid.oscillator, rigid.scales
     assert scales is not None
     swing = np.abs(own.stiffness.amplitudes) / own.stiffness.mean * abs(rigid.force)
@@ -69,7 +69,7 @@ def mesh_excitation(rigid: PairOscillator, moments: Array) -> MeshExcitation:
         np.pad(np.abs(amplitudes), (0, count - len(amplitudes)))
         for amplitudes in (swing, rigid.error_amplitude)
     )
-    if not (force.any() or error.any() or moments.any()):
+    if not (force.any() or error.any() or moments[1:].any()):
         force[0] = 1.0  # nothing drives it: any force will do
     return MeshExcitation(force, error, scales.mean_stiffness, mesh, np.abs(moments))
 

@@ -333,7 +333,7 @@ def pair_drive(
     bounds = ends[0] / scales.omega_n, ends[1] / scales.omega_n
     travel = (travel or LoadTravel(())).kept(pair.face_width, share, bounds, damping_ratio)
     moments = driving_moments(train, rigid.force, travel, load_centre)
-    reduction = reduced_train(train, damping, mesh_excitation(rigid, moments[1:]), ends, reduction_tolerance)
+    reduction = reduced_train(train, damping, mesh_excitation(rigid, moments), ends, reduction_tolerance)
     if not math.isinf(reduction.valid_to):  # of the gears' mass: displacements of the size of the train's
         reduction = reduction._replace(shapes=reduction.shapes * math.sqrt(scales.equivalent_mass))
     oscillator = reduced_oscillator(rigid, train, damping, reduction, free_damping_ratio, moments)

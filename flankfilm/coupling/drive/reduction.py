@@ -50,8 +50,8 @@ class MeshExcitation:
         Of the transmission error's harmonics [m].
     stiffness, damping : float
         Mean ones of the mesh [N/m], [N s/m].
-    moment : ndarray, shape (any,)
-        Of the harmonics of the load that travels over the face [N m]; none where it stays.
+    moment : ndarray, shape (1 + any,)
+        Mean and harmonics of the load that travels over the face [N m]; 0 where it stays where slopes place it.
     """
 
     force: Array
@@ -69,13 +69,16 @@ class MeshExcitation:
     def reaching(self, frequency: float, tolerance: float) -> MeshExcitation:
         """Harmonics up to the last that counts at a mesh frequency [rad/s]."""
         last = _last(self.amplitudes(np.array([frequency]))[0], tolerance)
-        moment = self.moment[: _last(self.moment, tolerance)]
+        moment = self.moment[: 1 + _last(self.moment[1:], tolerance)]
         return MeshExcitation(self.force[:last], self.error[:last], self.stiffness, self.damping, moment)
 
     def sources(self, train: Train, frequencies: Array) -> list[tuple[Array, Array]]:
-        """Directions (n,) and amplitudes (frequencies, harmonics) of the force and of the moment, if there is one."""
+        """Directions (n,) and amplitudes (frequencies, harmonics) of the force and of the moment, if there is one.
+
+        A moment that stands still swings nothing, but its direction is that of a static deflection.
+        """
         force = self.amplitudes(frequencies)
-        moment = np.tile(self.moment, (len(frequencies), 1))
+        moment = np.tile(self.moment[1:], (len(frequencies), 1))
         count = max(force.shape[1], moment.shape[1])
         of_force, of_moment = (np.pad(each, ((0, 0), (0, count - each.shape[1]))) for each in (force, moment))
         return [(train.direction, of_force), (train.tilt, of_moment)][: 2 if self.moment.any() else 1]
@@ -174,7 +177,7 @@ class _Forced:
         self.rotation = rotation / np.sqrt(rotation @ (train.mass @ rotation))
         self.factors = train.held()
         self.mesh_damping = excitation.damping
-        orders = np.arange(1, max(len(excitation.force), len(excitation.moment)) + 1)
+        orders = np.arange(1, max(len(excitation.force), len(excitation.moment) - 1) + 1)
         met = np.sqrt(squares)[:, None] / orders
         grid = np.geomspace(ends[0], BEYOND * ends[1], SPEEDS)
         self.frequencies = np.unique(

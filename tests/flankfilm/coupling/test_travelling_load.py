@@ -91,7 +91,7 @@ def balanced(drive: PairDrive, speed: float, order: int = 3) -> np.ndarray:
             osc.stiffness + nu * (osc.damping + osc.mesh_damping * np.outer(g, g)) + nu**2 * osc.mass
         )
         sides[i] += nu * osc.mesh_damping * error.get(n, 0.0) * g
-        sides[i] += push.get(n, 0.0) * np.asarray(osc.force_direction)
+        sides[i] += 0.0 if osc.force_direction is None else push.get(n, 0.0) * np.asarray(osc.force_direction)
     sides[order] += osc.mean_force
     flat = whole.reshape(len(numbers) * size, -1)
     moved = np.linalg.lstsq(flat, sides.ravel(), rcond=1e-14)[0].reshape(-1, size)[order : order + 4]
@@ -134,10 +134,11 @@ def test_slow_bearings_carry_what_statics_gives(angle, thick):
 
 @pytest.mark.parametrize("angle", [0.0, 20.0])
 @pytest.mark.parametrize("tilt", [0.0, TILT])
-def test_mean_loads_of_bearings_are_those_of_the_mean_place(angle, tilt):
-    """Whatever resists tilt, and wherever slopes place the force."""
+@pytest.mark.parametrize("places", [PLACES, ()], ids=["travels", "stays"])
+def test_mean_loads_of_bearings_are_those_of_the_mean_place(angle, tilt, places):
+    """Whatever resists tilt, and wherever slopes place the force; also of a load that stays there."""
     at, pair, shafts = 7e-3, helical(angle), on_shafts(0.03, STEEL)
-    given = {"tilt_stiffness": tilt, "travel": LoadTravel(PLACES, mean=at), "damping_ratio": 1e-6}
+    given = {"tilt_stiffness": tilt, "travel": LoadTravel(places, mean=at), "damping_ratio": 1e-6}
     drive = train(pair, shafts, shaft_damping_ratio=0.0, **given)
     found, force = balanced(drive, 1e-2)[0].real, drive.rigid.force
     for i, (side, (left, right)) in enumerate(zip(("pinion", "wheel"), BEARINGS, strict=True)):
