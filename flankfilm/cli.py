@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import App, Parameter, Token
 
 from base import InputError, printable
+from flankfilm.processes.current_folder import disregard_settings
 from flankfilm.processes.exit_status import BY_SIGNAL, guarded, open_streams, say
 from flankfilm.studies.execution import Execution
 from flankfilm.studies.executors import Kind
@@ -374,18 +375,12 @@ for _name, _where, _help in (
     app.command(f"flankfilm.{_where}", name=_name, help=_help)
 
 
-SETTINGS_OF_NUMBA = ".numba_config.yaml"
-"""File of the current folder that numba obeys, whoever has put it there, each time that it compiles."""
-
-
 DATE = "SOURCE_DATE_EPOCH"
 """Variable with which libraries date what they write, as soon as they are loaded."""
 
 
 def _commands() -> int:
-    if Path(SETTINGS_OF_NUMBA).is_file():
-        why = "must not lie in the current folder: it changes how results are computed"
-        raise InputError.at(SETTINGS_OF_NUMBA, "", why, "Move it away, or work in another folder")
+    disregard_settings()
     if not (date := os.environ.get(DATE, "0")).isdecimal():
         raise InputError.at(DATE, date, "must be whole seconds since 1970", f"unset {DATE}")
     return int(app(exit_on_error=True, print_error=True) or 0)

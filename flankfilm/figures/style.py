@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import io
 import re
-import sys
 from collections.abc import Iterator, Mapping
-from contextlib import chdir, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,21 +13,11 @@ from typing import TYPE_CHECKING, Any
 from base import InputError
 from base.files import replacing
 from base.views import surface
+from flankfilm.processes.current_folder import load_matplotlib
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-
-def load_matplotlib() -> None:
-    """Load matplotlib away from the current folder, whose ``matplotlibrc`` it would obey whoever had put it there."""
-    if "matplotlib" in sys.modules:
-        return
-    with (
-        suppress(FileNotFoundError),
-        chdir(Path(__file__).parent),
-    ):  # a folder that is gone holds no such file
-        import matplotlib  # noqa: F401
 
 
 load_matplotlib()

@@ -4,6 +4,9 @@ Files of a run do not depend on each other. The assistant is started when a run 
 needs by the time there is something to write. Who waits for a task that has not begun does it here. A run without an
 assistant, or whose assistant died, does them all; a task that cannot be sent is done here as well. The same function
 with the same arguments makes the same file in either place.
+
+The thread that speaks with the assistant passes bytes on and no more. Tasks and answers are read where the run is:
+objects load their modules, and two threads that load the same library at once find parts of it missing.
 """
 
 from __future__ import annotations
@@ -16,7 +19,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import IO, Any, Generic, TypeVar, cast
 
 from flankfilm.processes.worker_processes import cores, module, python
@@ -24,6 +27,9 @@ from flankfilm.processes.worker_processes import cores, module, python
 __all__ = ["Assistant", "Task", "assistant"]
 
 T = TypeVar("T")
+
+SIZE = 8
+"""Bytes of the length that goes before an answer."""
 
 
 @dataclass(eq=False)
@@ -38,24 +44,42 @@ class Task(Generic[T]):
     packed : bytes
         Both, as they were when the task was set: what records compute and keep later would change while it is sent.
         Empty where they cannot be sent, and where nobody is to have them.
-    ended : threading.Event
-        Set when `value` or `fault` is known.
+    answer : bytes
+        Outcome, packed, where the assistant did it.
+    outcome : tuple of bool and object, or None
+        Whether it ended well, and what it gave or raised; None where that is not known here yet.
     """
 
     work: Callable[..., T]
     arguments: tuple[Any, ...]
     packed: bytes = b""
-    ended: threading.Event = field(default_factory=threading.Event)
-    value: T | None = None
-    fault: Exception | None = None
+    answer: bytes = b""
+    outcome: tuple[bool, T | Exception] | None = None
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has been done, in either place."""
+        return bool(self.answer) or self.outcome is not None
 
     def do(self) -> None:
         """Do it in this process."""
         try:
-            self.value = self.work(*self.arguments)
+            self.outcome = True, self.work(*self.arguments)
         except Exception as fault:  # noqa: BLE001 - raised where the result is asked for
-            self.fault = fault
-        self.ended.set()
+            self.outcome = False, fault
+
+    def result(self) -> T:
+        """Give what it gave, or raise what it raised, once it has ended; an answer that cannot be read is made here."""
+        if self.outcome is None:
+            try:
+                self.outcome = pickle.loads(self.answer)  # from the process started here alone
+            except Exception:  # noqa: BLE001 - objects refuse to be read in ways of many kinds
+                self.do()
+            self.answer = b""
+        well, what = cast(tuple[bool, T | Exception], self.outcome)
+        if isinstance(what, Exception) and not well:
+            raise what
+        return cast(T, what)
 
 
 class Assistant:
@@ -72,8 +96,9 @@ class Assistant:
         self._queue: deque[Task[Any]] = deque()
         self._changed = threading.Condition()
         self._closed = process is None
+        self._thread = threading.Thread(target=self._hand_over, daemon=True)
         if process is not None:
-            threading.Thread(target=self._hand_over, args=(process,), daemon=True).start()
+            self._thread.start()
 
     @property
     def there(self) -> bool:
@@ -82,10 +107,10 @@ class Assistant:
 
     def submit(self, work: Callable[..., T], *arguments: Any) -> Task[T]:
         """Put a task at the end of the queue."""
-        task = Task(work, arguments, _packed(work, arguments) if self.there else b"")
+        task = Task(work, arguments, _packed((work, arguments)) if self.there else b"")
         with self._changed:
             self._queue.append(task)
-            self._changed.notify()
+            self._changed.notify_all()
         return task
 
     def result(self, task: Task[T]) -> T:
@@ -93,49 +118,39 @@ class Assistant:
 
         While the assistant is at it, tasks that wait behind it are done here.
         """
-        self._do_here(task)
-        while not task.ended.is_set():
-            if not self._do_here(None):
-                task.ended.wait()
-        if task.fault is not None:
-            raise task.fault
-        return cast(T, task.value)
-
-    def _do_here(self, wanted: Task[Any] | None) -> bool:
-        """Do one task of the queue here: the wanted one, or the last; False where it has gone."""
-        with self._changed:
-            task = (
-                wanted if wanted in self._queue else self._queue[-1] if not wanted and self._queue else None
-            )
-            if task is None:
-                return False
-            self._queue.remove(task)
-        task.do()
-        return True
-
-    def _hand_over(self, process: subprocess.Popen[bytes]) -> None:
-        """Send tasks to the assistant, one after the other, until it is dismissed or has died."""
-        to, back = cast(IO[bytes], process.stdin), cast(IO[bytes], process.stdout)
-        while True:
+        while not task.ended:
             with self._changed:
-                self._changed.wait_for(lambda: self._closed or self._queue)
-                if self._closed:
-                    return
-                task = self._queue.popleft()
-            if not task.packed:
-                task.do()
-                continue
-            try:
-                to.write(task.packed)
-                to.flush()
-                done, outcome = pickle.load(back)  # from the process started here alone
-            except (OSError, EOFError, pickle.PickleError):
-                with self._changed:
+                self._changed.wait_for(lambda: task.ended or self._queue)
+                if task.ended:
+                    break
+                here = task if task in self._queue else self._queue[-1]
+                self._queue.remove(here)
+            here.do()
+        return task.result()
+
+    def _hand_over(self) -> None:
+        """Send tasks to the assistant, one after the other, until it is dismissed or has died."""
+        while (task := self._next()) is not None:
+            answer = _answer(cast("subprocess.Popen[bytes]", self._process), task.packed)
+            with self._changed:
+                task.answer = answer
+                if not answer:
                     self._closed = True
-                task.do()
-                return
-            task.value, task.fault = (outcome, None) if done else (None, outcome)
-            task.ended.set()
+                    self._queue.appendleft(task)
+                self._changed.notify_all()
+
+    def _next(self) -> Task[Any] | None:
+        """Wait for a task that can be sent, and take it; None once there is nobody to send it to."""
+
+        def first() -> Task[Any] | None:
+            return next((task for task in self._queue if task.packed), None)
+
+        with self._changed:
+            self._changed.wait_for(lambda: self._closed or first() is not None)
+            if self._closed or (task := first()) is None:
+                return None
+            self._queue.remove(task)
+        return task
 
     def dismiss(self) -> None:
         """End the process at once; what it writes is whole at any moment."""
@@ -145,6 +160,20 @@ class Assistant:
         if self._process is not None:
             self._process.kill()
             self._process.wait()
+            self._thread.join()
+
+
+def _answer(process: subprocess.Popen[bytes], packed: bytes) -> bytes:
+    """Outcome of a task that a process did, packed; empty where it died before."""
+    to, back = cast(IO[bytes], process.stdin), cast(IO[bytes], process.stdout)
+    try:
+        to.write(packed)
+        to.flush()
+        size = int.from_bytes(back.read(SIZE), "big")
+        answer = back.read(size)
+    except OSError:
+        return b""
+    return answer if len(answer) == size else b""
 
 
 @contextmanager
@@ -161,10 +190,10 @@ def assistant(modules: Sequence[str]) -> Iterator[Assistant]:
         helper.dismiss()
 
 
-def _packed(work: Callable[..., Any], arguments: tuple[Any, ...]) -> bytes:
-    """Task as it is sent; empty where it cannot be."""
+def _packed(content: object) -> bytes:
+    """Task, or outcome, in the form in which it is sent; empty where it cannot be."""
     try:
-        return pickle.dumps((work, arguments))
+        return pickle.dumps(content)
     except Exception:  # noqa: BLE001 - objects refuse to be sent in ways of many kinds
         return b""
 
@@ -187,9 +216,10 @@ def _serve(modules: Sequence[str]) -> None:
             return
         task = Task(work, arguments)
         task.do()
-        answer = (True, task.value) if task.fault is None else (False, task.fault)
+        # an outcome that cannot be sent has no length: the other process does the task again
+        answer = _packed(task.outcome)
         with suppress(BrokenPipeError):
-            pickle.dump(answer, back)
+            back.write(len(answer).to_bytes(SIZE, "big") + answer)
             back.flush()
 
 

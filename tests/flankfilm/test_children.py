@@ -145,11 +145,33 @@ def test_settings_of_libraries_in_the_current_folder_are_not_obeyed(tmp_path):
         text=True,
     )
     assert (said.returncode, said.stderr) == (0, "")
+    early = (
+        "import sys\nfrom flankfilm.processes.current_folder import disregard_settings\n"
+        "disregard_settings()\nassert 'matplotlib' in sys.modules\n"
+    )
+    subprocess.run(python("-c", early), cwd=tmp_path, env={**os.environ, "PYTHONPATH": path}, check=True)
     (tmp_path / ".numba_config.yaml").write_text("disable_jit: 1\n")
     refused = subprocess.run([str(SCRIPT), "new", "scene.toml"], cwd=tmp_path, capture_output=True, text=True)
     assert refused.returncode == 2
     assert ".numba_config.yaml: must not lie in the current folder" in refused.stderr
     assert not (tmp_path / "scene.toml").exists()
+
+
+def test_loading_pictures_leaves_the_current_folder_alone(tmp_path):
+    """It is that of all threads: one that writes files meanwhile would write them elsewhere."""
+    load = (
+        "import sys\nsys.addaudithook(lambda event, _: print(event) if event == 'os.chdir' else None)\n"
+        "import flankfilm.figures.motion, flankfilm.runs.report\n"
+    )
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    said = subprocess.run(
+        python("-c", load),
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+    )
+    assert (said.returncode, said.stdout, said.stderr) == (0, "", "")
 
 
 def test_a_signal_becomes_an_exception_and_then_what_it_was():

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flankfilm.figures.rendering.view import INK, View, bar_of, nearest, note_scale, steps, titled
-from flankfilm.figures.style import load_matplotlib
+from flankfilm.processes.current_folder import load_matplotlib
 
 STEEL = "#c3c9cf"
 BEHIND = 0.16

@@ -17,7 +17,7 @@ import numpy as np
 
 from flankfilm.figures.rendering.face import draw_face
 from flankfilm.figures.rendering.view import INK, PAPER, View, bar_of, nearest, note_scale, steps, titled
-from flankfilm.figures.style import load_matplotlib
+from flankfilm.processes.current_folder import load_matplotlib
 
 UNREADABLE = 2
 """Exit status where a file that is drawn cannot be read."""
