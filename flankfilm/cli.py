@@ -34,7 +34,7 @@ def _version() -> str:
 
 app = App(
     name="flankfilm",
-    help="Stiffness, oil film and motion of spur-gear pairs; each number with its error and its cost.",
+    help="Stiffness, oil film and motion of spur and helical gear pairs; each number with its error and its cost.",
     version=_version,
     version_flags=["--version"],
     suppress_keyboard_interrupt=False,  # it says what is kept

@@ -13,7 +13,7 @@ from flankfilm.processes.assistant import Assistant, Task
 from flankfilm.products import geometry
 from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine, Stage
-from flankfilm.stages.mesh import COMPLIANCE, MESH
+from flankfilm.stages.mesh import COMPLIANCE, MESH, along_the_face
 from flankfilm.stages.vtk import FieldFiles, begin_fields, factorise
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class Ahead:
 
     def ended(self, stage: Stage[Any]) -> None:
         """Begin what the result of a stage was wanting for."""
-        if stage is COMPLIANCE:
+        if stage is COMPLIANCE and not along_the_face(self.engine.scene):
             self.helper.submit(factorise, self.engine[COMPLIANCE])
         elif stage is MESH:
             with suppress(InputError, SolverError):  # what fields need as well, and so the engine keeps

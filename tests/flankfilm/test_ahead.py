@@ -15,7 +15,8 @@ from flankfilm.runs.run_scene import run_scene
 from flankfilm.scene import Scene, parse_scene
 from flankfilm.stages.computed import Computed
 from flankfilm.stages.engine import Engine, Stage
-from flankfilm.stages.mesh import HEAT, PAIR
+from flankfilm.stages.mesh import COMPLIANCE, HEAT, PAIR
+from flankfilm.stages.vtk import factorise
 from tests.flankfilm.scenes import ishikawa
 
 WORN = """
@@ -89,3 +90,19 @@ def test_a_promised_result_is_taken_once_and_a_fault_in_it_is_that_of_its_stage(
         _ = engine[failed]
     assert list(engine.failures) == ["failed"]
     assert ended == [given]
+
+
+@pytest.mark.parametrize(("helix", "begun"), [("", 1), ("helix_angle_deg = 15.0\n", 0)])
+def test_gears_are_factorised_ahead_for_fields_of_the_plane_alone(tmp_path, helix, begun):
+    text = ishikawa("spur", "stiffness", "vtk").replace("ishikawa", "fem").replace("independent", "coupled")
+    engine = Engine(parse_scene(text.replace("[pair]\n", f"[pair]\n{helix}", 1)), Cache(None))
+    set_ahead: list[object] = []
+
+    class Noted(Assistant):
+        def submit(self, work, *arguments):
+            set_ahead.append(work)
+            return super().submit(work, *arguments)
+
+    engine.on_end = Ahead(engine, Noted(), tmp_path).ended
+    _ = engine[COMPLIANCE]
+    assert set_ahead.count(factorise) == begun

@@ -102,3 +102,6 @@ def test_the_index_shows_every_picture_and_nothing_else():
     assert sorted(re.findall(r"\(images/gallery_(\w+)\.png\)\]\(gallery/\1\.md\)", text)) == NAMES
     assert sorted(re.findall(r"^gallery/(\w+)$", text, re.MULTILINE)) == NAMES
     assert sorted(path.stem for path in (DOCS / "gallery").glob("*.md")) == NAMES
+    assert len(NAMES) == 16  # as the front pages write
+    assert "Sixteen worked examples" in (DOCS.parent / "README.md").read_text(encoding="utf-8")
+    assert "sixteen worked examples" in (DOCS / "index.md").read_text(encoding="utf-8")
