@@ -199,7 +199,11 @@ def _both(stage: DriveSweep, figure: str, column: int) -> Array:
     return np.concatenate([getattr(stage, figure)[way][:, column] for way in ("up", "down")])
 
 
-_OF_MODEL = "model: the band of the damping and the search"
+def _about(band: Array) -> str:
+    """Say what the error of a peak is made of; `band` has its heights with other damping, nan without a period."""
+    if np.isfinite(band).any():
+        return "model: the band of the damping and the search"
+    return "the motion there does not repeat: its maximum may be higher"
 
 
 def operating_headlines(stage: DriveSweep, rpm: float) -> list[Headline]:
@@ -224,7 +228,7 @@ def headlines(stage: DriveSweep) -> list[Headline]:
         off = Uncertainty(None)
         if np.isfinite(stage.force_peak_error):
             off = Uncertainty(sampled, stage.force_peak_error - sampled)
-        note = f"at {RPM * stage.force_peak_speed:.0f} rpm; {_OF_MODEL}"
+        note = f"at {RPM * stage.force_peak_speed:.0f} rpm; {_about(stage.force_peak_band)}"
         shown.append(
             Headline("maximum mesh force over the mean force", f"{stage.force_peak:.3g}", note, "", off)
         )
@@ -242,7 +246,7 @@ def headlines(stage: DriveSweep) -> list[Headline]:
         )
         sampled = min(stage.sampling_error, off)
         known_off = Uncertainty(sampled, off - sampled) if np.isfinite(off) else Uncertainty(None)
-        note = f"{names[at]}, at {rpm:.0f} rpm; {_OF_MODEL}"
+        note = f"{names[at]}, at {rpm:.0f} rpm; {_about(getattr(stage, f'{figure}_peak_band')[:, at])}"
         if stage.carried_error is not None:
             omitted = stage.carried_error - stage.sampling_error
             known = f"up to {percent(omitted)}" if np.isfinite(omitted) else "more, in places unknown,"

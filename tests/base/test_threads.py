@@ -58,6 +58,19 @@ def test_what_is_not_counted_in_another_thread_is_not_counted(monkeypatch):
     assert watch.seconds < 0.05
 
 
+def test_what_no_thread_counts_at_the_same_time_is_left_out_once(monkeypatch):
+    """Threads that compile the same functions wait for each other: a cost of less than nothing came of it."""
+    monkeypatch.setattr(threads, "cores", lambda: 2)
+    watch = Stopwatch()
+
+    def load():
+        with unclocked():
+            time.sleep(0.2)
+
+    side_by_side([load, load])
+    assert watch.seconds >= 0.0
+
+
 def test_cores_are_as_many_as_asked_for(monkeypatch):
     monkeypatch.setenv("NUMBA_NUM_THREADS", "1")
     assert cores() == 1

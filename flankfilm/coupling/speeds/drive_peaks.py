@@ -1,12 +1,14 @@
 """Peaks of what a drive train carries, between the speeds of a sweep too, and what damping makes of them.
 
 Places are the maximum values of both sweeps and the highest peaks of the linear response, which is cheap everywhere.
-About the highest of them periodic motions are followed to the maximum force.
+About the highest of them periodic motions are followed to the maximum force: to the top of a parabola, or to where the
+motion ends, beyond which the train jumps to another one. Motions that do not repeat count with what the sweeps saw of
+them; how far their maximum is off is unknown.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -33,6 +35,9 @@ NEARLY = 0.9
 STEPS, SETTLED = 10, 1e-3
 """Most motions of one search, and relative difference of a parabola from the motion at its top at which it ends."""
 
+HALVINGS = 20
+"""Most motions of the search for the place where a motion ends."""
+
 
 class Peaks(NamedTuple):
     """Maximum forces over a range of speed: of the mesh over the mean force, then of each part.
@@ -45,7 +50,8 @@ class Peaks(NamedTuple):
     band : ndarray, shape (2, 1 + parts)
         Heights there with the minimum and the maximum damping that is likely; nan without a motion that repeats.
     settled : ndarray, shape (1 + parts,)
-        Relative difference to the neighbours of the search, and of samples of a period.
+        Relative difference to the neighbours of the search, and of samples of a period; infinite of a motion that does
+        not repeat.
     """
 
     frequency: Array
@@ -85,7 +91,7 @@ def drive_peaks(
     }
     search = _Search(drive, sweeps, heights)
     best = [search.sampled(part) for part in range(1 + len(drive.outputs))]
-    if values.min() < values.max():
+    if search.known and values.min() < values.max():
         fine, estimate = linear_heights(drive, float(values.min()), float(values.max()))
         for part in range(len(best)):
             places = _maxima(fine, estimate[:, part])
@@ -95,8 +101,11 @@ def drive_peaks(
                 if height >= least:
                     search.at(part, low)
                     search.at(part, high)
-            best[part] = search.greatest(part)
+            best[part] = max(search.greatest(part), best[part], key=lambda peak: peak.height)
             progress(part + 1, len(best))
+        for part, peak in enumerate(best):
+            if _peak(part, search.known).height > peak.height:  # of a motion that was met for another part
+                best[part] = search.greatest(part)
     band = np.array([search.damped(peak) for peak in best]).T
     return Peaks(
         np.array([peak.frequency for peak in best]),
@@ -104,6 +113,19 @@ def drive_peaks(
         band,
         np.array([peak.settled for peak in best]),
     )
+
+
+class _Motion(NamedTuple):
+    """Motion at a frequency: state, periods of the excitation (0 where it does not repeat), maximum forces, change.
+
+    The change is relative, with half as many samples.
+    """
+
+    frequency: float
+    state: Array
+    periods: int
+    heights: Array
+    change: float
 
 
 class _Peak(NamedTuple):
@@ -117,66 +139,112 @@ class _Peak(NamedTuple):
     periods: int
 
 
+def _peak(part: int, motions: Sequence[_Motion]) -> _Peak:
+    """Give the motion with the maximum force of a part."""
+    most = max(motions, key=lambda motion: float(motion.heights[part]))
+    return _Peak(part, most.frequency, float(most.heights[part]), most.change, most.state, most.periods)
+
+
 class _Search:
     """Periodic motions at any frequency of a sweep's range, by Newton's method from the nearest one known."""
 
     def __init__(
         self, drive: PairDrive, sweeps: Mapping[str, dynamics.SweepResult], heights: Mapping[str, Array]
     ) -> None:
-        self.drive, self.heights = drive, heights
-        self.values = np.sort(next(iter(sweeps.values())).values)
-        self.known: list[
-            tuple[float, Array, int, Array, float]
-        ] = []  # frequency, state, periods, heights, change
+        self.drive = drive
+        self.known: list[_Motion] = []
+        self.wandering: list[_Motion] = []
         for way, swept in sweeps.items():
             for row, (value, states, periods) in enumerate(
                 zip(swept.values.tolist(), swept.states, swept.periods.tolist(), strict=True)
             ):
-                if periods and np.all(np.isfinite(heights[way][row])):
-                    self.known.append((value, states[-1], periods, heights[way][row], 0.0))
+                if np.all(np.isfinite(heights[way][row])):
+                    change, among = (0.0, self.known) if periods else (np.inf, self.wandering)
+                    among.append(_Motion(value, states[-1], periods, heights[way][row], change))
 
     def sampled(self, part: int) -> _Peak:
-        """Largest of the motions known."""
-        if not self.known:
-            forces = np.concatenate([rows[:, part] for rows in self.heights.values()])
-            greatest = float(np.nanmax(forces, initial=0.0)) if np.isfinite(forces).any() else np.nan
-            return _Peak(part, float("nan"), greatest, np.inf, np.empty(0), 0)
-        value, state, periods, heights, change = max(self.known, key=lambda motion: float(motion[3][part]))
-        return _Peak(part, value, float(heights[part]), change, state, periods)
+        """Largest of all motions that the sweeps met; nan without any."""
+        if not (motions := [*self.known, *self.wandering]):
+            return _Peak(part, np.nan, np.nan, np.inf, np.empty(0), 0)
+        return _peak(part, motions)
 
     def greatest(self, part: int) -> _Peak:
         """Maximum force of all motions known, and of those at the tops of parabolas through it and its neighbours."""
         off = np.inf
         for _ in range(STEPS):
-            points = {
-                motion[0]: float(motion[3][part])
-                for motion in sorted(self.known, key=lambda motion: float(motion[3][part]))
-            }
-            order = sorted(points)
-            best = max(order, key=lambda frequency: points[frequency])
-            at = order.index(best)
-            beside = [order[k] for k in (at - 1, at + 1) if 0 <= k < len(order)]
-            place, top = _top([*beside, best], [points[frequency] for frequency in (*beside, best)])
+            best = _peak(part, self.known)
+            beside = self._beside(best)
+            place, top = _top([*beside, best.frequency], [*beside.values(), best.height])
             here = self.at(part, place)
-            off = abs(here.height / top - 1.0) if np.isfinite(here.height) else np.inf
-            if off < SETTLED or here.height == -np.inf:
-                break
-        peak = self.sampled(part)
+            if np.isfinite(here.height):
+                off = abs(here.height / top - 1.0)
+                if off < SETTLED:
+                    break
+            elif (ends := self._end(best, place, beside)) is not None:
+                return ends
+        peak = _peak(part, self.known)
         return peak._replace(settled=off + peak.settled)
 
-    def at(self, part: int, frequency: float) -> _Peak:
-        """Stable motion at a frequency and its force; minus infinity where none is found near the nearest known."""
+    def _beside(self, best: _Peak) -> dict[float, float]:
+        """Frequencies on both sides of a motion at which others are known, and their maximum force."""
+        points = {
+            motion.frequency: float(motion.heights[best.part])
+            for motion in sorted(self.known, key=lambda motion: float(motion.heights[best.part]))
+        }
+        order = sorted(points)
+        at = order.index(best.frequency)
+        return {order[k]: points[order[k]] for k in (at - 1, at + 1) if 0 <= k < len(order)}
+
+    def _end(self, best: _Peak, beyond: float, beside: Mapping[float, float]) -> _Peak | None:
+        """Follow a motion, whose force rises, up to where it ends; None where the force falls before.
+
+        Forces change by the root of the distance to a fold at most, F = F_end - c |nu - nu_end|^(1/2), so that two
+        motions bound what is left, wherever in the interval that remains the end is.
+
+        Parameters
+        ----------
+        best : _Peak
+        beyond : float
+            Frequency at which the motion has ended.
+        beside : mapping
+            Maximum force at the neighbours of `best`.
+        """
+        back = [place for place in beside if (place - best.frequency) * (beyond - best.frequency) < 0.0]
+        before, left = (back[0], beside[back[0]]) if back else None, np.inf
+        for _ in range(HALVINGS):
+            here = self.at(best.part, 0.5 * (best.frequency + beyond), best)
+            if here.height == -np.inf:
+                beyond = here.frequency
+            elif here.height < best.height:
+                return None
+            else:
+                before, best = (best.frequency, best.height), here
+            if before is not None:
+                gone = abs((best.frequency - beyond) / (before[0] - beyond)) ** 0.5
+                left = abs(before[1] / best.height - 1.0) * gone / (1.0 - gone)
+            if left < SETTLED:
+                break
+        return best._replace(settled=left + best.settled)
+
+    def at(self, part: int, frequency: float, near: _Peak | None = None) -> _Peak:
+        """Stable motion at a frequency and its force; minus infinity where none is found.
+
+        It is sought from `near`, or from the nearest one known; of several there, from that with the maximum force.
+        """
         value, state, periods, heights, change = min(
-            self.known, key=lambda motion: abs(motion[0] - frequency)
+            self.known,
+            key=lambda motion: (abs(motion.frequency - frequency), -float(motion.heights[part])),
         )
         if value != frequency:
+            if near is not None:
+                state, periods = near.state, near.periods
             here = self.drive.oscillator.with_parameter("frequency", frequency)
             orbit = dynamics.find_orbit(here, state, periods=periods)
             if not (orbit.converged and orbit.stable):
                 return _Peak(part, frequency, -np.inf, np.inf, state, periods)
             state, periods = orbit.state, orbit.periods
             heights, change = _heights(self.drive, here, state, periods)
-            self.known.append((frequency, state, periods, heights, change))
+            self.known.append(_Motion(frequency, state, periods, heights, change))
         return _Peak(part, frequency, float(heights[part]), change, state, periods)
 
     def damped(self, peak: _Peak) -> list[float]:
