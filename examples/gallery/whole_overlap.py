@@ -53,7 +53,7 @@ def draw() -> Figure:
     for k in (0, 2, 4, 6):
         own = of_slices(1e-3 * width[k], deflection[k])
         print(
-            f"overlap {overlap[k]:.1f}: {error[k]:.2f} um ± {100 * uncertain[k]:.1g} %, slices {own:.2f} um, "
+            f"overlap {overlap[k]:.1f}: {error[k]:.2f} um ± {100 * uncertain[k]:.2g} %, slices {own:.2f} um, "
             f"mean deflection {deflection[k]:.1f} um"
         )
     with sheet(height=3.6, legend=0) as (drawn, (axes,)):

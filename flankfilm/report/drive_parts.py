@@ -78,7 +78,8 @@ def _tilt(stage: PairDrive) -> str:
     if not stage.tilt_stiffness:
         return said("drive_gives_way", change=change)
     centre = number(1e3 * stage.load_centre)
-    off = "" if stage.load_travel_error is None else f" (± {percent(stage.load_travel_error)})"
+    known = np.isfinite(stage.load_travel_error)
+    off = f" (± {percent(stage.load_travel_error)})" if known else ""
     travel = f"{number(1e6 * stage.load_travel)} µm{off}"
     return said(
         "drive_resists", change=change, stiffness=number(stage.tilt_stiffness), centre=centre, travel=travel

@@ -45,7 +45,7 @@ WET = SCENE.replace('["root-stress"]', '["film", "root-stress"]').replace(
 )
 PLASTIC = (
     SCENE.replace("[material]", "[material.pinion]")
-    .replace("Nm = 100", "Nm = 8")
+    .replace("Nm = 100", "Nm = 4")
     .replace(
         "[operating]",
         "[material.wheel]\nyoungs_modulus_GPa = 3\npoisson_ratio = 0.4\n[operating]",

@@ -125,9 +125,9 @@ class PairDrive:
         shown="mm",
         error="load_travel_error",
     )
-    load_travel_error: float | None = quantity(
+    load_travel_error: float = quantity(
         "1",
-        "estimated relative error of that travel, by cells and by harmonics left out; None where it is unknown",
+        "estimated relative error of that travel, by cells and by harmonics left out; nan where it is unknown",
         no_error=ITSELF,
     )
     damping_band: tuple[float, float] = part(
@@ -383,7 +383,7 @@ def pair_drive(
         load_centre=load_centre,
         tilt_change=tilt_change(),
         load_travel=travel.range,
-        load_travel_error=travel.range_error,
+        load_travel_error=math.nan if travel.range_error is None else travel.range_error,
         damping_band=(damping_band[0], damping_band[1]),
         shaft_damping=damping,
         cost=Cost(watch.seconds, unknowns=len(train.rotation)),
